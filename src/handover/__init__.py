@@ -1,0 +1,1 @@
+"""The seed paper's handover testbench: generators, driver, simulation, checker, coverage."""

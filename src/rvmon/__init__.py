@@ -1,0 +1,1 @@
+"""Temporal requirements in, verdicts about robots out."""
