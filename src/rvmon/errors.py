@@ -1,0 +1,64 @@
+"""The exceptions of rvmon, all under one root.
+
+::
+
+    RvmonError
+    ├── SpecError(ValueError)        a specification is wrong; carries all diagnostics
+    ├── ModelError(ValueError)       a timed-automata model or query is wrong; carries all diagnostics
+    ├── TraceError(ValueError)       a recording or a sample is wrong; names file and line
+    │   └── TimeOrderError           a sample's time is not after the one before
+    ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
+    └── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rvmon.diagnostics.diagnostic import Diagnostic
+
+
+class RvmonError(Exception):
+    """Anything that rvmon raises on purpose."""
+
+
+class DiagnosedError(RvmonError, ValueError):
+    """Text that a person wrote is wrong; `diagnostics` say where, why and how to mend it.
+
+    Attributes:
+        diagnostics: all findings of the text, in order of place.
+    """
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], rendered: str) -> None:
+        super().__init__(rendered)
+        self.diagnostics = tuple(diagnostics)
+
+
+class SpecError(DiagnosedError):
+    """A specification cannot be used; `diagnostics` lists all its errors."""
+
+
+class ModelError(DiagnosedError):
+    """A timed-automata model or a query on it cannot be used; `diagnostics` lists all errors."""
+
+
+class TraceError(RvmonError, ValueError):
+    """A recording or a sample cannot be read; the message names its place."""
+
+
+class TimeOrderError(TraceError):
+    """A sample's time is not after that of the sample before."""
+
+
+class UnknownNameError(RvmonError, KeyError):
+    """A name that does not exist was asked for; the message lists those that do."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
+
+class SnapshotError(RvmonError, ValueError):
+    """A snapshot was made by another specification or version."""
