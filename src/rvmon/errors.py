@@ -4,7 +4,7 @@
 
     RvmonError
     ├── SpecError(ValueError)        a specification is wrong; carries all diagnostics
-    ├── ModelError(ValueError)       a timed-automata model or query is wrong; carries all diagnostics
+    ├── ModelError(ValueError)       a model or query is wrong; carries all diagnostics
     ├── TraceError(ValueError)       a recording or a sample is wrong; names file and line
     │   └── TimeOrderError           a sample's time is not after the one before
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist

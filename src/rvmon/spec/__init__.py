@@ -1,0 +1,1 @@
+"""Specification text to checked specification: grammar, syntax tree, names, types, units."""

@@ -1,0 +1,1 @@
+"""Time and samples: what a monitor is fed with."""

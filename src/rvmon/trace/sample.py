@@ -1,0 +1,70 @@
+"""What arrives: samples of signals and events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+Scalar = bool | int | float | str | None
+"""A signal's value; `None` makes the signal unknown."""
+
+Payload = Mapping[str, Scalar]
+"""The fields of one occurrence of an event."""
+
+Value = Scalar | Payload | tuple[Payload, ...]
+"""What a sample says of a name: a signal's value; of an event `True`, its payload or payloads."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """All that became known at one instant.
+
+    Attributes:
+        t: ticks.
+        values: by name, only what was updated or occurred.
+    """
+
+    t: int
+    values: Mapping[str, Value]
+
+
+class Recording(Protocol):
+    """A finished trace that can be read once from its start."""
+
+    @property
+    def names(self) -> frozenset[str] | None:
+        """The signals and events that have a source (a column, a topic); `None`: any may come."""
+
+    @property
+    def end(self) -> int | None:
+        """The instant at which the recording ended, in ticks, if it says so by itself."""
+
+    def __iter__(self) -> Iterator[Sample]: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """Samples in memory.
+
+    Attributes:
+        samples: with strictly increasing `t`.
+        names: the names that have a source; `None` if any may come.
+        end: the instant at which the recording ended, in ticks; `None`: at its last sample.
+    """
+
+    samples: tuple[Sample, ...]
+    names: frozenset[str] | None = None
+    end: int | None = None
+
+    def __iter__(self) -> Iterator[Sample]:
+        return iter(self.samples)
+
+
+def trace_of(pairs: Iterable[tuple[int, Mapping[str, Value]]], end: int | None = None) -> Trace:
+    """Make a trace of `(ticks, values)` pairs.
+
+    >>> trace_of([(0, {"a": True}), (5, {"a": False})]).samples[1].t
+    5
+    """
+    return Trace(tuple(Sample(t, values) for t, values in pairs), end=end)

@@ -1,0 +1,67 @@
+"""Time as integer ticks of one nanosecond, and the exact conversions at its edge."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from rvmon.errors import TraceError
+
+TICKS_PER_SECOND = 1_000_000_000
+
+TIME_LIMIT = 1 << 62
+"""Times and durations lie strictly between −TIME_LIMIT and TIME_LIMIT; sums saturate there."""
+
+TICKS_PER_UNIT = {
+    "ns": 1,
+    "us": 1_000,
+    "ms": 1_000_000,
+    "s": TICKS_PER_SECOND,
+    "min": 60 * TICKS_PER_SECOND,
+    "h": 3_600 * TICKS_PER_SECOND,
+}
+"""Units of duration, each as a whole number of ticks."""
+
+
+def ticks_of_seconds(seconds: float) -> int:
+    """Round seconds to the nearest tick, once.
+
+    Args:
+        seconds: a finite number; an `int` or `Fraction` is converted exactly.
+
+    Raises:
+        TraceError: the number is not finite or beyond `TIME_LIMIT` ticks.
+
+    >>> ticks_of_seconds(0.1)
+    100000000
+    """
+    if isinstance(seconds, float) and not math.isfinite(seconds):
+        raise TraceError(f"time {seconds} is not finite: give seconds as a finite number")
+    # The float product is within half a tick of the exact one only up to 2**22 s, hence Fraction.
+    ticks = round(Fraction(seconds) * TICKS_PER_SECOND)
+    if abs(ticks) >= TIME_LIMIT:
+        raise TraceError(f"time {seconds} s is out of range: at most 2**62 ns (146 years)")
+    return ticks
+
+
+def later(t: int, duration: int) -> int:
+    """The instant `duration` ticks after `t`, saturating at `TIME_LIMIT`.
+
+    >>> later(TIME_LIMIT - 1, 5) == TIME_LIMIT
+    True
+    """
+    return min(t + duration, TIME_LIMIT)
+
+
+def format_ticks(ticks: int) -> str:
+    """Ticks as seconds (or the largest smaller unit below a microsecond's worth), exactly.
+
+    >>> format_ticks(14_250_000_000), format_ticks(3), format_ticks(0)
+    ('14.25 s', '3 ns', '0 s')
+    """
+    if 0 < abs(ticks) < 1_000:
+        return f"{ticks} ns"
+    whole, rest = divmod(abs(ticks), TICKS_PER_SECOND)
+    digits = f"{rest:09d}".rstrip("0")
+    sign = "-" if ticks < 0 else ""
+    return f"{sign}{whole}{'.' + digits if digits else ''} s"

@@ -1,0 +1,30 @@
+"""The four verdicts and their fold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """What can be said of a requirement, or of one attempt of it, on one run."""
+
+    PASS = "P"
+    FAIL = "F"
+    NOT_TRIGGERED = "NT"
+    INCONCLUSIVE = "I"
+
+
+def fold(verdicts: Iterable[Verdict]) -> Verdict:
+    """The verdict of a requirement on a run, from the verdicts of its attempts.
+
+    Source: SEMANTICS, section 3.
+
+    >>> fold([Verdict.PASS, Verdict.INCONCLUSIVE]).value, fold([]).value
+    ('I', 'NT')
+    """
+    seen = set(verdicts)
+    for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
+        if verdict in seen:
+            return verdict
+    return Verdict.NOT_TRIGGERED
