@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from rvmon.diagnostics.span import Source, Span
+from rvmon.trace.schema import Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,15 +21,6 @@ class Interval:
 
     low: int = 0
     high: int | None = None
-
-
-class Kind(StrEnum):
-    """What values a signal or a payload field takes."""
-
-    BOOL = "bool"
-    INT = "int"
-    REAL = "real"
-    LABEL = "label"
 
 
 class Role(StrEnum):

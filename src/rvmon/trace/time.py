@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 
 from rvmon.errors import TraceError
@@ -23,7 +24,7 @@ TICKS_PER_UNIT = {
 """Units of duration, each as a whole number of ticks."""
 
 
-def ticks_of_seconds(seconds: float) -> int:
+def ticks_of_seconds(seconds: float | Fraction) -> int:
     """Round seconds to the nearest tick, once.
 
     Args:
@@ -42,6 +43,25 @@ def ticks_of_seconds(seconds: float) -> int:
     if abs(ticks) >= TIME_LIMIT:
         raise TraceError(f"time {seconds} s is out of range: at most 2**62 ns (146 years)")
     return ticks
+
+
+def ticks_of_text(text: str) -> int:
+    """Read decimal seconds exactly; what lies between two ticks is rounded to the nearest.
+
+    Raises:
+        TraceError: the text is no finite decimal number, or out of range.
+
+    >>> ticks_of_text("1700000000.123456789"), ticks_of_text("1e-3")
+    (1700000000123456789, 1000000)
+    """
+    try:
+        number = Decimal(text)
+    except InvalidOperation:
+        raise TraceError(f"time `{text}` is not a number of seconds") from None
+    # An exponent is bounded before it becomes digits: 1e999999999 must not fill the memory.
+    if not number.is_finite() or number.adjusted() > 18:
+        raise TraceError(f"time `{text}` is out of range: at most 2**62 ns (146 years)")
+    return ticks_of_seconds(Fraction(0) if number.adjusted() < -30 else Fraction(number))
 
 
 def later(t: int, duration: int) -> int:
