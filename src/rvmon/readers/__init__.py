@@ -1,0 +1,1 @@
+"""Recordings on disk to samples: CSV and JSON lines."""

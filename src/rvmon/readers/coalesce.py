@@ -1,0 +1,95 @@
+"""Updates with equal stamps become one sample (SEMANTICS 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Mapping
+
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Payload, Sample, Value
+
+
+class Conflicts:
+    """Signals that got two values at one stamp; the later one in source order was kept."""
+
+    def __init__(self) -> None:
+        self._seen: dict[str, tuple[int, int]] = {}
+
+    def add(self, name: str, t: int) -> None:
+        """Count one conflict of signal `name` at instant `t`."""
+        count, first = self._seen.get(name, (0, t))
+        self._seen[name] = (count + 1, first)
+
+    def health(self) -> list[Health]:
+        """One entry per signal."""
+        return [
+            Health(HealthKind.CONFLICT, name, count, first, remark="two values at one stamp")
+            for name, (count, first) in self._seen.items()
+        ]
+
+
+def coalesce(
+    samples: Iterable[Sample], events: Container[str], conflicts: Conflicts
+) -> Iterator[Sample]:
+    """Merge neighbouring samples with equal stamps.
+
+    Events are or-ed, payloads of one event are collected in a tuple; of a signal's values the
+    last one is kept and two that differ are counted.
+
+    Args:
+        samples: in source order.
+        events: the names that are events; all others are signals.
+        conflicts: where differing values are counted.
+
+    >>> pair = [Sample(1, {"go": True, "v": 1.0}), Sample(1, {"go": False, "v": 2.0})]
+    >>> [dict(sample.values) for sample in coalesce(pair, {"go"}, Conflicts())]
+    [{'go': True, 'v': 2.0}]
+    """
+    pending: Sample | None = None
+    for sample in samples:
+        if pending is None:
+            pending = sample
+        elif sample.t == pending.t:
+            pending = Sample(sample.t, _merge(pending, sample.values, events, conflicts))
+        else:
+            yield pending
+            pending = sample
+    if pending is not None:
+        yield pending
+
+
+def _merge(
+    first: Sample, then: Mapping[str, Value], events: Container[str], conflicts: Conflicts
+) -> dict[str, Value]:
+    merged = dict(first.values)
+    for name, value in then.items():
+        if name not in merged:
+            merged[name] = value
+        elif name in events:
+            merged[name] = either_occurred(merged[name], value)
+        else:
+            if merged[name] != value:
+                conflicts.add(name, first.t)
+            merged[name] = value
+    return merged
+
+
+def either_occurred(first: Value, second: Value) -> Value:
+    """Kleene's or of two reports of one event at one instant; payloads are kept, all of them.
+
+    >>> either_occurred({"id": 1}, {"id": 2})
+    ({'id': 1}, {'id': 2})
+    >>> either_occurred(None, False) is None
+    True
+    """
+    payloads = _payloads(first) + _payloads(second)
+    if payloads:
+        return payloads if len(payloads) > 1 else payloads[0]
+    if first is True or second is True:
+        return True
+    return None if first is None or second is None else False
+
+
+def _payloads(value: Value) -> tuple[Payload, ...]:
+    if isinstance(value, tuple):
+        return value
+    return (value,) if isinstance(value, Mapping) else ()

@@ -1,0 +1,178 @@
+"""CSV: a header, a time column `t` or `t_ns`, a column per signal, event or payload field."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from rvmon.errors import TraceError
+from rvmon.readers.values import scalar_of_text, shorten
+from rvmon.trace.sample import Scalar, Value
+from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.time import TIME_LIMIT, ticks_of_text
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column that the spec reads: a signal, an event, or a payload field of an event."""
+
+    index: int
+    name: str
+    field: str | None
+    kind: Kind
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What the header says.
+
+    Attributes:
+        width: number of columns.
+        time: index of the time column.
+        in_ticks: whether it is `t_ns`.
+        signals: columns of signals.
+        events: columns of events and of their payload fields.
+        ignored: names of the columns that the spec does not declare.
+    """
+
+    width: int
+    time: int
+    in_ticks: bool
+    signals: tuple[Column, ...]
+    events: tuple[Column, ...]
+    ignored: tuple[str, ...]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The declared names that have a column."""
+        return frozenset(column.name for column in (*self.signals, *self.events))
+
+
+def read_layout(header: list[str], schema: Schema) -> Layout:
+    """Match the header's names with the declared ones.
+
+    Raises:
+        TraceError: no time column or two, or a name that stands twice.
+    """
+    seen: dict[str, int] = {}
+    for index, name in enumerate(header):
+        if name in seen:
+            raise TraceError(f"column `{shorten(name)}` stands twice in the header")
+        seen[name] = index
+    times = [name for name in ("t", "t_ns") if name in seen]
+    if len(times) != 1:
+        found = ", ".join(f"`{shorten(name)}`" for name in header[:8]) or "nothing"
+        raise TraceError(
+            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
+            f"in the header; found {'both' if times else found}"
+        )
+    signals, events, ignored = [], [], []
+    for name, index in seen.items():
+        event, _, field = name.rpartition(".")
+        if name == times[0]:
+            continue
+        if name in schema.signals:
+            signals.append(Column(index, name, None, schema.signals[name]))
+        elif name in schema.events:
+            events.append(Column(index, name, None, Kind.BOOL))
+        elif field in schema.events.get(event, {}):
+            events.append(Column(index, event, field, schema.events[event][field]))
+        else:
+            ignored.append(name)
+    return Layout(
+        len(header),
+        seen[times[0]],
+        times[0] == "t_ns",
+        tuple(signals),
+        tuple(events),
+        tuple(ignored),
+    )
+
+
+def split_lines(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
+    """Split CSV text into rows with the number of the line that each ends on.
+
+    Raises:
+        TraceError: the text is no CSV (a NUL character, a cell without end).
+    """
+    reader = csv.reader(lines, strict=True)
+    while True:
+        try:
+            row = next(reader)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            raise TraceError(f"line {reader.line_num}: not a CSV row ({error})") from None
+        if row:
+            yield reader.line_num, [cell.strip() for cell in row]
+
+
+def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
+    """Read one row: ticks and what it updates; an empty cell is no update.
+
+    Raises:
+        TraceError: a cell is no value of its kind; the message names the column.
+    """
+    if len(row) != layout.width:
+        raise TraceError(f"{len(row)} cells where the header has {layout.width}")
+    t = _ticks(row[layout.time], in_ticks=layout.in_ticks)
+    values: dict[str, Value] = {}
+    for column in layout.signals:
+        if cell := row[column.index]:
+            values[column.name] = _scalar(cell, column)
+    return t, values | _occurrences(row, layout.events)
+
+
+def _occurrences(row: list[str], columns: tuple[Column, ...]) -> dict[str, Value]:
+    """Events of a row: an event with a payload cell occurs unless its own cell says false."""
+    flags: dict[str, Scalar] = {}
+    payloads: dict[str, dict[str, Scalar]] = {}
+    for column in columns:
+        if cell := row[column.index]:
+            value = _scalar(cell, column)
+            if column.field is None:
+                flags[column.name] = value
+            else:
+                payloads.setdefault(column.name, {})[column.field] = value
+    occurrences: dict[str, Value] = dict(flags)
+    occurrences.update(
+        (name, payload) for name, payload in payloads.items() if flags.get(name) is not False
+    )
+    return occurrences
+
+
+def _scalar(cell: str, column: Column) -> Scalar:
+    try:
+        return scalar_of_text(cell, column.kind)
+    except TraceError as error:
+        name = column.name if column.field is None else f"{column.name}.{column.field}"
+        raise TraceError(f"column `{name}`: {error}") from None
+
+
+def _ticks(cell: str, *, in_ticks: bool) -> int:
+    if not in_ticks:
+        return ticks_of_text(cell)
+    try:
+        t = int(cell)
+    except ValueError:
+        raise TraceError(f"time `{shorten(cell)}` is not a whole number of nanoseconds") from None
+    if abs(t) >= TIME_LIMIT:
+        raise TraceError(f"time `{shorten(cell)}` is out of range: at most 2**62 ns (146 years)")
+    return t
+
+
+def csv_samples(
+    rows: Iterator[tuple[int, list[str]]], layout: Layout
+) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
+    """Line number, ticks and values of each row.
+
+    Raises:
+        TraceError: with the line's number.
+    """
+    for line, row in rows:
+        try:
+            t, values = read_row(row, layout)
+        except TraceError as error:
+            raise TraceError(f"line {line}: {error}") from None
+        yield line, t, values

@@ -1,0 +1,146 @@
+"""JSON lines: an object per sample, nested names joined with dots."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import msgspec
+
+from rvmon.errors import TraceError
+from rvmon.readers.values import DESCRIPTION, shorten
+from rvmon.trace.sample import Payload, Scalar, Value
+from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
+
+_MISSING = object()
+
+
+def jsonl_samples(
+    lines: Iterable[str], schema: Schema, ignored: Counter[str]
+) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
+    """Line number, ticks and values of each line that is not blank.
+
+    Args:
+        lines: text, one JSON object a line.
+        schema: the declared names.
+        ignored: names that the spec does not declare are counted here.
+
+    Raises:
+        TraceError: with the line's number.
+    """
+    decode = msgspec.json.Decoder().decode
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            t, values = read_object(decode(line), schema, ignored)
+        except msgspec.DecodeError as error:
+            cut = "" if line.endswith("\n") else "; the file ends here: was it cut off?"
+            raise TraceError(f"line {number}: not a JSON object ({error}){cut}") from None
+        except (TraceError, RecursionError) as error:
+            raise TraceError(f"line {number}: {error}") from None
+        yield number, t, values
+
+
+def read_object(
+    decoded: object, schema: Schema, ignored: Counter[str]
+) -> tuple[int, dict[str, Value]]:
+    """Read one decoded line: ticks and what it updates.
+
+    Raises:
+        TraceError: no time, or a value of the wrong kind; the message names the field.
+
+    >>> schema = Schema({"hand.distance": Kind.REAL}, {"pick": {"id": Kind.INT}, "go": {}})
+    >>> line = {"t": 1.5, "hand": {"distance": 1}, "events": ["go"], "pick": {"id": 3}}
+    >>> read_object(line, schema, Counter())
+    (1500000000, {'go': True, 'hand.distance': 1.0, 'pick': {'id': 3}})
+    """
+    if not isinstance(decoded, dict):
+        raise TraceError('expected an object such as {"t": 0.5, "speed": 0.2}')
+    fields = dict(decoded)
+    t = _ticks(fields)
+    values: dict[str, Value] = {}
+    if "events" not in schema.signals and isinstance(fields.get("events"), list):
+        for name in fields.pop("events"):
+            if not isinstance(name, str):
+                raise TraceError(f"`events`: `{shorten(str(name))}` is not the name of an event")
+            if name in schema.events:
+                values[name] = True
+            else:
+                ignored[name] += 1
+    _collect(fields, "", schema, values, ignored)
+    return t, values
+
+
+def _ticks(fields: dict[str, Any]) -> int:
+    seconds, ticks = fields.pop("t", _MISSING), fields.pop("t_ns", _MISSING)
+    if (seconds is _MISSING) == (ticks is _MISSING):
+        raise TraceError("expected one time, `t` (seconds) or `t_ns` (integer nanoseconds)")
+    if seconds is not _MISSING:
+        if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
+            raise TraceError(f"time `{shorten(str(seconds))}` is not a number of seconds")
+        return ticks_of_seconds(seconds)
+    if not isinstance(ticks, int) or isinstance(ticks, bool) or abs(ticks) >= TIME_LIMIT:
+        raise TraceError(f"time `{shorten(str(ticks))}` is not a whole number of nanoseconds")
+    return ticks
+
+
+def _collect(
+    fields: Mapping[str, object],
+    prefix: str,
+    schema: Schema,
+    values: dict[str, Value],
+    ignored: Counter[str],
+) -> None:
+    for key, value in fields.items():
+        name = prefix + key
+        if name in schema.signals:
+            values[name] = _scalar(value, schema.signals[name], name)
+        elif name in schema.events:
+            values[name] = _occurrence(value, schema.events[name], name)
+        elif isinstance(value, dict):
+            _collect(value, name + ".", schema, values, ignored)
+        else:
+            ignored[name] += 1
+
+
+def _occurrence(value: object, fields: Mapping[str, Kind], name: str) -> Value:
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, dict):
+        return _payload(value, fields, name)
+    if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+        return tuple(_payload(item, fields, name) for item in value)
+    raise TraceError(
+        f"event `{name}`: expected true, false or a payload such as {{...}}, "
+        f"found `{shorten(str(value))}`"
+    )
+
+
+def _payload(value: Mapping[str, object], fields: Mapping[str, Kind], name: str) -> Payload:
+    return {
+        key: _scalar(item, fields[key], f"{name}.{key}")
+        for key, item in value.items()
+        if key in fields
+    }
+
+
+def _scalar(value: object, kind: Kind, name: str) -> Scalar:
+    match kind, value:
+        case _, None:
+            return None
+        case Kind.BOOL, bool():
+            return value
+        case Kind.BOOL, 0 | 1:
+            return value == 1
+        case ((Kind.INT | Kind.REAL), bool()):
+            pass
+        case Kind.INT, int():
+            return value
+        case Kind.REAL, int() | float():
+            return float(value)
+        case Kind.LABEL, str():
+            return value
+    raise TraceError(f"field `{name}`: `{shorten(str(value))}` is not {DESCRIPTION[kind]}")

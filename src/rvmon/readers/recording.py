@@ -1,0 +1,131 @@
+"""A recording on disk as a sequence of samples, whatever its format."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
+from rvmon.readers.jsonl_rows import jsonl_samples
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.schema import Schema
+from rvmon.trace.time import format_ticks
+
+FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl"}
+"""File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
+
+
+class FileRecording:
+    """A CSV or JSON-lines file, read as a stream: memory does not grow with its length.
+
+    Attributes:
+        path: the file, `-` for standard input.
+        names: declared names that have a column; `None` for JSON lines, where any may come.
+        end: `None`: these formats end with their last sample.
+    """
+
+    end: int | None = None
+
+    def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
+        """Open the recording and read its header.
+
+        Args:
+            path: a `.csv`, `.jsonl` or `.ndjson` file, or `-`.
+            schema: the names that the spec declares.
+            ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+
+        Raises:
+            TraceError: the file cannot be opened, its ending is unknown or its header wrong.
+        """
+        self.path = str(path)
+        self._schema = schema
+        self._ordered = ordered
+        self._conflicts = Conflicts()
+        self._ignored: Counter[str] = Counter()
+        self._format = _format_of(self.path)
+        self.names: frozenset[str] | None = None
+        if self._format == "csv" and self.path != "-":
+            with self._text() as text:
+                layout = self._layout(split_lines(text))
+            self.names = layout.names
+            self._ignored.update(dict.fromkeys(layout.ignored, 1))
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Samples in order of the file, equal stamps merged.
+
+        Raises:
+            TraceError: with file and line; the samples before it have been given out.
+        """
+        with self._text() as text:
+            if self._format == "csv":
+                rows = split_lines(text)
+                lines = csv_samples(rows, self._layout(rows))
+            else:
+                lines = jsonl_samples(text, self._schema, self._ignored)
+            yield from coalesce(self._in_order(lines), self._schema.events, self._conflicts)
+
+    def health(self) -> list[Health]:
+        """What was noticed while reading: undeclared names and conflicting values."""
+        ignored = [
+            Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
+            for name, count in self._ignored.items()
+        ]
+        return ignored + self._conflicts.health()
+
+    def _in_order(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
+        last: int | None = None
+        for line, t, values in lines:
+            if self._ordered and last is not None and t < last:
+                raise TimeOrderError(
+                    f"line {line}: time goes backwards, from {format_ticks(last)} to "
+                    f"{format_ticks(t)}: sort the recording by time, or allow for late samples "
+                    "with `max delay` in the spec"
+                )
+            last = t
+            yield Sample(t, values)
+        if last is None:
+            raise TraceError("holds no sample")
+
+    def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:
+        try:
+            _, header = next(rows)
+        except StopIteration:
+            raise TraceError("is empty: expected a header with a time column `t`") from None
+        header[0] = header[0].removeprefix("\ufeff")
+        return read_layout(header, self._schema)
+
+    @contextmanager
+    def _text(self) -> Iterator[TextIO]:
+        """The open text; errors inside are given the file's name."""
+        try:
+            if self.path == "-":
+                yield sys.stdin
+            else:
+                with open(self.path, encoding="utf-8", newline="") as text:
+                    yield text
+        except UnicodeDecodeError as error:
+            raise TraceError(
+                f"{self.path}: not UTF-8 text ({error.reason} at byte {error.start}): "
+                "is this a binary file?"
+            ) from None
+        except TraceError as error:
+            raise type(error)(f"{self.path}: {error}") from None
+        except OSError as error:
+            raise TraceError(f"{self.path}: {error.strerror or error}") from None
+
+
+def _format_of(path: str) -> str:
+    if path == "-":
+        return "jsonl"
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS:
+        known = ", ".join(FORMATS)
+        raise TraceError(f"{path}: the ending `{suffix}` is no known format: use one of {known}")
+    return FORMATS[suffix]

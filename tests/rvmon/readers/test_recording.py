@@ -1,0 +1,146 @@
+from pathlib import Path
+
+import pytest
+
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.readers.recording import FileRecording
+from rvmon.trace.health import HealthKind
+from rvmon.trace.schema import Kind, Schema
+
+SCHEMA = Schema(
+    {"ok": Kind.BOOL, "hand.distance": Kind.REAL, "mode": Kind.LABEL, "n": Kind.INT},
+    {"go": {}, "pick": {"id": Kind.INT}},
+)
+
+
+def read(tmp_path: Path, name: str, text: str | bytes, *, ordered: bool = True):
+    path = tmp_path / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    recording = FileRecording(path, SCHEMA, ordered=ordered)
+    return recording, [(sample.t, dict(sample.values)) for sample in recording]
+
+
+def test_csv_gives_each_updated_cell_as_its_declared_kind(tmp_path):
+    """A cell is read as its column's kind; an empty one is no update."""
+    _, samples = read(
+        tmp_path,
+        "a.csv",
+        "t,ok,hand.distance,mode,n,go\n0,true,0.5,idle,3,\n0.25,,nan,,,1\n1,0,,,,false\n",
+    )
+    assert samples[0] == (0, {"ok": True, "hand.distance": 0.5, "mode": "idle", "n": 3})
+    assert samples[1][0] == 250_000_000
+    assert samples[1][1]["go"] is True
+    assert samples[1][1]["hand.distance"] != samples[1][1]["hand.distance"]
+    assert samples[2] == (1_000_000_000, {"ok": False, "go": False})
+
+
+def test_both_formats_agree(tmp_path):
+    """The same data as CSV and as JSON lines gives the same samples."""
+    _, from_csv = read(tmp_path, "a.csv", "t_ns,ok,hand.distance,go,pick.id\n5,1,0.5,,\n6,,,1,7\n")
+    _, from_json = read(
+        tmp_path,
+        "a.jsonl",
+        '{"t_ns": 5, "ok": true, "hand": {"distance": 0.5}}\n'
+        '{"t_ns": 6, "events": ["go"], "pick": {"id": 7}}\n',
+    )
+    assert (
+        from_csv
+        == from_json
+        == [
+            (5, {"ok": True, "hand.distance": 0.5}),
+            (6, {"go": True, "pick": {"id": 7}}),
+        ]
+    )
+
+
+def test_equal_stamps_become_one_sample(tmp_path):
+    """Events are or-ed, the last of two values wins and is reported."""
+    recording, samples = read(tmp_path, "a.csv", "t,n,go\n1,3,1\n1,4,0\n2,5,\n")
+    assert samples == [(10**9, {"n": 4, "go": True}), (2 * 10**9, {"n": 5})]
+    (conflict,) = [h for h in recording.health() if h.kind is HealthKind.CONFLICT]
+    assert (conflict.name, conflict.count, conflict.first) == ("n", 1, 10**9)
+
+
+def test_two_payloads_at_one_stamp_are_both_kept(tmp_path):
+    """Coalescing never drops a payload."""
+    _, samples = read(
+        tmp_path, "a.jsonl", '{"t": 1, "pick": {"id": 1}}\n{"t": 1, "pick": {"id": 2}}\n'
+    )
+    assert samples == [(10**9, {"pick": ({"id": 1}, {"id": 2})})]
+
+
+def test_undeclared_columns_are_ignored_and_counted(tmp_path):
+    """A column that the spec does not name is no error, and is not silent either."""
+    recording, samples = read(tmp_path, "a.csv", "t,ok,battery\n0,1,7\n")
+    assert samples == [(0, {"ok": True})]
+    assert [(h.kind, h.name) for h in recording.health()] == [(HealthKind.IGNORED, "battery")]
+    assert recording.names == {"ok"}
+
+
+def test_decimal_seconds_are_exact(tmp_path):
+    """A CSV stamp is converted without going through a float."""
+    _, samples = read(tmp_path, "a.csv", "t,ok\n1700000000.123456789,1\n")
+    assert samples[0][0] == 1_700_000_000_123_456_789
+
+
+BAD = {
+    "text in a number": ("a.csv", "t,n\n0,1\n1,abc\n", "a.csv: line 3: column `n`: `abc`"),
+    "text in a truth value": ("a.csv", "t,ok\n0,maybe\n", "line 2: column `ok`: `maybe`"),
+    "time going backwards": ("a.csv", "t,n\n1,1\n0.5,1\n", "line 3: time goes backwards"),
+    "time is no number": ("a.csv", "t,n\nsoon,1\n", "line 2: time `soon`"),
+    "time is NaN": ("a.csv", "t,n\nnan,1\n", "line 2: time `nan`"),
+    "huge exponent": ("a.csv", "t,n\n1e999999999,1\n", "line 2: time"),
+    "fraction of a tick": ("a.csv", "t_ns,n\n1.5,1\n", "line 2: time `1.5`"),
+    "empty file": ("a.csv", "", "is empty"),
+    "header only": ("a.csv", "t,n\n", "holds no sample"),
+    "no time column": ("a.csv", "n,ok\n1,1\n", "expected one time column"),
+    "both time columns": ("a.csv", "t,t_ns\n1,1\n", "found both"),
+    "double column": ("a.csv", "t,n,n\n1,1,1\n", "`n` stands twice"),
+    "short row": ("a.csv", "t,n,ok\n1,1\n", "line 2: 2 cells where the header has 3"),
+    "underscored number": ("a.csv", "t,n\n0,1_0\n", "`1_0` is not a whole number"),
+    "binary file": ("a.csv", b"\x7fELF\x02\x01\xff\xfe\x00" * 40, "is this a binary file?"),
+    "open quote": ("a.csv", 't,n\n0,"1\n', "not a CSV row"),
+    "empty JSON lines": ("a.jsonl", "\n\n", "holds no sample"),
+    "truncated JSON": ("a.jsonl", '{"t": 1, "n": 1}\n{"t": 2, "n', "line 2: not a JSON object"),
+    "JSON array": ("a.jsonl", "[1, 2]\n", "line 1: expected an object"),
+    "JSON without time": ("a.jsonl", '{"n": 1}\n', "line 1: expected one time"),
+    "JSON text in a number": ("a.jsonl", '{"t": 1, "n": "x"}\n', "field `n`: `x`"),
+    "JSON truth in a number": ("a.jsonl", '{"t": 1, "n": true}\n', "field `n`: `True`"),
+    "JSON deep": ("a.jsonl", '{"t": 1, "n": ' + "[" * 100_000 + "\n", "line 1:"),
+    "JSON bad event": ("a.jsonl", '{"t": 1, "go": "yes"}\n', "event `go`: expected true"),
+    "unknown ending": ("a.xyz", "t\n", "the ending `.xyz` is no known format"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_is_named_with_file_and_line(tmp_path, name):
+    """Each kind of broken file gives one error that names its place."""
+    file, text, message = BAD[name]
+    with pytest.raises(TraceError) as caught:
+        read(tmp_path, file, text)
+    assert message in str(caught.value)
+    assert file in str(caught.value)
+
+
+def test_what_stands_before_a_broken_line_is_given_out(tmp_path):
+    """All is given out but the last stamp, of which the broken line might have been a part."""
+    path = tmp_path / "a.csv"
+    path.write_text("t,n\n0,1\n1,2\n2,x\n")
+    stream = iter(FileRecording(path, SCHEMA))
+    assert next(stream).t == 0
+    with pytest.raises(TraceError, match="line 4"):
+        next(stream)
+
+
+def test_unordered_recordings_pass_where_lateness_is_allowed(tmp_path):
+    """Under a watermark the order is the monitor's business."""
+    _, samples = read(tmp_path, "a.csv", "t,n\n1,1\n0.5,1\n", ordered=False)
+    assert [t for t, _ in samples] == [10**9, 5 * 10**8]
+    with pytest.raises(TimeOrderError):
+        read(tmp_path, "a.csv", "t,n\n1,1\n0.5,1\n")
+
+
+def test_missing_file_is_named(tmp_path):
+    """A file that does not exist is an error of ours with its path."""
+    with pytest.raises(TraceError, match=r"gone\.csv: No such file"):
+        FileRecording(tmp_path / "gone.csv", SCHEMA)
