@@ -1,0 +1,11 @@
+"""Abstract tests: their type, their files, and the strategies that make them."""
+
+from handover.generator.abstract_test import (
+    AbstractTest,
+    Action,
+    ReceiveSignal,
+    SendSignal,
+    SetParam,
+)
+
+__all__ = ["AbstractTest", "Action", "ReceiveSignal", "SendSignal", "SetParam"]

@@ -1,0 +1,78 @@
+"""An abstract test: what the human does, as a linear sequence of high-level actions."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import msgspec
+
+HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
+RobotSignal = Literal["informHumanOfHandoverStart", "setv"]
+Switch = Literal[
+    "honTask",
+    "hgazeOk",
+    "setg",
+    "h_undefGaze",
+    "hpressureOk",
+    "setp",
+    "h_undefPress",
+    "hlocationOk",
+    "setl",
+    "h_undefLoc",
+]
+"""Parameters that are 0 or 1."""
+
+Parameter = Literal[Switch, "time"]
+Verdict = Literal["P", "F", "NT", "I"]
+
+
+class SendSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="send_signal"):
+    """The human sends a signal to the robot; `setv` sends nothing."""
+
+    signal: HumanSignal
+
+
+class ReceiveSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="receive_signal"):
+    """The human waits for a signal of the robot; `setv` waits for nothing."""
+
+    signal: RobotSignal
+
+
+class SetParam(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="set_param"):
+    """The human takes a posture (0 bad, 1 ok), or waits: `time` is in units of 0.05 s."""
+
+    param: Parameter
+    value: Annotated[int, msgspec.Meta(ge=0)]
+
+
+Action = SendSignal | ReceiveSignal | SetParam
+
+
+class AbstractTest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A test that can be replayed alone: actions, seed, and what it is to be played against.
+
+    Attributes:
+        name: unique within a campaign; also the file's name.
+        strategy: which generator made it.
+        seed: of everything that the driver and the world draw at random.
+        actions: in order; each begins when the one before is over.
+        text: what the test is for (directed tests).
+        robot: the robot it is written for; `None`: any.
+        mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
+        horizon_s: simulated seconds.
+        startup_loss: whether the first signal may get lost while the processes start.
+        faults: of the sensors, names of `handover.world.sensing.FAULTS`.
+        expected: verdicts by requirement, for tests that know them.
+    """
+
+    name: str
+    strategy: Literal["pseudorandom", "constrained", "model-based", "directed"]
+    seed: int
+    actions: tuple[Action, ...]
+    text: str = ""
+    robot: Literal["correct", "legacy"] | None = None
+    mutation: str | None = None
+    horizon_s: float = 200.0
+    startup_loss: bool = True
+    faults: tuple[str, ...] = ()
+    expected: dict[str, Verdict] = {}
