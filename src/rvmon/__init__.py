@@ -1,1 +1,81 @@
-"""Temporal requirements in, verdicts about robots out."""
+"""Temporal requirements in, verdicts about robots out.
+
+>>> import rvmon
+>>> spec = rvmon.loads('''
+... spec door "A door"
+... signal closed : bool input
+... event knock input
+... requirement D1 "Knocking opens the door"
+...   upon knock
+...   then within 2 s not closed
+... ''')
+>>> monitor = spec.monitor()
+>>> [str(attempt) for attempt in monitor.step(0.0, {"closed": True, "knock": True})]
+[]
+>>> monitor.finish(3.0).verdicts["D1"].value
+'F'
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.errors import ModelError, RvmonError, SpecError, TimeOrderError, TraceError
+    from rvmon.monitor import Monitor
+    from rvmon.session import Spec, load, loads
+    from rvmon.spec.checked import Requirement
+    from rvmon.trace.sample import Sample
+    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.report import Report
+    from rvmon.verdict.verdict import Verdict
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Attempt",
+    "Diagnostic",
+    "ModelError",
+    "Monitor",
+    "Report",
+    "Requirement",
+    "RvmonError",
+    "Sample",
+    "Spec",
+    "SpecError",
+    "TimeOrderError",
+    "TraceError",
+    "Verdict",
+    "__version__",
+    "load",
+    "loads",
+]
+
+# `import rvmon` stays light: a name is imported when it is first asked for.
+_HOMES = {
+    "Attempt": "rvmon.verdict.attempt",
+    "Diagnostic": "rvmon.diagnostics.diagnostic",
+    "ModelError": "rvmon.errors",
+    "Monitor": "rvmon.monitor",
+    "Report": "rvmon.verdict.report",
+    "Requirement": "rvmon.spec.checked",
+    "RvmonError": "rvmon.errors",
+    "Sample": "rvmon.trace.sample",
+    "Spec": "rvmon.session",
+    "SpecError": "rvmon.errors",
+    "TimeOrderError": "rvmon.errors",
+    "TraceError": "rvmon.errors",
+    "Verdict": "rvmon.verdict.verdict",
+    "load": "rvmon.session",
+    "loads": "rvmon.session",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'rvmon' has no attribute '{name}'")
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value

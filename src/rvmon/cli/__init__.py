@@ -1,0 +1,86 @@
+"""The command `rvmon`: one file per subcommand, each with `add_parser` and `run`.
+
+Exit codes: 0 fine, 1 a requirement failed, 2 wrong input or spec, 3 internal error,
+130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+from rvmon import __version__
+from rvmon.errors import RvmonError
+
+COMMANDS = {
+    "check": "find what is wrong in specifications",
+    "run": "judge recordings by a specification",
+    "format": "lay specifications out in the canonical form",
+    "explain": "a requirement, or a diagnostic's code, in plain words",
+    "verify": "model-check a network of timed automata",
+    "conform": "hold recorded runs against a network of timed automata",
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    Args:
+        arguments: without the program's name; default `sys.argv[1:]`.
+
+    >>> main(["--version"])
+    rvmon 0.1.0
+    0
+    """
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    try:
+        namespace = _parser(words).parse_args(words)
+    except SystemExit as stop:  # argparse has said what is wrong
+        return stop.code if isinstance(stop.code, int) else 2
+    return guarded(namespace)
+
+
+def guarded(namespace: argparse.Namespace) -> int:
+    """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
+    try:
+        code = namespace.run(namespace)
+        sys.stdout.flush()
+    except RvmonError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:  # the reader of our output left, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except Exception as error:
+        if os.environ.get("RVMON_TRACEBACK"):
+            raise
+        print(
+            f"internal error: {type(error).__name__}: {error}\n"
+            "This is a bug in rvmon. RVMON_TRACEBACK=1 shows where it happened.",
+            file=sys.stderr,
+        )
+        return 3
+    return int(code)
+
+
+def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser with the named subcommand only, or with all for help and for errors."""
+    parser = argparse.ArgumentParser(
+        prog="rvmon",
+        description="Temporal requirements in, verdicts about robots out.",
+        epilog="example: rvmon run specs/handover.rv recording.csv",
+    )
+    parser.add_argument("--version", action="version", version=f"rvmon {__version__}")
+    subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
+    named = [word for word in words[:1] if word in COMMANDS]
+    for command in named or COMMANDS:
+        module = import_module(f"rvmon.cli.{command}")
+        module.add_parser(subparsers)
+        subparsers.choices[command].set_defaults(run=module.run)
+    return parser

@@ -1,0 +1,186 @@
+"""The facade: load a specification, monitor a stream with it, evaluate a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rvmon.errors import SpecError, UnknownNameError
+from rvmon.trace.schema import Schema
+from rvmon.trace.time import ticks_of_seconds
+
+if TYPE_CHECKING:
+    from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.monitor import CompiledSpec, Monitor
+    from rvmon.spec.checked import CheckedSpec, Requirement
+    from rvmon.trace.sample import Recording
+    from rvmon.verdict.report import Report
+
+
+class Spec:
+    """A specification that is in order; made by `load` or `loads`.
+
+    It is compiled when the first monitor is asked for, once.
+
+    Attributes:
+        checked: names, types, units and formulas, as all engines read them.
+        warnings: what the compiler thinks worth a look; errors would have been raised.
+    """
+
+    def __init__(self, checked: CheckedSpec, warnings: Sequence[Diagnostic] = ()) -> None:
+        self.checked = checked
+        self.warnings = tuple(warnings)
+
+    def __repr__(self) -> str:
+        return f"<Spec {self.checked.name}: {', '.join(self.checked.requirements)}>"
+
+    @property
+    def requirements(self) -> Mapping[str, Requirement]:
+        """The requirements by id, in order of the file."""
+        return self.checked.requirements
+
+    @cached_property
+    def schema(self) -> Schema:
+        """The declared signals and events with the kinds of their values."""
+        return Schema(
+            {name: signal.type.kind for name, signal in self.checked.signals.items()},
+            {
+                name: {field: type_.kind for field, type_ in event.fields.items()}
+                for name, event in self.checked.events.items()
+            },
+        )
+
+    @cached_property
+    def _compiled(self) -> CompiledSpec:
+        from rvmon.monitor import compile_spec
+
+        return compile_spec(self.checked)
+
+    def monitor(
+        self,
+        *,
+        only: Iterable[str] | None = None,
+        engine: str = "auto",
+        settle: str = "now",
+        sources: Iterable[str] | None = None,
+    ) -> Monitor:
+        """Make an online monitor of all requirements.
+
+        Args:
+            only: ids of the requirements to judge; default all.
+            engine: `auto` or the name of one.
+            settle: `now` judges each sample at once; `next` merges samples with equal stamps and
+                judges each when the next stamp settles it.
+            sources: the signals and events that can arrive; the others are unknown throughout.
+
+        Raises:
+            UnknownNameError: `only`, `engine` or `settle` names what does not exist.
+        """
+        chosen = None if only is None else tuple(only)
+        for name in chosen or ():
+            if name not in self.requirements:
+                known = ", ".join(self.requirements)
+                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
+        from rvmon.monitor import build_monitor
+
+        return build_monitor(
+            self._compiled,
+            only=chosen,
+            engine=engine,
+            settle=settle,
+            sources=None if sources is None else frozenset(sources),
+        )
+
+    def evaluate(
+        self,
+        trace: Any,
+        *,
+        time: str = "t",
+        engine: str = "auto",
+        only: Iterable[str] | None = None,
+        until: float | None = None,
+    ) -> Report:
+        """Judge a finished trace.
+
+        Args:
+            trace: a path (`.csv`, `.jsonl`), columns by name (arrays, an Arrow table), a
+                `Recording`, or an iterable of `(t, values)` with t in seconds.
+            time: the time column of columns; if its name ends in `_ns`, integer ticks.
+            engine: `auto` or the name of one.
+            only: ids of the requirements to judge; default all.
+            until: the end of the trace in seconds, if it ended after its last sample.
+
+        Raises:
+            TraceError: the trace cannot be read; place and cause are named.
+        """
+        recording = self.recording(trace, time=time)
+        monitor = self.monitor(only=only, engine=engine, sources=recording.names)
+        for sample in recording:
+            monitor.step_ns(sample.t, sample.values)
+        end = recording.end if until is None else ticks_of_seconds(until)
+        return monitor.finish_ns(end)
+
+    def recording(self, trace: Any, *, time: str = "t") -> Recording:
+        """Whatever `evaluate` takes as a trace, as a recording.
+
+        Raises:
+            TraceError: the trace cannot be read.
+        """
+        if isinstance(trace, str | Path):
+            from rvmon.readers.recording import FileRecording
+
+            return FileRecording(trace, self.schema, ordered=self.checked.max_delay is None)
+        from rvmon.readers.columns import column_samples, columns_of
+        from rvmon.trace.sample import Sample, Trace
+
+        if hasattr(trace, "names") and hasattr(trace, "end"):
+            recording: Recording = trace
+            return recording
+        if isinstance(trace, Mapping) or hasattr(trace, "to_pydict"):
+            columns = columns_of(trace)
+            names = frozenset(columns) & {*self.schema.signals, *self.schema.events}
+            return Trace(tuple(column_samples(columns, self.schema, time)), names)
+        return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in trace))
+
+
+def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
+    """Load a specification file.
+
+    Args:
+        path: a `.rv` file, UTF-8.
+        const: constants to override, by name, as text of the language (`{"T": "2 s"}`).
+
+    Raises:
+        SpecError: the file cannot be read or is wrong; carries all diagnostics, rendered.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise SpecError((), f"error: {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise SpecError((), f"error: {path}: not UTF-8 text: is this a binary file?") from None
+    return _compile(text, str(path), const, path.parent)
+
+
+def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None = None) -> Spec:
+    """Load a specification from its text.
+
+    Args:
+        text: the specification.
+        name: what messages call it.
+        const: constants to override, by name, as text of the language.
+
+    Raises:
+        SpecError: the text is wrong; carries all diagnostics, rendered.
+    """
+    return _compile(text, name, const, None)
+
+
+def _compile(text: str, name: str, const: Mapping[str, str] | None, directory: Path | None) -> Spec:
+    from rvmon.spec import compile_text
+
+    checked, warnings = compile_text(text, name=name, constants=const, directory=directory)
+    return Spec(checked, warnings)
