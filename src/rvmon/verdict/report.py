@@ -1,0 +1,54 @@
+"""What a monitor says of one run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rvmon.trace.health import Health
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """All verdicts on one run; made by `rvmon.verdict.assemble.report_of`.
+
+    Attributes:
+        verdicts: by requirement, in the order of the file; those never triggered are `NT`.
+        attempts: the decided ones by decision instant, then order in the file, then number; the
+            undecided ones follow in the order of the file and by number.
+        counts: by requirement, how many of its attempts are `P`, `F` and `I`.
+        health: what was not known of the input, and why.
+        trace: name of the recording, or empty.
+        origin: the instant from which people count seconds, ticks.
+        end: the last instant of the trace, ticks; `None` if it has no position.
+    """
+
+    verdicts: Mapping[str, Verdict]
+    attempts: tuple[Attempt, ...]
+    counts: Mapping[str, Mapping[Verdict, int]]
+    health: tuple[Health, ...] = ()
+    trace: str = ""
+    origin: int = 0
+    end: int | None = None
+
+    def to_json(self) -> str:
+        """The report as JSON text, in the shape that `rvmon run --format json` prints.
+
+        JSON knows no infinities: such captured values and robustnesses become null.
+        """
+        from rvmon.verdict.report_json import encode
+
+        return encode(self)
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> Report:
+        """Read back what `to_json` wrote.
+
+        Raises:
+            TraceError: the text is no report.
+        """
+        from rvmon.verdict.report_json import decode
+
+        return decode(text)

@@ -1,0 +1,95 @@
+"""Reports as JSON and back."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import msgspec
+
+from rvmon.errors import TraceError
+from rvmon.trace.health import Health
+from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+_ALWAYS = ("number", "triggered", "decided", "verdict", "decision", "reason")
+"""Keys that every attempt has in JSON; the others are left out where they are empty."""
+
+
+class _AttemptsJson(msgspec.Struct):
+    attempts: list[dict[str, Any]]
+
+
+class _ReportJson(msgspec.Struct):
+    requirements: dict[str, _AttemptsJson]
+    health: list[Health]
+    trace: str = ""
+    origin: int = 0
+    end: int | None = None
+
+
+def encode(report: Report) -> str:
+    """Write a report as JSON text."""
+    attempts: dict[str, list[dict[str, object]]] = {name: [] for name in report.verdicts}
+    for attempt in report.attempts:
+        attempts[attempt.requirement].append(_attempt(attempt, report.origin))
+    document = {
+        "trace": report.trace,
+        "origin": report.origin,
+        "end": report.end,
+        "requirements": {
+            name: {
+                "verdict": verdict,
+                "attempts": attempts[name],
+                "counts": report.counts[name],
+            }
+            for name, verdict in report.verdicts.items()
+        },
+        "health": report.health,
+    }
+    return msgspec.json.encode(document).decode()
+
+
+def decode(text: str | bytes) -> Report:
+    """Read a report from JSON text.
+
+    Verdicts and counts are folded anew from the attempts.
+
+    Raises:
+        TraceError: the text is no report.
+    """
+    try:
+        document = msgspec.json.decode(text, type=_ReportJson)
+        attempts = [
+            msgspec.convert({**fields, "requirement": name}, Attempt)
+            for name, entry in document.requirements.items()
+            for fields in entry.attempts
+        ]
+    except (msgspec.DecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
+        raise TraceError(f"this is no report of rvmon: {error}") from None
+    return report_of(
+        tuple(document.requirements),
+        attempts,
+        health=document.health,
+        trace=document.trace,
+        origin=document.origin,
+        end=document.end,
+    )
+
+
+def _attempt(attempt: Attempt, origin: int) -> dict[str, object]:
+    shown: dict[str, object] = {}
+    for field in fields(Attempt):
+        value = getattr(attempt, field.name)
+        if field.name in _ALWAYS or value not in (None, "", {}):
+            shown[field.name] = value
+    del shown["requirement"]
+    shown["triggered_s"] = _seconds(attempt.triggered, origin)
+    shown["decided_s"] = _seconds(attempt.decided, origin)
+    return shown
+
+
+def _seconds(instant: int | None, origin: int) -> float | None:
+    return None if instant is None else (instant - origin) / TICKS_PER_SECOND

@@ -1,0 +1,84 @@
+"""Reports: order, counts, fold, JSON and back."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from rvmon.errors import TraceError
+from rvmon.trace.health import Health, HealthKind
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt, Blame, Decision
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+
+def attempts() -> list[Attempt]:
+    """One attempt of each verdict, the first with everything that a record can hold."""
+    return [
+        Attempt("R2", 2, 4, None, Verdict.INCONCLUSIVE, Decision.OPEN, deadline=9, owed="F p"),
+        Attempt(
+            "R2",
+            1,
+            1_000_000_000,
+            2_500_000_000,
+            Verdict.FAIL,
+            reason="window closed",
+            at_trigger={"p": True, "x > 3": None, "x": 2.0, "n": 2},
+            captured={"v": 1.5, "label": "red"},
+            blame=Blame("F p", 3, 6, (0, None), (1, 2)),
+            forecast=Verdict.PASS,
+            robustness=0.0,
+        ),
+        Attempt("R1", 1, 0, 2_500_000_000, Verdict.PASS, Decision.HELD_TO_END),
+    ]
+
+
+def report() -> Report:
+    health = Health(HealthKind.STALE, "x", 3, 17, ("R1",), "late")
+    return report_of(
+        ["R1", "R2", "R3"], attempts(), health=[health], trace="run.csv", origin=500_000_000, end=7
+    )
+
+
+def test_order_and_fold() -> None:
+    """Decided attempts come by instant, file order and number; undecided ones last."""
+    got = report()
+    assert [(a.requirement, a.number) for a in got.attempts] == [("R1", 1), ("R2", 1), ("R2", 2)]
+    assert got.verdicts == {"R1": "P", "R2": "F", "R3": "NT"}
+    assert got.counts["R2"] == {"P": 0, "F": 1, "I": 1}
+    assert got.counts["R3"] == {"P": 0, "F": 0, "I": 0}
+
+
+def test_json_round_trip() -> None:
+    """What is written is read back equal."""
+    assert Report.from_json(report().to_json()) == report()
+
+
+def test_json_shape() -> None:
+    """The JSON has the keys that other programs rely on."""
+    document = json.loads(report().to_json())
+    entry = document["requirements"]["R2"]
+    assert document["trace"] == "run.csv"
+    assert entry["verdict"] == "F"
+    assert entry["counts"] == {"P": 0, "F": 1, "I": 1}
+    failed = entry["attempts"][0]
+    assert failed["number"] == 1
+    assert failed["triggered"] == 1_000_000_000
+    assert failed["decided"] == 2_500_000_000
+    assert failed["triggered_s"] == 0.5
+    assert failed["decided_s"] == 2.0
+    assert failed["verdict"] == "F"
+    assert failed["reason"] == "window closed"
+    assert entry["attempts"][1]["decided"] is None
+    assert document["health"][0]["kind"] == "stale"
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", '{"requirements": {"R": 1}, "health": []}', b"\xff"]
+)
+def test_no_report(text: str | bytes) -> None:
+    """Text that is no report gives one clear error."""
+    with pytest.raises(TraceError, match="no report"):
+        Report.from_json(text)
