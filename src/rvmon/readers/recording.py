@@ -50,6 +50,7 @@ class FileRecording:
         self._conflicts = Conflicts()
         self._ignored: Counter[str] = Counter()
         self._format = _format_of(self.path)
+        self._open_text: TextIO | None = None
         self.names: frozenset[str] | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
@@ -64,12 +65,20 @@ class FileRecording:
             TraceError: with file and line; the samples before it have been given out.
         """
         with self._text() as text:
+            self._open_text = text
             if self._format == "csv":
                 rows = split_lines(text)
                 lines = csv_samples(rows, self._layout(rows))
             else:
                 lines = jsonl_samples(text, self._schema, self._ignored)
             yield from coalesce(self._in_order(lines), self._schema.events, self._conflicts)
+
+    @property
+    def fraction_read(self) -> float:
+        """How much of the file has been read, 0 to 1; 0 where that is not known."""
+        if self._open_text is None or self.path == "-" or self._open_text.closed:
+            return 0.0
+        return self._open_text.buffer.tell() / max(1, Path(self.path).stat().st_size)
 
     def health(self) -> list[Health]:
         """What was noticed while reading: undeclared names and conflicting values."""

@@ -1,0 +1,124 @@
+"""One recording after the other, or side by side: read, judged, kept even where it breaks off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rvmon.cli.progress import shown_while_reading
+from rvmon.errors import TraceError
+from rvmon.readers.recording import FileRecording
+from rvmon.session import Spec, load
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.time import ticks_of_seconds
+
+if TYPE_CHECKING:
+    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.report import Report
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How to judge.
+
+    Attributes:
+        only: ids of the requirements, or `None` for all.
+        engine: `auto` or the name of one.
+        until: the end of the recordings in seconds, if after their last sample.
+        strict_columns: whether missing and undeclared columns are errors.
+    """
+
+    only: tuple[str, ...] | None = None
+    engine: str = "auto"
+    until: float | None = None
+    strict_columns: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """One recording with what is known of it.
+
+    Attributes:
+        trace: its path.
+        report: the verdicts, or `None` if the recording broke off at an error.
+        before: for a broken recording, the attempts decided before the place of the error.
+        error: what was wrong with the recording.
+    """
+
+    trace: str
+    report: Report | None
+    before: tuple[Attempt, ...] = ()
+    error: str = ""
+
+
+def judge_all(
+    spec: Spec,
+    path: str,
+    constants: Mapping[str, str],
+    traces: Sequence[str],
+    options: Options,
+    jobs: int,
+) -> Iterator[Judged]:
+    """Judge recordings, in their order.
+
+    Args:
+        spec: for judging in this process.
+        path: of the same spec, for other processes to load.
+        constants: overridden in it.
+        traces: paths.
+        options: how to judge.
+        jobs: processes; 1 judges here.
+    """
+    if jobs > 1 and len(traces) > 1:
+        from concurrent.futures import ProcessPoolExecutor
+
+        with ProcessPoolExecutor(min(jobs, len(traces))) as pool:
+            yield from pool.map(partial(_load_and_judge, path, constants, options), traces)
+    else:
+        for trace in traces:
+            yield judge(spec, trace, options)
+
+
+def _load_and_judge(
+    path: str, constants: Mapping[str, str], options: Options, trace: str
+) -> Judged:
+    return judge(load(path, const=constants), trace, options)
+
+
+def judge(spec: Spec, trace: str, options: Options) -> Judged:
+    """Judge one recording; if it is broken, what was decided before the break stays decided."""
+    before: list[Attempt] = []
+    try:
+        recording = FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)
+        if options.strict_columns:
+            _refuse_mismatch(recording, spec)
+        monitor = spec.monitor(only=options.only, engine=options.engine, sources=recording.names)
+        for sample in shown_while_reading(recording):
+            before.extend(monitor.step_ns(sample.t, sample.values))
+        end = None if options.until is None else ticks_of_seconds(options.until)
+        report = monitor.finish_ns(end)
+    except TraceError as error:
+        message = str(error)
+        place = "" if trace in message else f"{trace}: "
+        return Judged(trace, None, tuple(before), place + message)
+    return Judged(trace, _named(report, trace, recording.health()))
+
+
+def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:
+    """The report with its recording's name, and with what the reader noticed."""
+    return replace(report, trace=trace, health=(*report.health, *health))
+
+
+def _refuse_mismatch(recording: FileRecording, spec: Spec) -> None:
+    ignored = [health.name for health in recording.health() if health.kind is HealthKind.IGNORED]
+    declared = {*spec.schema.signals, *spec.schema.events}
+    missing = sorted(declared - (recording.names or declared))
+    faults = [
+        f"{what}: {', '.join(names)}"
+        for what, names in (("columns not declared", ignored), ("columns missing", missing))
+        if names
+    ]
+    if faults:
+        raise TraceError("; ".join(faults))

@@ -1,0 +1,150 @@
+"""`rvmon run`: judge recordings by a specification."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError, UnknownNameError
+
+if TYPE_CHECKING:
+    from rvmon.cli.judging import Judged
+    from rvmon.session import Spec
+    from rvmon.verdict.report import Report
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "run",
+        help="judge recordings by a specification",
+        description="Judge recordings (.csv, .jsonl, or - for JSON lines on standard input) by a "
+        "specification: P passed, F failed, NT not triggered, I inconclusive.",
+        epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
+    )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings")
+    parser.add_argument("--only", metavar="IDS", help="judge these requirements: R1,R3")
+    parser.add_argument(
+        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
+    )
+    parser.add_argument("--until", metavar="T", type=float, help="the recording ended at T seconds")
+    parser.add_argument("--engine", default="auto", help="how to judge (default: auto)")
+    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="processes (default: 1)")
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
+    parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
+    parser.add_argument(
+        "--strict", action="store_true", help="exit with 1 also if a requirement is I or NT"
+    )
+    parser.add_argument(
+        "--require-triggered",
+        metavar="IDS",
+        nargs="?",
+        const="",
+        help="exit with 1 if one of these (default: any) was triggered in no recording",
+    )
+    parser.add_argument(
+        "--strict-columns",
+        action="store_true",
+        help="columns that are missing or not declared are errors",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge, show, and return the exit code."""
+    from rvmon.cli.judging import Options, judge_all
+    from rvmon.session import load
+
+    constants = dict(_constant(text) for text in arguments.const)
+    spec = load(arguments.spec, const=constants)
+    _show_warnings(spec)
+    options = Options(
+        _ids(arguments.only, spec), arguments.engine, arguments.until, arguments.strict_columns
+    )
+    must_trigger = _ids(arguments.require_triggered or None, spec)
+    judged = list(
+        judge_all(spec, arguments.spec, constants, arguments.traces, options, arguments.jobs)
+    )
+    _show(arguments.format, spec, judged)
+    reports = [one.report for one in judged if one.report is not None]
+    _write_files(arguments, spec, reports)
+    if len(reports) < len(judged):
+        return 2
+    failed = any(_failed(report, strict=arguments.strict) for report in reports)
+    if arguments.require_triggered is not None:
+        silent = _never_triggered(reports, must_trigger)
+        for name in silent:
+            print(f"{name} was triggered in no recording", file=sys.stderr)
+        failed |= bool(silent)
+    return int(failed)
+
+
+def _show_warnings(spec: Spec) -> None:
+    if spec.warnings:
+        from rvmon.diagnostics.render import render_full
+
+        print(render_full(spec.warnings), file=sys.stderr)
+
+
+def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
+    for one in judged:
+        if one.error:
+            print(f"error: {one.error}", file=sys.stderr)
+            for attempt in one.before:
+                print(f"  judged before that: {attempt}", file=sys.stderr)
+    reports = [one.report for one in judged if one.report is not None]
+    if form == "json":
+        texts = [report.to_json() for report in reports]
+        print(texts[0] if len(judged) == 1 and texts else f"[{','.join(texts)}]")
+        return
+    from rvmon.report.run_text import print_reports
+
+    print_reports(reports, spec.checked)
+
+
+def _write_files(arguments: argparse.Namespace, spec: Spec, reports: Sequence[Report]) -> None:
+    if arguments.junit:
+        from rvmon.report.junit import junit_xml
+
+        Path(arguments.junit).write_text(junit_xml(reports, spec.checked), encoding="utf-8")
+    if arguments.report:
+        from rvmon.report.run_pages import write_run_pages
+
+        write_run_pages(Path(arguments.report), spec, reports)
+
+
+def _constant(text: str) -> tuple[str, str]:
+    name, sign, value = text.partition("=")
+    if not sign or not name.strip() or not value.strip():
+        raise RvmonError(f"--const {text}: expected NAME=VALUE, such as T=2s")
+    return name.strip(), value.strip()
+
+
+def _ids(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
+    if listed is None:
+        return None
+    ids = tuple(name.strip() for name in listed.split(",") if name.strip())
+    for name in ids:
+        if name not in spec.requirements:
+            raise UnknownNameError(
+                f"no requirement `{name}` in {spec.checked.name}: "
+                f"there are {', '.join(spec.requirements)}"
+            )
+    return ids
+
+
+def _failed(report: Report, *, strict: bool) -> bool:
+    fine = {"P"} if strict else {"P", "NT", "I"}
+    return any(verdict not in fine for verdict in report.verdicts.values())
+
+
+def _never_triggered(reports: Sequence[Report], ids: tuple[str, ...] | None) -> list[str]:
+    seen: dict[str, set[str]] = {}
+    for report in reports:
+        for name, verdict in report.verdicts.items():
+            seen.setdefault(name, set()).add(verdict)
+    return [name for name in ids or seen if seen.get(name, set()) <= {"NT"}]

@@ -1,0 +1,119 @@
+"""Reports of recordings as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    from rvmon.spec.checked import CheckedSpec, Requirement
+
+SHOWN_PER_REQUIREMENT = 3
+"""Failed or undecided attempts that are shown in full; the rest is counted."""
+
+
+def print_reports(reports: Sequence[Report], spec: CheckedSpec) -> None:
+    """Print the verdicts on each recording, and for several the counts of runs.
+
+    Every F comes with cause, window and spec line; every I with what is still owed.
+    """
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    for report in reports:
+        print_report(report, spec, console)
+    if len(reports) > 1:
+        console.print(_runs_table(reports))
+
+
+def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
+    """Print the verdicts on one recording."""
+    from rich.text import Text
+
+    end = "" if report.end is None else f"  to {format_ticks(report.end)}"
+    console.print(Text.assemble((report.trace or spec.name, "bold"), f"{end}  by {spec.name}"))
+    console.print(_verdict_table(report, spec))
+    for name, requirement in spec.requirements.items():
+        for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
+            attempts = [
+                attempt
+                for attempt in report.attempts
+                if attempt.requirement == name and attempt.verdict is verdict
+            ]
+            for attempt in attempts[:SHOWN_PER_REQUIREMENT]:
+                console.print(_attempt_text(attempt, requirement))
+            if len(attempts) > SHOWN_PER_REQUIREMENT:
+                rest = len(attempts) - SHOWN_PER_REQUIREMENT
+                console.print(f"… and {rest} more {verdict} of {name}", style="dim")
+    for line in _health_lines(report):
+        console.print(line)
+
+
+def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
+    from rich import box
+    from rich.table import Table
+    from rvmon.report.style import verdict_text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading, justify in (("", "left"), ("verdict", "left"), ("attempts", "left")):
+        table.add_column(heading, justify=justify, no_wrap=True)
+    table.add_column("requirement", style="dim")
+    for name, verdict in report.verdicts.items():
+        counts = report.counts[name]
+        listed = "  ".join(f"{count} {kind}" for kind, count in counts.items() if count)
+        table.add_row(name, verdict_text(verdict), listed or "–", spec.requirements[name].text)
+    return table
+
+
+def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
+    from rich.text import Text
+    from rvmon.diagnostics.snippet import snippet
+    from rvmon.report.style import verdict_text
+
+    when = f"attempt {attempt.number}, triggered {format_ticks(attempt.triggered)}"
+    if attempt.decided is not None:
+        when += f", decided {format_ticks(attempt.decided)}"
+    text = Text.assemble(
+        (f"{attempt.requirement} ", "bold"), verdict_text(attempt.verdict), f"  {when}\n"
+    )
+    if attempt.reason:
+        text.append(f"  {attempt.reason}\n")
+    span = requirement.span
+    if attempt.blame is not None and span is not None:
+        span = type(span)(span.source, attempt.blame.start, attempt.blame.end)
+        text.append(snippet(span))
+    return text
+
+
+def _runs_table(reports: Sequence[Report]) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=f"{len(reports)} recordings", box=box.SIMPLE_HEAD, title_justify="left")
+    table.add_column("")
+    for verdict in Verdict:
+        table.add_column(verdict.value, justify="right")
+    for name in reports[0].verdicts:
+        seen = [report.verdicts[name] for report in reports]
+        table.add_row(name, *(str(seen.count(verdict)) for verdict in Verdict))
+    return table
+
+
+def _health_lines(report: Report) -> Iterator[str]:
+    if report.health:
+        yield "input health:"
+    for health in report.health:
+        first = "" if health.first is None else f", first at {format_ticks(health.first)}"
+        times = "once" if health.count == 1 else f"{health.count} times"
+        readers = f"  ({', '.join(health.requirements)})" if health.requirements else ""
+        remark = f": {health.remark}" if health.remark else ""
+        yield f"  {health.name}  {health.kind.value} {times}{first}{remark}{readers}"
