@@ -1,0 +1,185 @@
+"""The reference oracle: the law of SEMANTICS.md in its slow, obvious, executable form.
+
+Every position is explicit, every truth is computed by recursion from its definition, and the
+instant of a decision is found by trying every instant in turn. Engines are tested against it; it
+shares no code with them. Traces have to be short: every tick of held time is a position.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Protocol
+
+from rvmon.errors import TraceError
+from rvmon.spec.checked import (
+    Bound,
+    BoundAtom,
+    CheckedSpec,
+    EndPolicy,
+    Requirement,
+)
+from rvmon.testing.attempts import Start, obligation, starts
+from rvmon.testing.kleene import Truth
+from rvmon.testing.truths import Rest, Truths
+from rvmon.testing.word import Word
+from rvmon.testing.wording import word_of
+from rvmon.trace.sample import Sample, Scalar, Trace, Value
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+
+class HasChecked(Protocol):
+    """A public spec: it carries the checked one."""
+
+    @property
+    def checked(self) -> CheckedSpec:
+        """Names, types, units and formulas, settled."""
+
+
+def evaluate(
+    spec: CheckedSpec | HasChecked,
+    samples: Trace | Iterable[Sample | tuple[int, Mapping[str, Value]]],
+    *,
+    end: int | None = None,
+    advances: Sequence[int] = (),
+    names: frozenset[str] | None = None,
+) -> Report:
+    """Judge a trace by the definitions.
+
+    Args:
+        spec: checked, or the public `Spec`.
+        samples: a trace, or samples or pairs `(ticks, values)` with strictly increasing times.
+        end: the instant given to `finish`, ticks; default the trace's own, if it has one.
+        advances: the instants given to `advance`, ticks, in whatever order fits the samples.
+        names: the names that have a source; default the trace's own, else all.
+
+    Returns:
+        The report, without reasons.
+
+    Raises:
+        TimeOrderError: the times do not increase.
+        TraceError: the trace is too long to be laid out tick by tick, a sample holds a name
+            without a source, or two payloads of an event though not every requirement is a `for
+            each`.
+
+    Cost: without bound on purpose; some milliseconds for a dozen samples within forty ticks.
+
+    Source: SEMANTICS, sections 1 to 3; decision record 1.
+    """
+    checked = spec if isinstance(spec, CheckedSpec) else spec.checked
+    if isinstance(samples, Trace):
+        end = samples.end if end is None else end
+        names = samples.names if names is None else names
+    listed = [entry if isinstance(entry, Sample) else Sample(*entry) for entry in samples]
+    word = word_of(checked, listed, end=end, advances=advances, names=names)
+    requirements = checked.requirements
+    _refuse_double_payloads(requirements.values(), listed)
+    attempts = [
+        attempt for requirement in requirements.values() for attempt in judge(requirement, word)
+    ]
+    origin = listed[0].t if listed else 0
+    return report_of(tuple(requirements), attempts, origin=origin, end=word.end)
+
+
+def judge(requirement: Requirement, word: Word) -> list[Attempt]:
+    """The attempts of one requirement on a word, in order of trigger."""
+    begun = starts(requirement, word)
+    decisions = _decisions(requirement, word, begun)
+    return [
+        _record(requirement, start, number, decided)
+        for number, (start, decided) in enumerate(zip(begun, decisions, strict=True), start=1)
+    ]
+
+
+def _decisions(
+    requirement: Requirement, word: Word, begun: Sequence[Start]
+) -> list[tuple[int, Truth] | None]:
+    """For each attempt the first instant at which its truth is not UNKNOWN, and that truth."""
+    found: list[tuple[int, Truth] | None] = [None] * len(begun)
+    if not begun:
+        return found
+    # Attempts with the same word and captured values share what they remember.
+    shared: dict[tuple[int, tuple[tuple[str, Scalar], ...]], Truths] = {}
+    keys = [(id(start.word), tuple(start.captured.items())) for start in begun]
+    for start, key in zip(begun, keys, strict=True):
+        shared.setdefault(key, Truths(start.word, start.captured))
+    first = word.letters[begun[0].position].instant
+    for reached in range(first, word.reached + 1):
+        for truths in shared.values():
+            truths.reach(reached)
+        for n, start in enumerate(begun):
+            if found[n] is None and word.letters[start.position].instant <= reached:
+                truth = obligation(requirement, start, shared[keys[n]])
+                if truth is not Truth.UNKNOWN:
+                    found[n] = (reached, truth)
+    return found
+
+
+def _record(
+    requirement: Requirement, start: Start, number: int, decided: tuple[int, Truth] | None
+) -> Attempt:
+    triggered = start.word.letters[start.position].instant
+    end = start.word.end
+    assert end is not None, "a word with positions has an end"  # noqa: S101
+    instant: int | None
+    if decided is not None:
+        instant, truth = decided
+        verdict = Verdict.PASS if truth is Truth.TRUE else Verdict.FAIL
+        decision = Decision.PREFIX
+    else:
+        verdict, decision = _settle(requirement, start)
+        instant = None if verdict is Verdict.INCONCLUSIVE else end
+    if isinstance(requirement.trigger, BoundAtom) and requirement.trigger.bound is Bound.END:
+        triggered = end
+        instant = None if instant is None else end
+    return Attempt(
+        requirement.id,
+        number,
+        triggered,
+        instant,
+        verdict,
+        decision,
+        captured=dict(start.captured),
+    )
+
+
+def _settle(requirement: Requirement, start: Start) -> tuple[Verdict, Decision]:
+    """What becomes of an undecided attempt at the end of the trace.
+
+    Source: SEMANTICS, section 3 (The end); decision record 1 (The end, Policies).
+    """
+
+    def under(rest: Rest) -> Truth:
+        return obligation(requirement, start, Truths(start.word, start.captured, rest))
+
+    open_ = (Verdict.INCONCLUSIVE, Decision.OPEN)
+    match requirement.at_end:
+        case EndPolicy.DEFAULT:
+            held = under(Rest.END) is Truth.TRUE
+            return (Verdict.PASS, Decision.HELD_TO_END) if held else open_
+        case EndPolicy.STRICT:
+            return open_
+        case EndPolicy.WEAK:
+            return (Verdict.PASS, Decision.POLICY) if under(Rest.WEAK) is Truth.TRUE else open_
+        case EndPolicy.STRONG:
+            failed = under(Rest.STRONG) is Truth.FALSE
+            return (Verdict.FAIL, Decision.POLICY) if failed else open_
+        case EndPolicy.PASS | EndPolicy.FAIL:
+            if Truth.UNKNOWN in (under(Rest.WEAK), under(Rest.STRONG)):
+                return open_
+            passed = requirement.at_end is EndPolicy.PASS
+            return (Verdict.PASS if passed else Verdict.FAIL), Decision.POLICY
+
+
+def _refuse_double_payloads(requirements: Iterable[Requirement], samples: Sequence[Sample]) -> None:
+    if all(requirement.for_each is not None for requirement in requirements):
+        return
+    for sample in samples:
+        for name, value in sample.values.items():
+            if isinstance(value, tuple) and len(value) > 1:
+                raise TraceError(
+                    f"sample at {sample.t} ns holds {len(value)} payloads of `{name}`: "
+                    "only a requirement `for each` can tell them apart"
+                )

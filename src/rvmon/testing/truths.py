@@ -1,0 +1,328 @@
+"""The truth of formulas after a prefix, straight from their definitions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import Enum, auto
+from typing import assert_never
+
+from rvmon.spec.checked import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Compare,
+    Constant,
+    EventAtom,
+    Formula,
+    Interval,
+    Probe,
+    ProbeAtom,
+    SignalAtom,
+    Unary,
+    UnaryOp,
+)
+from rvmon.testing.kleene import Truth, conjunction, disjunction, negation, truth_of
+from rvmon.testing.numbers import compare
+from rvmon.testing.word import Letter, Word
+from rvmon.trace.sample import Scalar
+
+EVER = Interval(0, None)
+
+
+class Rest(Enum):
+    """What is assumed of the part of an operator that lies behind the known positions."""
+
+    UNKNOWN = auto()
+    """Nothing: the truth after a prefix."""
+
+    END = auto()
+    """The trace has ended: an unbounded `always` that has begun counts as TRUE."""
+
+    WEAK = auto()
+    """All that is pending counts as TRUE."""
+
+    STRONG = auto()
+    """All that is pending counts as FALSE."""
+
+
+class Truths:
+    """The truth of formulas at positions of one word, after a prefix of it.
+
+    A truth other than UNKNOWN stays what it is when more becomes known; that alone is what the
+    memory over prefixes relies on.
+
+    Args:
+        word: the trace.
+        captured: values of `let` and `for each`.
+        rest: what is assumed of what is not known yet.
+
+    Source: SEMANTICS, section 2; decision record 1.
+    """
+
+    def __init__(
+        self, word: Word, captured: Mapping[str, Scalar], rest: Rest = Rest.UNKNOWN
+    ) -> None:
+        self._letters = word.letters
+        self._end = word.end
+        self._captured = captured
+        self._rest = rest
+        self._settled: dict[tuple[int, int, bool], Truth] = {}
+        self._pending: dict[tuple[int, int, bool], Truth] = {}
+        self._reached = word.reached
+        self._known = 0
+        self.reach(word.reached)
+
+    def reach(self, reached: int) -> None:
+        """Speak of the prefix that is known at the instant `reached`.
+
+        Once a truth was asked for, instants may only grow.
+        """
+        self._reached = reached
+        self._known = sum(letter.instant <= reached for letter in self._letters)
+        self._pending.clear()
+
+    @property
+    def known(self) -> int:
+        """How many positions are known."""
+        return self._known
+
+    def truth(self, formula: Formula, i: int, *, positive: bool = True) -> Truth:
+        """The truth of a formula at a known position.
+
+        Args:
+            formula: any.
+            i: the position.
+            positive: whether an even number of negations stands above the formula; it matters
+                for the rest of its operators only.
+        """
+        key = (id(formula), i, positive)
+        value = self._settled.get(key)
+        if value is None:
+            value = self._pending.get(key)
+        if value is None:
+            value = self._truth(formula, i, positive)
+            (self._pending if value is Truth.UNKNOWN else self._settled)[key] = value
+        return value
+
+    def release_rest(self, opened: bool) -> Truth:
+        """What the rest of an unbounded `R` counts as; `opened`: whether its window has."""
+        match self._rest:
+            case Rest.UNKNOWN:
+                return Truth.UNKNOWN
+            case Rest.END:
+                return Truth.TRUE if opened else Truth.UNKNOWN
+            case Rest.WEAK:
+                return Truth.TRUE
+            case Rest.STRONG:
+                return Truth.FALSE
+
+    def _other_rest(self) -> Truth:
+        """What the rest of any other pending operator counts as."""
+        return self.release_rest(opened=False)
+
+    def _truth(self, formula: Formula, i: int, positive: bool) -> Truth:
+        letter = self._letters[i]
+        match formula:
+            case Constant(value=value):
+                return truth_of(value)
+            case SignalAtom(name=name):
+                held = letter.signals[name].value
+                return Truth.UNKNOWN if held is None else truth_of(bool(held))
+            case EventAtom(name=name):
+                return disjunction(o.truth for o in letter.events[name].occurrences)
+            case Compare():
+                return compare(formula, letter, self._captured)
+            case ProbeAtom(probe=probe, name=name):
+                return _probe(probe, name, letter)
+            case BoundAtom(bound=bound):
+                if bound is Bound.END:
+                    raise ValueError("`end` stands alone as a trigger, never inside a formula")
+                return truth_of(i == 0)
+            case Unary():
+                return self._unary(formula, i, positive)
+            case Binary():
+                return self._binary(formula, i, positive)
+            case _:
+                assert_never(formula)
+
+    def _unary(self, formula: Unary, i: int, positive: bool) -> Truth:
+        interval = formula.interval or EVER
+
+        def operand(k: int) -> Truth:
+            return self.truth(formula.operand, k, positive=positive)
+
+        def negated(k: int) -> Truth:
+            return negation(self.truth(formula.operand, k, positive=not positive))
+
+        match formula.op:
+            case UnaryOp.NOT:
+                return negated(i)
+            case UnaryOp.NEXT:
+                return self._next(operand, i, positive)
+            case UnaryOp.EVENTUALLY:
+                return self._until(_true, operand, i, interval, positive)
+            case UnaryOp.ALWAYS:
+                return self._release(_false, operand, i, interval, positive)
+            case UnaryOp.PREVIOUS:
+                return operand(i - 1) if i else Truth.FALSE
+            case UnaryOp.ONCE:
+                return self._since(_true, operand, i, interval)
+            case UnaryOp.HISTORICALLY:
+                return self._historically(operand, i, interval)
+            case UnaryOp.HELD:
+                start, now = self._letters[0].instant, self._letters[i].instant
+                long_enough = interval.high is not None and now - start >= interval.high
+                whole = self._historically(operand, i, interval)
+                return conjunction([truth_of(long_enough), whole])
+            case UnaryOp.RISE:  # φ and not previous φ
+                before = negated(i - 1) if i else Truth.TRUE
+                return conjunction([operand(i), before])
+            case UnaryOp.FALL:  # not φ and previous φ
+                before = operand(i - 1) if i else Truth.FALSE
+                return conjunction([negated(i), before])
+            case _:
+                assert_never(formula.op)
+
+    def _binary(self, formula: Binary, i: int, positive: bool) -> Truth:
+        interval = formula.interval or EVER
+
+        def left(k: int) -> Truth:
+            return self.truth(formula.left, k, positive=positive)
+
+        def right(k: int) -> Truth:
+            return self.truth(formula.right, k, positive=positive)
+
+        def not_left(k: int) -> Truth:
+            return negation(self.truth(formula.left, k, positive=not positive))
+
+        def not_right(k: int) -> Truth:
+            return negation(self.truth(formula.right, k, positive=not positive))
+
+        match formula.op:
+            case BinaryOp.AND:
+                return conjunction([left(i), right(i)])
+            case BinaryOp.OR:
+                return disjunction([left(i), right(i)])
+            case BinaryOp.IMPLIES:
+                return disjunction([not_left(i), right(i)])
+            case BinaryOp.IFF:
+                same = conjunction([left(i), right(i)])
+                return disjunction([same, conjunction([not_left(i), not_right(i)])])
+            case BinaryOp.XOR:
+                one = conjunction([left(i), not_right(i)])
+                return disjunction([one, conjunction([not_left(i), right(i)])])
+            case BinaryOp.UNTIL:
+                return self._until(left, right, i, interval, positive)
+            case BinaryOp.RELEASE:
+                return self._release(left, right, i, interval, positive)
+            case BinaryOp.WEAK_UNTIL:  # ψ R (φ | ψ)
+                return self._release(
+                    right, lambda k: disjunction([left(k), right(k)]), i, interval, positive
+                )
+            case BinaryOp.STRONG_RELEASE:  # ψ U (φ & ψ)
+                return self._until(
+                    right, lambda k: conjunction([left(k), right(k)]), i, interval, positive
+                )
+            case BinaryOp.SINCE:
+                return self._since(left, right, i, interval)
+            case _:
+                assert_never(formula.op)
+
+    def _next(self, operand: Operand, i: int, positive: bool) -> Truth:
+        if i + 1 < self._known:
+            return operand(i + 1)
+        rest = self._other_rest()
+        return rest if positive else negation(rest)
+
+    def _until(
+        self, left: Operand, right: Operand, i: int, interval: Interval, positive: bool
+    ) -> Truth:
+        """`left U right`: in negation normal form an `R` if it stands below a negation."""
+        if positive:
+            return self._some(left, right, i, interval, self._other_rest())
+        rest = self._rest_of_release(i, interval)
+        return self._some(left, right, i, interval, negation(rest))
+
+    def _release(
+        self, left: Operand, right: Operand, i: int, interval: Interval, positive: bool
+    ) -> Truth:
+        """`left R right` = `!(!left U !right)`."""
+        rest = self._rest_of_release(i, interval) if positive else negation(self._other_rest())
+        until = self._some(_not(left), _not(right), i, interval, negation(rest))
+        return negation(until)
+
+    def _rest_of_release(self, i: int, interval: Interval) -> Truth:
+        if interval.high is not None:
+            return self._other_rest()
+        opens = self._letters[i].instant + interval.low
+        return self.release_rest(opened=self._end is not None and opens <= self._end)
+
+    def _some(
+        self, left: Operand, right: Operand, i: int, interval: Interval, rest: Truth
+    ) -> Truth:
+        """Some position of the window has `right`, and all before it, from `i` on, have `left`.
+
+        While the window is not over, there may be one behind the known ones: `rest`.
+        """
+        now = self._letters[i].instant
+        value, so_far = Truth.FALSE, Truth.TRUE
+        for j in range(i, self._known):
+            if _within(self._letters[j].instant - now, interval):
+                value = disjunction([value, conjunction([so_far, right(j)])])
+            so_far = conjunction([so_far, left(j)])
+            if value is Truth.TRUE or so_far is Truth.FALSE:
+                return value
+        over = interval.high is not None and self._reached > now + interval.high
+        return value if over else disjunction([value, conjunction([so_far, rest])])
+
+    def _since(self, left: Operand, right: Operand, i: int, interval: Interval) -> Truth:
+        """Some position of the window had `right`, and all after it, up to `i`, have `left`."""
+        now = self._letters[i].instant
+        value, so_far = Truth.FALSE, Truth.TRUE
+        for j in range(i, -1, -1):
+            if _within(now - self._letters[j].instant, interval):
+                value = disjunction([value, conjunction([so_far, right(j)])])
+            so_far = conjunction([so_far, left(j)])
+            if value is Truth.TRUE or so_far is Truth.FALSE:
+                break
+        return value
+
+    def _historically(self, operand: Operand, i: int, interval: Interval) -> Truth:
+        return negation(self._since(_true, _not(operand), i, interval))
+
+
+Operand = Callable[[int], Truth]
+"""The truth of an operand at a position."""
+
+
+def _true(_: int) -> Truth:
+    return Truth.TRUE
+
+
+def _false(_: int) -> Truth:
+    return Truth.FALSE
+
+
+def _not(operand: Operand) -> Operand:
+    return lambda k: negation(operand(k))
+
+
+def _within(distance: int, interval: Interval) -> bool:
+    return interval.low <= distance and (interval.high is None or distance <= interval.high)
+
+
+def _probe(probe: Probe, name: str, letter: Letter) -> Truth:
+    if name in letter.events:
+        event = letter.events[name]
+        if probe is Probe.UPDATED:
+            return truth_of(event.updated)
+        raise ValueError(f"`{probe}({name})`: only `updated` speaks of events")
+    signal = letter.signals[name]
+    match probe:
+        case Probe.UPDATED:
+            return truth_of(signal.updated)
+        case Probe.KNOWN:
+            return truth_of(signal.value is not None)
+        case Probe.CHANGED:
+            return signal.changed
