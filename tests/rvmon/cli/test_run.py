@@ -1,0 +1,126 @@
+"""`rvmon run` as a person uses it."""
+
+import json
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from rvmon.cli import main
+
+SPEC = """
+spec door "A door"
+signal closed : bool input
+event knock input
+requirement D1 "Knocking opens the door"
+  upon knock
+  then within 2 s not closed
+"""
+PASS = "t,closed,knock\n0,1,\n1,,1\n2,0,\n5,,\n"
+FAIL = "t,closed,knock\n0,1,\n1,,1\n5,,\n"
+QUIET = "t,closed,knock\n0,1,\n5,,\n"
+OPEN = "t,closed,knock\n0,1,\n1,,1\n2,,\n"
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    """A folder with a spec and one recording per verdict."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "door.rv").write_text(SPEC)
+    for name, text in {"P": PASS, "F": FAIL, "NT": QUIET, "I": OPEN}.items():
+        (tmp_path / f"{name}.csv").write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("trace", "code", "strict"), [("P", 0, 0), ("F", 1, 1), ("NT", 0, 1), ("I", 0, 1)]
+)
+def test_exit_code_and_verdict(files, capsys, trace, code, strict):
+    """0 fine, 1 failed; with --strict also for I and NT; the JSON says which verdict."""
+    assert main(["run", "door.rv", f"{trace}.csv", "--format", "json"]) == code
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["requirements"]["D1"]["verdict"] == trace
+    assert shown["trace"] == f"{trace}.csv"
+    assert main(["run", "door.rv", f"{trace}.csv", "--strict"]) == strict
+
+
+def test_a_failure_shows_cause_window_and_spec_line(files, capsys):
+    """Every F says why, over which window, and where in the spec."""
+    assert main(["run", "door.rv", "F.csv"]) == 1
+    shown = capsys.readouterr().out
+    assert "[1 s, 3 s]" in shown
+    assert "door.rv:7" in shown
+    assert "within 2 s not closed" in shown
+    assert "^" in shown
+
+
+def test_many_recordings_are_counted(files, capsys):
+    """Several recordings end in a table of runs per verdict, the same with two processes."""
+    traces = [f"{name}.csv" for name in ("P", "F", "NT", "I")]
+    assert main(["run", "door.rv", *traces]) == 1
+    alone = capsys.readouterr().out
+    assert "4 recordings" in alone
+    assert main(["run", "door.rv", *traces, "--jobs", "2"]) == 1
+    assert capsys.readouterr().out == alone
+
+
+def test_junit_counts_failures(files):
+    """The JUnit file has a case per requirement and recording, failed or skipped as judged."""
+    main(["run", "door.rv", "P.csv", "F.csv", "NT.csv", "--junit", "out.xml"])
+    cases = ET.parse(files / "out.xml").getroot().findall(".//testcase")  # noqa: S314
+    assert len(cases) == 3
+    assert [len(case.findall("failure")) for case in cases] == [0, 1, 0]
+    assert [len(case.findall("skipped")) for case in cases] == [0, 0, 1]
+
+
+def test_never_triggered_is_an_error_on_request(files, capsys):
+    """--require-triggered fails where no recording triggered a requirement."""
+    assert main(["run", "door.rv", "NT.csv", "--require-triggered"]) == 1
+    assert "D1 was triggered in no recording" in capsys.readouterr().err
+    assert main(["run", "door.rv", "NT.csv", "P.csv", "--require-triggered", "D1"]) == 0
+
+
+def test_a_broken_recording_keeps_what_was_judged(files, capsys):
+    """Exit 2, one message with file and line, and the failure before the break is still told."""
+    (files / "cut.csv").write_text(FAIL + "9,maybe,\n")
+    assert main(["run", "door.rv", "cut.csv"]) == 2
+    told = capsys.readouterr().err
+    assert "cut.csv: line 5: column `closed`: `maybe`" in told
+    assert "Traceback" not in told
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["door.rv", "gone.csv"], "gone.csv"),
+        (["gone.rv", "P.csv"], "gone.rv"),
+        (["door.rv", "P.csv", "--only", "D9"], "no requirement `D9`"),
+        (["door.rv", "P.csv", "--const", "T"], "expected NAME=VALUE"),
+        (["door.rv", "P.csv", "--engine", "warp"], "warp"),
+    ],
+)
+def test_wrong_use_is_exit_2_with_a_message(files, capsys, arguments, message):
+    """What does not exist is named, without a traceback."""
+    assert main(["run", *arguments]) == 2
+    told = capsys.readouterr().err
+    assert message in told
+    assert "Traceback" not in told
+    assert "internal error" not in told
+
+
+def test_strict_columns_refuses_what_the_spec_does_not_name(files, capsys):
+    """A column too many or too few is an error only under --strict-columns."""
+    (files / "more.csv").write_text("t,closed,battery\n0,1,5\n")
+    assert main(["run", "door.rv", "more.csv"]) == 0
+    assert "battery" in capsys.readouterr().out
+    assert main(["run", "door.rv", "more.csv", "--strict-columns"]) == 2
+    told = capsys.readouterr().err
+    assert "battery" in told
+    assert "knock" in told
+
+
+def test_an_absent_column_is_told(files, capsys):
+    """A declared event without a column is unknown, and the health list says so."""
+    (files / "less.csv").write_text("t,closed\n0,1\n5,0\n")
+    assert main(["run", "door.rv", "less.csv"]) == 0
+    shown = capsys.readouterr().out
+    assert "knock  absent" in shown
