@@ -1,0 +1,35 @@
+"""A specification with a trace to judge, as test data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.spec.checked import CheckedSpec
+from rvmon.trace.sample import Sample
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One thing to compare engines on.
+
+    Attributes:
+        spec: what to judge by.
+        actions: what a monitor is told, in order: a sample, or the instant of an `advance`.
+        end: what it is told by `finish`, ticks.
+        names: the names that have a source; `None`: all.
+    """
+
+    spec: CheckedSpec
+    actions: tuple[Sample | int, ...]
+    end: int | None = None
+    names: frozenset[str] | None = None
+
+    @property
+    def samples(self) -> tuple[Sample, ...]:
+        """The samples alone."""
+        return tuple(action for action in self.actions if isinstance(action, Sample))
+
+    @property
+    def advances(self) -> tuple[int, ...]:
+        """The instants of `advance` alone."""
+        return tuple(action for action in self.actions if isinstance(action, int))

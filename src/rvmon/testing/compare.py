@@ -1,0 +1,70 @@
+"""Two reports on the same case: do they say the same?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What engines have to agree on for one attempt."""
+
+    triggered: int
+    decided: int | None
+    verdict: Verdict
+    decision: Decision
+
+    def __str__(self) -> str:
+        when = "" if self.decided is None else f" at {format_ticks(self.decided)}"
+        trigger = format_ticks(self.triggered)
+        return f"triggered at {trigger}, {self.verdict.value}{when} ({self.decision.value})"
+
+
+Key = tuple[str, int]
+"""Requirement and number."""
+
+
+def outcomes(report: Report) -> dict[Key, Outcome]:
+    """The outcome of every attempt, by requirement and number."""
+    return {(a.requirement, a.number): _outcome(a) for a in report.attempts}
+
+
+def _outcome(attempt: Attempt) -> Outcome:
+    return Outcome(attempt.triggered, attempt.decided, attempt.verdict, attempt.decision)
+
+
+def differences(expected: Report, actual: Report) -> list[str]:
+    """One line per disagreement; none if the two agree.
+
+    Compared are the verdicts of requirements, and of each attempt requirement, number, trigger
+    and decision instants, verdict, what settled it, and the order of the report.
+
+    Args:
+        expected: mostly the oracle's.
+        actual: an engine's.
+    """
+    lines = [
+        f"{name}: verdict {_show(expected, name)}, got {_show(actual, name)}"
+        for name in sorted({*expected.verdicts, *actual.verdicts})
+        if expected.verdicts.get(name) != actual.verdicts.get(name)
+    ]
+    wanted, got = outcomes(expected), outcomes(actual)
+    for key in sorted({*wanted, *got}):
+        if wanted.get(key) != got.get(key):
+            name, number = key
+            lines.append(f"{name} #{number}: {wanted.get(key)}; got {got.get(key)}")
+    if not lines and list(wanted) != list(got):
+        lines.append(f"the attempts are reported in the order {list(wanted)}, got {list(got)}")
+    if len(expected.attempts) != len(actual.attempts) and not lines:
+        lines.append(f"{len(expected.attempts)} attempts, got {len(actual.attempts)}")
+    return lines
+
+
+def _show(report: Report, name: str) -> str:
+    verdict = report.verdicts.get(name)
+    return "none" if verdict is None else verdict.value

@@ -1,0 +1,179 @@
+"""Random specifications, biased towards what monitors get wrong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.spec.checked import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Capture,
+    Captured,
+    CheckedSpec,
+    Compare,
+    CompareOp,
+    EndPolicy,
+    EventAtom,
+    FieldValue,
+    ForEach,
+    Formula,
+    Mode,
+    Numeric,
+    Requirement,
+    Signal,
+    SignalAtom,
+    SignalValue,
+    TimeModel,
+    Type,
+)
+from rvmon.testing.dice import Dice, chance, pick, weighted
+from rvmon.testing.generate_formula import (
+    BOOLS,
+    CARRIER,
+    EVENTS,
+    FIELD,
+    LABEL,
+    LABELS,
+    NUMBERS,
+    Shape,
+    comparison,
+    consequent,
+    events,
+    formula,
+)
+from rvmon.testing.pulse import is_pulse
+from rvmon.trace.schema import Kind
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """What random specifications may hold.
+
+    Attributes:
+        time: the time model; `None`: any.
+        depth: of the deepest consequent.
+        requirements: at most so many.
+        numbers: whether comparisons and probes may occur.
+        past: whether past operators may occur.
+        mixed: whether future operators may stand below past ones.
+        captures: whether requirements may hold `let`.
+        for_each: whether requirements may hold `for each`.
+        policies: whether requirements may hold `at end`.
+        stale: whether signals may be `stale after`.
+    """
+
+    time: TimeModel | None = None
+    depth: int = 4
+    requirements: int = 2
+    numbers: bool = True
+    past: bool = True
+    mixed: bool = True
+    captures: bool = True
+    for_each: bool = True
+    policies: bool = True
+    stale: bool = True
+
+
+def random_spec(dice: Dice, profile: Profile) -> CheckedSpec:
+    """A random specification over a fixed small vocabulary, with bounds of a few ticks.
+
+    Args:
+        dice: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        profile: what may occur.
+    """
+    time = profile.time or pick(dice, tuple(TimeModel))
+    found = [
+        _requirement(dice, profile, time, f"R{number}")
+        for number in range(1, dice.randint(1, profile.requirements) + 1)
+    ]
+    return CheckedSpec(
+        name="random",
+        title="",
+        time=time,
+        signals={name: _signal(dice, profile, name) for name in (*BOOLS, *NUMBERS, LABEL)},
+        events=events(),
+        requirements={requirement.id: requirement for requirement in found},
+        period=dice.randint(1, 4) if time is TimeModel.CLOCKED else None,
+    )
+
+
+def _signal(dice: Dice, profile: Profile, name: str) -> Signal:
+    kind = Kind.BOOL if name in BOOLS else Kind.LABEL if name == LABEL else Kind.REAL
+    stale = dice.randint(1, 9) if profile.stale and chance(dice, 10) else None
+    labels = LABELS if kind is Kind.LABEL else ()
+    return Signal(name, Type(kind, labels=labels), stale_after=stale)
+
+
+def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Requirement:
+    captures = _captures(dice) if profile.captures and chance(dice, 12) else ()
+    for_each = None
+    if profile.for_each and chance(dice, 6):
+        for_each = ForEach("each", FieldValue(CARRIER, FIELD))
+    instance = (for_each.name,) if for_each else ()
+    shape = Shape(
+        step=time is not TimeModel.HELD,
+        past=profile.past,
+        mixed=profile.mixed,
+        numbers=profile.numbers,
+        captured=(*instance, *(capture.name for capture in captures)),
+    )
+    seen = Shape(
+        step=shape.step,
+        past=profile.past,
+        future=False,
+        numbers=profile.numbers,
+        captured=instance,
+    )
+    trigger = _trigger(dice, seen, for_each)
+    at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
+    mode = Mode.WHENEVER if not at_end and chance(dice, 35) else Mode.UPON
+    owed = consequent(dice, shape, dice.randint(1, profile.depth))
+    if captures and chance(dice, 70):
+        op = pick(dice, (BinaryOp.AND, BinaryOp.OR))
+        owed = Binary(op, owed, comparison(dice, shape))
+    policy = EndPolicy.DEFAULT
+    if profile.policies and chance(dice, 25):
+        policy = pick(dice, tuple(EndPolicy))
+    return Requirement(
+        name,
+        mode,
+        trigger,
+        owed,
+        at_end=policy,
+        pulse=is_pulse(trigger),
+        captures=captures,
+        for_each=for_each,
+    )
+
+
+def _captures(dice: Dice) -> tuple[Capture, ...]:
+    values: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
+    return (Capture("v", pick(dice, values)),)
+
+
+def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
+    if for_each:
+        compared = Compare(CompareOp.EQ, for_each.value, Captured(for_each.name))
+        further = Binary(BinaryOp.AND, compared, formula(dice, shape, 1))
+        options: tuple[Formula, ...] = (EventAtom(CARRIER), compared, further)
+        return pick(dice, options)
+    kind = weighted(
+        dice,
+        ((30, "event"), (18, "event and"), (16, "level"), (12, "start"), (20, "any"), (4, "end")),
+    )
+    match kind:
+        case "event":
+            return EventAtom(pick(dice, EVENTS))
+        case "event and":
+            occurs = EventAtom(pick(dice, EVENTS))
+            return Binary(BinaryOp.AND, occurs, formula(dice, shape, 1))
+        case "level":
+            return SignalAtom(pick(dice, BOOLS))
+        case "start":
+            return BoundAtom(Bound.START)
+        case "any":
+            return formula(dice, shape, dice.randint(1, 2))
+        case _:
+            return BoundAtom(Bound.END)

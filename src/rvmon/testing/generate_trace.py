@@ -1,0 +1,159 @@
+"""Random traces for a specification, biased towards its bounds and thresholds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rvmon.spec.checked import CheckedSpec, Interval, Literal, Type
+from rvmon.testing.case import Case
+from rvmon.testing.dice import Dice, chance, pick
+from rvmon.testing.walk import intervals, numerics
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.schema import Kind
+
+
+@dataclass(frozen=True, slots=True)
+class TraceProfile:
+    """What random traces may hold.
+
+    Attributes:
+        samples: at most so many.
+        span: as many ticks from the first to the last sample, about.
+        unknowns: whether values may be `None` or NaN and sources absent.
+        advances: whether `advance` is called.
+    """
+
+    samples: int = 12
+    span: int = 40
+    unknowns: bool = True
+    advances: bool = True
+
+
+def random_trace(dice: Dice, spec: CheckedSpec, profile: TraceProfile) -> Case:
+    """A random trace for a specification, with what else a monitor is told.
+
+    Gaps between samples are often a bound of the spec, or one tick more; numbers lie at and
+    beside its literals.
+
+    Args:
+        dice: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        spec: any; its bounds should be a few ticks if the oracle is to judge.
+        profile: what may occur.
+    """
+    gaps = _gaps(spec)
+    numbers = _numbers(spec)
+    names = None
+    if profile.unknowns and chance(dice, 8):
+        names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(dice, 20))
+    values = _Values(spec, numbers, names, profile.unknowns, _has_for_each(spec))
+    time = start = pick(dice, (0, 1, 5, -3))
+    actions: list[Sample | int] = []
+    for index in range(dice.randint(0 if chance(dice, 5) else 1, profile.samples)):
+        if index:
+            gap = _gap(dice, gaps)
+            if profile.advances and chance(dice, 15):
+                actions.append(time + dice.randint(0, gap))
+            time += gap
+        if time - start > profile.span:
+            break
+        actions.append(Sample(time, values.sample(dice, first=index == 0)))
+    if profile.advances and chance(dice, 25):
+        time += _gap(dice, gaps)
+        actions.append(time)
+    end = time + _gap(dice, gaps) * dice.randint(0, 2) if chance(dice, 45) else None
+    return Case(spec, tuple(actions), end, names)
+
+
+def _gap(dice: Dice, gaps: Sequence[int]) -> int:
+    return pick(dice, gaps) if chance(dice, 40) else dice.randint(1, 3)
+
+
+def _gaps(spec: CheckedSpec) -> list[int]:
+    """One tick, each bound of the spec, the tick after it, and the same for staleness."""
+    gaps = {1}
+    for window in _intervals(spec):
+        for bound in (window.low, window.high):
+            if bound is not None:
+                gaps |= {bound, bound + 1}
+    for signal in spec.signals.values():
+        if signal.stale_after is not None:
+            gaps |= {signal.stale_after, signal.stale_after + 1}
+    return sorted(gap for gap in gaps if gap > 0)
+
+
+def _intervals(spec: CheckedSpec) -> list[Interval]:
+    return [
+        window
+        for requirement in spec.requirements.values()
+        for part in (requirement.trigger, requirement.consequent)
+        for window in intervals(part)
+    ]
+
+
+def _numbers(spec: CheckedSpec) -> list[int | float]:
+    """Each literal that the spec compares with, and its neighbours; a few small numbers."""
+    found: set[int | float] = {0, 1}
+    for requirement in spec.requirements.values():
+        for part in (requirement.trigger, requirement.consequent):
+            for expression in numerics(part):
+                match expression:
+                    case Literal(value=int() | float() as value):
+                        found |= {value - 1, value, value + 1}
+                    case _:
+                        pass
+    return sorted(found)
+
+
+def _has_for_each(spec: CheckedSpec) -> bool:
+    return all(requirement.for_each is not None for requirement in spec.requirements.values())
+
+
+@dataclass(frozen=True, slots=True)
+class _Values:
+    """How to draw the values of one sample."""
+
+    spec: CheckedSpec
+    numbers: Sequence[int | float]
+    names: frozenset[str] | None
+    unknowns: bool
+    several: bool
+
+    def sample(self, dice: Dice, *, first: bool) -> dict[str, Value]:
+        """Random updates; most signals get a value in the first sample."""
+        values: dict[str, Value] = {}
+        for name, signal in self.spec.signals.items():
+            if self._has_source(name) and chance(dice, 85 if first else 35):
+                values[name] = self._scalar(dice, signal.type, 5)
+        for name, event in self.spec.events.items():
+            if self._has_source(name) and chance(dice, 30):
+                values[name] = self._occurrence(dice, event.fields)
+        return values
+
+    def _has_source(self, name: str) -> bool:
+        return self.names is None or name in self.names
+
+    def _scalar(self, dice: Dice, type_: Type, unknown: int) -> Scalar:
+        if self.unknowns and chance(dice, unknown):
+            return float("nan") if type_.kind is Kind.REAL and chance(dice, 50) else None
+        match type_.kind:
+            case Kind.BOOL:
+                return chance(dice, 50)
+            case Kind.LABEL:
+                return pick(dice, type_.labels)
+            case Kind.INT:
+                return int(pick(dice, self.numbers))
+            case Kind.REAL:
+                return pick(dice, self.numbers)
+
+    def _occurrence(self, dice: Dice, fields: Mapping[str, Type]) -> Value:
+        if self.unknowns and chance(dice, 5):
+            return None
+        if chance(dice, 5):
+            return False
+        if not fields or chance(dice, 5):
+            return True
+        payload = {name: self._scalar(dice, type_, 6) for name, type_ in fields.items()}
+        if self.several and chance(dice, 25):
+            return (payload, {name: self._scalar(dice, t, 6) for name, t in fields.items()})
+        return payload

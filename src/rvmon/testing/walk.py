@@ -1,0 +1,42 @@
+"""What a formula is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rvmon.spec.checked import Arithmetic, Binary, Compare, Formula, Interval, Numeric, Unary
+
+
+def subformulas(formula: Formula) -> Iterator[Formula]:
+    """The formula and all below it, from the top."""
+    yield formula
+    match formula:
+        case Unary(operand=operand):
+            yield from subformulas(operand)
+        case Binary(left=left, right=right):
+            yield from subformulas(left)
+            yield from subformulas(right)
+        case _:
+            return
+
+
+def intervals(formula: Formula) -> Iterator[Interval]:
+    """The intervals of all temporal operators."""
+    for part in subformulas(formula):
+        if isinstance(part, Unary | Binary) and part.interval is not None:
+            yield part.interval
+
+
+def numerics(formula: Formula) -> Iterator[Numeric]:
+    """All numeric expressions and their parts."""
+
+    def parts(expression: Numeric) -> Iterator[Numeric]:
+        yield expression
+        if isinstance(expression, Arithmetic):
+            for arg in expression.args:
+                yield from parts(arg)
+
+    for part in subformulas(formula):
+        if isinstance(part, Compare):
+            yield from parts(part.left)
+            yield from parts(part.right)
