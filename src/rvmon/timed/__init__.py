@@ -1,0 +1,1 @@
+"""Networks of timed automata: text forms, zone model checker, witnesses, conformance, suites."""

@@ -1,0 +1,124 @@
+"""A model as written to a network: the passes in order, and queries on the result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import prod
+
+from rvmon.diagnostics import Severity
+from rvmon.timed import syntax
+from rvmon.timed.automata import automaton_of, location_names
+from rvmon.timed.declare import Findings, Parts, declare
+from rvmon.timed.instantiate import processes_of
+from rvmon.timed.model import Automaton, Expression, LeadsToFormula, Network, Query
+from rvmon.timed.parse import parse_query
+from rvmon.timed.resolve import Resolver
+from rvmon.timed.rules import finding, refusal
+from rvmon.timed.scope import AutomatonKey, AutomatonSymbol, Names, Scope
+
+MAX_EDGES = 100_000
+"""The most edges that a network may have once templates and selections are unrolled."""
+
+
+def elaborate(document: syntax.Document) -> Network:
+    """Make the network that a model describes.
+
+    Raises:
+        ModelError: with everything that is wrong with the model.
+    """
+    findings, parts = Findings(), Parts()
+    resolver = Resolver(open_ints=document.open_ints)
+    top = Scope()
+    declare(document.declarations, top, parts, resolver, findings)
+    automata: list[Automaton] = []
+    symbols: dict[AutomatonKey, AutomatonSymbol] = {}
+    for process in processes_of(document, top, resolver, findings):
+        declare(process.template.declarations, process.scope, parts, resolver, findings)
+        locations = location_names(process.template, findings)
+        key = (process.family, process.arguments)
+        symbols[key] = AutomatonSymbol(len(automata), locations, process.scope)
+        automata.append(automaton_of(process, locations, parts, resolver, findings))
+        if sum(len(automaton.edges) for automaton in automata) > MAX_EDGES:
+            mend = "narrow the types of parameters and selections"
+            findings.add(finding("TA019", f"more than {MAX_EDGES:,} edges", None, mend))
+            break
+    if not automata and not findings.found:
+        findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
+    names = Names(top, symbols)
+    queries = _queries(document.queries, names, findings)
+    _check_channels(parts, automata, findings)
+    _raise_errors(findings)
+    return Network(
+        document.name,
+        document.title,
+        document.unit,
+        tuple(parts.clocks),
+        tuple(parts.variables),
+        tuple(parts.channels),
+        tuple(automata),
+        queries,
+        tuple(findings.found.values()),
+        names,
+    )
+
+
+def query_on(network: Network, text: str) -> Query:
+    """Read a query on a network.
+
+    Raises:
+        ModelError: the text is no query, or names what the network does not have.
+    """
+    findings = Findings()
+    queries = _queries([parse_query(text)], network.names, findings)
+    _raise_errors(findings)
+    return queries[0]
+
+
+def _raise_errors(findings: Findings) -> None:
+    errors = [d for d in findings.found.values() if d.severity is Severity.ERROR]
+    if errors:
+        raise refusal(*errors)
+
+
+def _queries(
+    written: Iterable[syntax.QueryText], names: Names, findings: Findings
+) -> tuple[Query, ...]:
+    resolver, top = Resolver(names.automata), names.top
+    queries = []
+    for query in written:
+        with findings.collect():
+            meaning = _formula(query.formula, resolver, top)
+            text = query.formula.span.text
+            queries.append(Query(query.id, query.remark, text, meaning, query.span))
+    return tuple(queries)
+
+
+def _formula(
+    written: syntax.Expression, resolver: Resolver, top: Scope
+) -> Expression | LeadsToFormula:
+    if not isinstance(written, syntax.LeadsTo):
+        return resolver.expression(written, top)
+    left, right = resolver.expression(written.left, top), resolver.expression(written.right, top)
+    bound = None if written.bound is None else resolver.constant(written.bound, top)
+    return LeadsToFormula(left, right, bound)
+
+
+def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findings) -> None:
+    senders, receivers = set[int](), set[int]()
+    for edge in (edge for automaton in automata for edge in automaton.edges):
+        if edge.sync is not None:
+            slot = edge.sync.slot
+            used = range(slot.first, slot.first + prod(slot.sizes))
+            (senders if edge.sync.sends else receivers).update(used)
+    for index, (channel, span) in enumerate(zip(parts.channels, parts.channel_spans, strict=True)):
+        match index in senders, index in receivers:
+            case False, False:
+                problem, mend = "is used by nobody", "remove it, or use it on an edge"
+            case True, False if not channel.broadcast:
+                problem, mend = "is never received", f"add an edge with {channel.name}?"
+            case False, True:
+                problem, mend = "is never sent", f"add an edge with {channel.name}!"
+            case _:
+                continue
+        message = f"the channel `{channel.name}` {problem}: edges with it are never taken"
+        findings.add(finding("TA010", message, span, mend, severity=Severity.WARNING))

@@ -1,0 +1,166 @@
+"""Values of expressions: constants folded when a model is read, closures when it is explored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import assert_never
+
+from rvmon.diagnostics import Span
+from rvmon.timed.model import (
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    Constant,
+    Deadlock,
+    Expression,
+    InLocation,
+    Lookup,
+    PathFormula,
+    Slot,
+    UnaryOperation,
+    VariableValue,
+)
+from rvmon.timed.rules import model_error
+from rvmon.timed.syntax import BinaryOp, UnaryOp
+
+Locations = Sequence[int]
+"""The location of each automaton."""
+
+Values = Sequence[int]
+"""The value of each variable."""
+
+Evaluator = Callable[[Locations, Values], int]
+
+
+def apply_unary(op: UnaryOp, value: int) -> int:
+    """The value of an operator on one operand."""
+    match op:
+        case UnaryOp.NOT:
+            return int(not value)
+        case UnaryOp.NEGATE:
+            return -value
+        case _:
+            assert_never(op)
+
+
+def apply_binary(op: BinaryOp, left: int, right: int) -> int:
+    """The value of an operator on two operands; division truncates, as in C.
+
+    >>> apply_binary(BinaryOp.DIV, -7, 2), apply_binary(BinaryOp.MOD, -7, 2)
+    (-3, -1)
+    """
+    return _BINARY[op](left, right)
+
+
+def _divide(left: int, right: int) -> int:
+    if right == 0:
+        raise model_error("TA007", "division by zero", None, "guard it with a test of the divisor")
+    quotient = abs(left) // abs(right)
+    return quotient if (left < 0) == (right < 0) else -quotient
+
+
+_BINARY: dict[BinaryOp, Callable[[int, int], int]] = {
+    BinaryOp.AND: lambda a, b: int(bool(a) and bool(b)),
+    BinaryOp.OR: lambda a, b: int(bool(a) or bool(b)),
+    BinaryOp.IMPLY: lambda a, b: int(not a or bool(b)),
+    BinaryOp.LT: lambda a, b: int(a < b),
+    BinaryOp.LE: lambda a, b: int(a <= b),
+    BinaryOp.EQ: lambda a, b: int(a == b),
+    BinaryOp.NE: lambda a, b: int(a != b),
+    BinaryOp.GE: lambda a, b: int(a >= b),
+    BinaryOp.GT: lambda a, b: int(a > b),
+    BinaryOp.ADD: lambda a, b: a + b,
+    BinaryOp.SUB: lambda a, b: a - b,
+    BinaryOp.MUL: lambda a, b: a * b,
+    BinaryOp.DIV: _divide,
+    BinaryOp.MOD: lambda a, b: a - b * _divide(a, b),
+}
+
+
+def evaluator(expression: Expression) -> Evaluator:
+    """Make a function of locations and variables for an expression without clocks.
+
+    The connectives evaluate their right side only if it matters, so that `i < N and a[i] > 0`
+    never leaves the array.
+    """
+    match expression:
+        case Constant(value):
+            return lambda _locations, _values: value
+        case VariableValue(Slot(first, ())):
+            return lambda _locations, values: values[first]
+        case VariableValue(slot):
+            element = slot_evaluator(slot)
+            return lambda locations, values: values[element(locations, values)]
+        case Lookup(table, index, span):
+            return _lookup(table, evaluator(index), span)
+        case InLocation(automaton, location):
+            return lambda locations, _values: int(locations[automaton] == location)
+        case UnaryOperation(op, operand):
+            return _unary_evaluator(op, evaluator(operand))
+        case BinaryOperation(op, left, right):
+            return _binary_evaluator(op, evaluator(left), evaluator(right))
+        case Choice(condition, then, otherwise):
+            test, yes, no = evaluator(condition), evaluator(then), evaluator(otherwise)
+            return lambda locations, values: (
+                yes(locations, values) if test(locations, values) else no(locations, values)
+            )
+        case ClockCompare() | Deadlock() | PathFormula():
+            raise AssertionError(f"{expression} has no value in a discrete state")
+        case _:
+            assert_never(expression)
+
+
+def _lookup(table: tuple[int, ...], index: Evaluator, span: Span | None) -> Evaluator:
+    def element(locations: Locations, values: Values) -> int:
+        position = index(locations, values)
+        check_index(position, len(table), span)
+        return table[position]
+
+    return element
+
+
+def _unary_evaluator(op: UnaryOp, operand: Evaluator) -> Evaluator:
+    match op:
+        case UnaryOp.NOT:
+            return lambda locations, values: int(not operand(locations, values))
+        case UnaryOp.NEGATE:
+            return lambda locations, values: -operand(locations, values)
+        case _:
+            assert_never(op)
+
+
+def _binary_evaluator(op: BinaryOp, left: Evaluator, right: Evaluator) -> Evaluator:
+    match op:
+        case BinaryOp.AND:
+            return lambda ls, vs: int(bool(left(ls, vs)) and bool(right(ls, vs)))
+        case BinaryOp.OR:
+            return lambda ls, vs: int(bool(left(ls, vs)) or bool(right(ls, vs)))
+        case BinaryOp.IMPLY:
+            return lambda ls, vs: int(not left(ls, vs) or bool(right(ls, vs)))
+        case _:
+            function = _BINARY[op]
+            return lambda ls, vs: function(left(ls, vs), right(ls, vs))
+
+
+def slot_evaluator(slot: Slot) -> Evaluator:
+    """Make a function that gives the index of the variable or channel that a slot names."""
+    if not slot.sizes:
+        return lambda _locations, _values: slot.first
+    indices = [evaluator(index) for index in slot.indices]
+
+    def element(locations: Locations, values: Values) -> int:
+        offset = 0
+        for size, index in zip(slot.sizes, indices, strict=True):
+            position = index(locations, values)
+            check_index(position, size, slot.span)
+            offset = offset * size + position
+        return slot.first + offset
+
+    return element
+
+
+def check_index(position: int, size: int, span: Span | None) -> None:
+    """Refuse an index outside its array."""
+    if not 0 <= position < size:
+        mend = f"the indices are 0 to {size - 1}: guard the edge, or narrow the index's type"
+        raise model_error("TA007", f"index {position} is outside the array", span, mend)

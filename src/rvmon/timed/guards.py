@@ -1,0 +1,126 @@
+"""Conditions in normal form: negation at the atoms, clocks apart from variables."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from rvmon.diagnostics import Span
+from rvmon.timed.model import (
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Deadlock,
+    Expression,
+    Guard,
+    InLocation,
+    Lookup,
+    PathFormula,
+    UnaryOperation,
+    VariableValue,
+)
+from rvmon.timed.rules import model_error
+from rvmon.timed.syntax import BinaryOp, PathOp, UnaryOp
+
+_NEGATED_CLOCK = {
+    ClockOp.LT: ClockOp.GE,
+    ClockOp.LE: ClockOp.GT,
+    ClockOp.GE: ClockOp.LT,
+    ClockOp.GT: ClockOp.LE,
+}
+_NEGATED_PATH = {
+    PathOp.POSSIBLY: PathOp.INVARIANTLY,
+    PathOp.INVARIANTLY: PathOp.POSSIBLY,
+    PathOp.EVENTUALLY: PathOp.POTENTIALLY_ALWAYS,
+    PathOp.POTENTIALLY_ALWAYS: PathOp.EVENTUALLY,
+}
+
+
+def is_discrete(expression: Expression) -> bool:
+    """Whether locations and variables alone give the expression a value."""
+    match expression:
+        case Constant() | VariableValue() | Lookup() | InLocation():
+            return True
+        case ClockCompare() | Deadlock() | PathFormula():
+            return False
+        case UnaryOperation(_, operand):
+            return is_discrete(operand)
+        case BinaryOperation(_, left, right):
+            return is_discrete(left) and is_discrete(right)
+        case Choice(condition, then, otherwise):
+            return is_discrete(condition) and is_discrete(then) and is_discrete(otherwise)
+        case _:
+            assert_never(expression)
+
+
+def normalise(expression: Expression, positive: bool = True) -> Expression:
+    """The expression, or its negation, with `and` and `or` over discrete parts and atoms."""
+    if is_discrete(expression):
+        return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
+    match expression:
+        case ClockCompare(clock, op, bound):
+            return expression if positive else ClockCompare(clock, _NEGATED_CLOCK[op], bound)
+        case Deadlock():
+            return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
+        case PathFormula(op, body, bound):
+            if positive:
+                return PathFormula(op, normalise(body), bound)
+            return PathFormula(_NEGATED_PATH[op], normalise(body, not positive), bound)
+        case UnaryOperation(UnaryOp.NOT, operand):
+            return normalise(operand, not positive)
+        case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):
+            if not positive:
+                op = BinaryOp.OR if op is BinaryOp.AND else BinaryOp.AND
+            return BinaryOperation(op, normalise(left, positive), normalise(right, positive))
+        case BinaryOperation(BinaryOp.IMPLY, left, right):
+            op = BinaryOp.OR if positive else BinaryOp.AND
+            return BinaryOperation(op, normalise(left, not positive), normalise(right, positive))
+        case BinaryOperation(BinaryOp.EQ | BinaryOp.NE as op, left, right):
+            same = (op is BinaryOp.EQ) == positive
+            return BinaryOperation(
+                BinaryOp.OR,
+                BinaryOperation(BinaryOp.AND, normalise(left), normalise(right, same)),
+                BinaryOperation(
+                    BinaryOp.AND, normalise(left, positive=False), normalise(right, not same)
+                ),
+            )
+        case Choice(condition, then, otherwise):
+            return BinaryOperation(
+                BinaryOp.OR,
+                BinaryOperation(BinaryOp.AND, normalise(condition), normalise(then, positive)),
+                BinaryOperation(
+                    BinaryOp.AND,
+                    normalise(condition, positive=False),
+                    normalise(otherwise, positive),
+                ),
+            )
+        case _:  # arithmetic, and what is discrete
+            raise AssertionError(f"{expression} is no condition")
+
+
+def split_guard(expression: Expression, span: Span) -> Guard:
+    """A condition as its discrete part and its clock bounds, which must all hold.
+
+    Raises:
+        ModelError: clocks stand under `or`.
+    """
+    data: Expression = Constant(1)
+    clocks: list[ClockCompare] = []
+    for part in _conjuncts(normalise(expression)):
+        if isinstance(part, ClockCompare):
+            clocks.append(part)
+        elif is_discrete(part):
+            data = part if data == Constant(1) else BinaryOperation(BinaryOp.AND, data, part)
+        else:
+            mend = "make one edge (or location) for each alternative"
+            raise model_error("TA009", "a clock under `or`", span, mend)
+    return Guard(data, tuple(clocks))
+
+
+def _conjuncts(expression: Expression) -> list[Expression]:
+    match expression:
+        case BinaryOperation(BinaryOp.AND, left, right):
+            return [*_conjuncts(left), *_conjuncts(right)]
+        case _:
+            return [expression]

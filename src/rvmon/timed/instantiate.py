@@ -1,0 +1,134 @@
+"""Templates with their parameters bound: the processes that the system line names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.timed import syntax
+from rvmon.timed.declare import Findings, array_size, check_range, refuse_double
+from rvmon.timed.resolve import Resolver, suggest, values_of
+from rvmon.timed.rules import model_error
+from rvmon.timed.scope import (
+    ChannelSymbol,
+    ClockSymbol,
+    ConstantSymbol,
+    Scope,
+    Symbol,
+    VariableSymbol,
+)
+from rvmon.timed.syntax import BaseType
+
+Family = syntax.Template | syntax.Instance
+"""What a name in the system line may mean."""
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """A template with all its parameters bound: an automaton to be."""
+
+    family: str
+    arguments: tuple[int, ...]
+    template: syntax.Template
+    scope: Scope
+
+
+def processes_of(
+    document: syntax.Document, top: Scope, resolver: Resolver, findings: Findings
+) -> list[Process]:
+    """All processes of the system, in its order; what is wrong goes to `findings`."""
+    families: dict[str, Family] = {}
+    declared: tuple[Family, ...] = (*document.templates, *document.instances)
+    for family in declared:
+        with findings.collect():
+            refuse_double(family.name, family.span, top)
+            top.places[family.name] = family.span
+            families[family.name] = family
+    used = {instance.template.name for instance in document.instances}
+    system = document.system
+    if system is None:
+        system = tuple(
+            syntax.Name(name, family.span) for name, family in families.items() if name not in used
+        )
+    processes: list[Process] = []
+    for name in system:
+        with findings.collect():
+            if name.name not in families:
+                mend = suggest(name.name, list(families))
+                raise model_error("TA002", f"no automaton `{name.name}`", name.span, mend)
+            processes += _instances(families[name.name], families, top, resolver)
+    return processes
+
+
+def _instances(
+    family: Family, families: Mapping[str, Family], top: Scope, resolver: Resolver
+) -> Iterator[Process]:
+    """One process for each choice of the parameters' values."""
+    ranges = []
+    for parameter in family.parameters:
+        if parameter.reference or parameter.sizes:
+            mend = f"write instance = {family.name}(…)"
+            message = f"the parameter `{parameter.name}` needs an argument"
+            raise model_error("TA015", message, parameter.span, mend)
+        ranges.append(values_of(resolver.type(parameter.type, top), parameter.type.span))
+    for arguments in product(*ranges):
+        bound = [ConstantSymbol(value) for value in arguments]
+        template, scope = _bind(family, bound, families, top, resolver)
+        listed = f"({', '.join(map(str, arguments))})" if arguments else ""
+        scope.prefix = f"{family.name}{listed}."
+        yield Process(family.name, arguments, template, scope)
+
+
+def _bind(
+    family: Family,
+    arguments: Sequence[Symbol],
+    families: Mapping[str, Family],
+    top: Scope,
+    resolver: Resolver,
+) -> tuple[syntax.Template, Scope]:
+    scope = Scope(top)
+    for parameter, argument in zip(family.parameters, arguments, strict=True):
+        scope.symbols[parameter.name] = argument
+        scope.places[parameter.name] = parameter.span
+    if isinstance(family, syntax.Template):
+        return family, scope
+    target = families.get(family.template.name)
+    if target is None or target is family:
+        mend = suggest(family.template.name, list(families))
+        message = f"no template `{family.template.name}`"
+        raise model_error("TA002", message, family.template.span, mend)
+    if len(target.parameters) != len(family.arguments):
+        message = f"`{target.name}` takes {len(target.parameters)} arguments"
+        raise model_error("TA015", f"{message}, {len(family.arguments)} given", family.span)
+    bound = [
+        _argument(parameter, written, scope, resolver)
+        for parameter, written in zip(target.parameters, family.arguments, strict=True)
+    ]
+    return _bind(target, bound, families, top, resolver)
+
+
+def _argument(
+    parameter: syntax.Parameter, written: syntax.Expression, scope: Scope, resolver: Resolver
+) -> Symbol:
+    kind = resolver.type(parameter.type, scope)
+    sizes = tuple(array_size(size, scope, resolver) for size in parameter.sizes)
+    if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not sizes:
+        value = resolver.constant(written, scope)
+        check_range(value, kind, written.span)
+        return ConstantSymbol(value)
+    symbol = resolver.symbol(written, scope)
+    match symbol:
+        case ClockSymbol(slot):
+            fits = kind.base is BaseType.CLOCK and slot.sizes[len(slot.indices) :] == sizes
+        case ChannelSymbol(slot):
+            fits = kind.base is BaseType.CHANNEL and slot.sizes[len(slot.indices) :] == sizes
+        case VariableSymbol(slot):
+            fits = kind.base in (BaseType.INT, BaseType.BOOL)
+            fits = fits and slot.sizes[len(slot.indices) :] == sizes
+        case _:
+            fits = isinstance(symbol, ConstantSymbol) and kind.const
+    if not fits:
+        mend = f"`{parameter.name}` is declared as {parameter.type.span.text}"
+        raise model_error("TA015", "this argument is of the wrong kind", written.span, mend)
+    return symbol

@@ -1,0 +1,292 @@
+"""A network of timed automata with all names resolved: what every algorithm here starts from.
+
+Clocks, variables, channels, automata, locations and edges are referred to by their index in the
+tuples of `Network`. Arrays are spread over neighbouring indices.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.timed.syntax import BinaryOp, LocationKind, PathOp, UnaryOp
+
+if TYPE_CHECKING:
+    from rvmon.timed.scope import Names
+
+# Expressions over the variables; clocks and locations occur as propositions.
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """An integer; truth is 1, falsity 0."""
+
+    value: int
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """A variable or channel, or an element of an array of them.
+
+    Attributes:
+        first: index of the array's first element.
+        sizes: of the array, outermost dimension first; empty for a single one.
+        indices: one for each dimension; each must be at least 0 and below its size.
+    """
+
+    first: int
+    sizes: tuple[int, ...] = ()
+    indices: tuple[Expression, ...] = ()
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class VariableValue:
+    """The value of a variable."""
+
+    slot: Slot
+
+
+@dataclass(frozen=True, slots=True)
+class Lookup:
+    """An element of a constant array, chosen by the variables."""
+
+    values: tuple[int, ...]
+    index: Expression
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class UnaryOperation:
+    """An operator on one operand."""
+
+    op: UnaryOp
+    operand: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class BinaryOperation:
+    """An operator on two operands."""
+
+    op: BinaryOp
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """`condition ? then : otherwise`."""
+
+    condition: Expression
+    then: Expression
+    otherwise: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class InLocation:
+    """An automaton is in a location."""
+
+    automaton: int
+    location: int
+
+
+class ClockOp(StrEnum):
+    """How a clock is compared with a number."""
+
+    LT = "<"
+    LE = "<="
+    GE = ">="
+    GT = ">"
+
+
+@dataclass(frozen=True, slots=True)
+class ClockCompare:
+    """A clock compared with a number of units of time."""
+
+    clock: int
+    op: ClockOp
+    bound: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Deadlock:
+    """No edge can be taken now or after any delay."""
+
+
+@dataclass(frozen=True, slots=True)
+class PathFormula:
+    """A path operator; `bound` in units of time, `None` if unbounded."""
+
+    op: PathOp
+    body: Expression
+    bound: int | None = None
+
+
+Expression = (
+    Constant
+    | VariableValue
+    | Lookup
+    | UnaryOperation
+    | BinaryOperation
+    | Choice
+    | InLocation
+    | ClockCompare
+    | Deadlock
+    | PathFormula
+)
+
+
+# The parts of a network.
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """A clock; all start at 0 and run at the rate of time."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """An integer in `[low, high]`; a bool is one in `[0, 1]`."""
+
+    name: str
+    low: int
+    high: int
+    initial: int
+    is_bool: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """A channel: a sender meets one receiver, or all that can receive if `broadcast`.
+
+    Time does not pass while an `urgent` one can be used.
+    """
+
+    name: str
+    broadcast: bool = False
+    urgent: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Sync:
+    """One end of a channel."""
+
+    slot: Slot
+    sends: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """`slot = value`; the value must lie in the variable's range."""
+
+    slot: Slot
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Reset:
+    """`clock = value`, a number of units of time that is not negative."""
+
+    clock: int
+    value: Expression
+    span: Span | None = field(default=None, compare=False)
+
+
+Update = Assignment | Reset
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """A condition: on the variables and, all together, on clocks."""
+
+    data: Expression = Constant(1)
+    clocks: tuple[ClockCompare, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """A location; its invariant bounds clocks from above only."""
+
+    name: str
+    kind: LocationKind
+    invariant: Guard
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """An edge between two locations of one automaton.
+
+    Attributes:
+        updates: in the order in which they happen.
+        weight: share of the runs that take it where they can, in (0, 1].
+        label: the action's name in recordings; empty: the channel's name, if it has one.
+        text: the edge for people.
+    """
+
+    source: int
+    target: int
+    guard: Guard
+    sync: Sync | None
+    updates: tuple[Update, ...]
+    weight: float
+    label: str
+    text: str
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Automaton:
+    """One process of the network."""
+
+    name: str
+    locations: tuple[Location, ...]
+    edges: tuple[Edge, ...]
+    initial: int
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LeadsToFormula:
+    """Wherever `left` holds, `right` will on every run, within `bound` if there is one."""
+
+    left: Expression
+    right: Expression
+    bound: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Query:
+    """A question to the model checker; `formula` has a path operator outermost."""
+
+    id: str
+    remark: str
+    text: str
+    formula: Expression | LeadsToFormula
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """Automata that run in parallel.
+
+    Attributes:
+        unit: ticks of one unit of time; `None` if the model names none.
+        warnings: what is odd about it but no error.
+        names: what queries may refer to.
+    """
+
+    name: str
+    title: str
+    unit: int | None
+    clocks: tuple[Clock, ...]
+    variables: tuple[Variable, ...]
+    channels: tuple[Channel, ...]
+    automata: tuple[Automaton, ...]
+    queries: tuple[Query, ...]
+    warnings: tuple[Diagnostic, ...] = field(compare=False)
+    names: Names = field(compare=False, repr=False)

@@ -1,0 +1,79 @@
+"""What can be wrong with a model or query: the codes, and how a finding is made and raised."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span
+from rvmon.errors import ModelError
+
+RULES = {
+    "TA001": "syntax",
+    "TA002": "unknown-name",
+    "TA003": "double-name",
+    "TA004": "wrong-kind",
+    "TA005": "unbounded-int",
+    "TA006": "not-constant",
+    "TA007": "out-of-range",
+    "TA008": "diagonal-constraint",
+    "TA009": "clock-in-wrong-place",
+    "TA010": "channel-without-partner",
+    "TA011": "clock-guard-on-urgent-channel",
+    "TA012": "clock-guard-on-broadcast-receiver",
+    "TA013": "no-initial-location",
+    "TA014": "time-lock-at-start",
+    "TA015": "wrong-arguments",
+    "TA016": "not-supported",
+    "TA017": "bad-weight",
+    "TA018": "malformed-xml",
+    "TA019": "too-large",
+    "TA020": "query-not-supported",
+    "TA021": "no-automaton",
+}
+"""Name of each code."""
+
+
+def finding(
+    code: str,
+    message: str,
+    span: Span | None,
+    mend: str = "",
+    *,
+    others: Sequence[Label] = (),
+    severity: Severity = Severity.ERROR,
+) -> Diagnostic:
+    """Make a diagnostic of one of the `RULES`; `others` are further places that matter."""
+    places = () if span is None else (Label(span),)
+    return Diagnostic(code, RULES[code], severity, message, (*places, *others), mend)
+
+
+def model_error(
+    code: str, message: str, span: Span | None, mend: str = "", *, others: Sequence[Label] = ()
+) -> ModelError:
+    """A single finding as an exception."""
+    return refusal(finding(code, message, span, mend, others=others))
+
+
+def refusal(*findings: Diagnostic) -> ModelError:
+    """All findings as one `ModelError`, in order of place."""
+    ordered = sorted(findings, key=_place)
+    return ModelError(ordered, "\n".join(map(_render, ordered)))
+
+
+def _place(diagnostic: Diagnostic) -> int:
+    return diagnostic.spans[0].span.start if diagnostic.spans else -1
+
+
+def _render(diagnostic: Diagnostic) -> str:
+    lines = [
+        f"{diagnostic.severity}[{diagnostic.code} {diagnostic.name}]: {diagnostic.message}",
+        *map(_render_label, diagnostic.spans),
+    ]
+    if diagnostic.help:
+        lines.append(f"help: {diagnostic.help}")
+    return "\n".join(lines)
+
+
+def _render_label(label: Label) -> str:
+    span = label.span
+    return f"  --> {span.source.name}:{span.line}:{span.column} {label.text}".rstrip()
