@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
+from handover.driver.draws import draw, stream
+from handover.driver.run import Run
+
 if TYPE_CHECKING:
-    from handover.driver.run import AroundRobotStep, Observer, Run
+    from handover.driver.run import AroundRobotStep, Observer
     from handover.generator.abstract_test import AbstractTest
 
 
@@ -22,6 +26,8 @@ def run_test(
 ) -> Run:
     """Simulate a test and return all that was published.
 
+    The same test gives the same run in every process, whatever was run before.
+
     Args:
         test: what the human does, and the seed of everything random.
         robot: `"correct"` or `"legacy"`; default: the robot that the test names, else correct.
@@ -33,6 +39,65 @@ def run_test(
         around_robot_step: context in which each step of the robot's code runs.
 
     Raises:
-        ValueError: no robot, mutation or sensor fault of that name.
+        ValueError: no robot or mutation of that name.
     """
-    raise NotImplementedError
+    # The physics engine takes a tenth of a second to import: only who simulates pays.
+    from handover.driver.script import Script
+    from handover.robot.behaviour import BEHAVIOURS
+    from handover.robot.handover import HandoverRobot
+    from handover.robot.mutants import MUTATIONS
+    from handover.world.bus import Node
+    from handover.world.parameters import NS, ZERO_POSE
+    from handover.world.process import Process
+    from handover.world.world import World
+
+    robot = robot or test.robot or "correct"
+    mutation = mutation or test.mutation
+    if robot not in BEHAVIOURS:
+        raise ValueError(f"no robot named {robot!r}: there are {', '.join(BEHAVIOURS)}")
+    if mutation is not None and mutation not in MUTATIONS:
+        raise ValueError(f"no mutation named {mutation!r}: there are {', '.join(MUTATIONS)}")
+    make_robot = HandoverRobot if mutation is None else MUTATIONS[mutation]
+
+    draws = draw(test.seed, startup_loss=startup_loss and test.startup_loss)
+    world = World(
+        stream(test.seed, "world"), jump=jump, record_poses=record_poses, observer=observer
+    )
+    states: list[tuple[int, str]] = []
+
+    def note_state(topic: str, value: object) -> None:
+        if topic == "robot_state":
+            states.append((world.schedule.now_ns, str(value)))
+
+    world.bus.tap(note_state)
+    params = {
+        "zero_pose": ZERO_POSE,
+        "start_pose": draws.start_pose,
+        "timeout_time": draws.timeout_time_s,
+    }
+    robot_node = Node(world.bus, params, draws.poll_growth_s)
+    human_node = Node(world.bus, {}, draws.poll_growth_s)
+    machine = make_robot(robot_node, world.arm, world.gripper, world, BEHAVIOURS[robot])
+    script = Script(
+        test.actions,
+        human_node,
+        world.human,
+        stream(test.seed, "postures"),
+        start_s=draws.human_start_s,
+        first_lost=draws.signal_lost,
+    )
+    process = Process(world.schedule, robot_node, machine.run(), around_robot_step or nullcontext)
+    Process(world.schedule, human_node, script.run())
+    horizon_ns = round(test.horizon_s * NS)
+    world.run(horizon_ns)
+    return Run(
+        test=test,
+        robot=robot,
+        mutation=mutation,
+        samples=tuple(world.recorder.samples),
+        states=tuple(states),
+        end_ns=horizon_ns,
+        stepped_s=world.stepped_s,
+        error=process.error,
+        poses=world.poses(),
+    )

@@ -1,0 +1,115 @@
+"""The human's script: an abstract test's actions become signals, waits and postures."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+from typing import assert_never
+
+from handover.generator.abstract_test import Action, ReceiveSignal, SendSignal, SetParam
+from handover.world import parameters as p
+from handover.world.bus import Node
+from handover.world.human import Human
+from handover.world.process import Program
+
+SEND_DELAY_S = 2.0
+SEND_PAUSE_S = 0.2
+POLL_S = 0.2
+POLL_LIMIT = 500
+TIME_UNIT_S = 0.05
+HUMAN_SIGNALS = "human_signals"
+INFORMED = "informed"
+
+
+class Script:
+    """Plays actions one after the other; each begins when the one before is over.
+
+    Args:
+        actions: of the abstract test.
+        node: the human's connection to the bus.
+        human: the body that takes the postures.
+        rng: draws postures from their ranges.
+        start_s: seconds until the script begins.
+        first_lost: whether the first signal is lost.
+    """
+
+    def __init__(
+        self,
+        actions: Iterable[Action],
+        node: Node,
+        human: Human,
+        rng: random.Random,
+        *,
+        start_s: float,
+        first_lost: bool,
+    ) -> None:
+        self._actions = actions
+        self._node = node
+        self._human = human
+        self._rng = rng
+        self._start_s = start_s
+        self._lose_next = first_lost
+
+    def run(self) -> Program:
+        """Wait for the process to be up, then play all actions, or up to a wait in vain."""
+        yield self._start_s
+        for action in self._actions:
+            match action:
+                case SendSignal(signal="setv") | ReceiveSignal(signal="setv"):
+                    continue
+                case SendSignal(signal=signal):
+                    yield from self._send(signal)
+                case ReceiveSignal():
+                    yield from self._wait_for_robot()
+                    if self._node.receive(INFORMED) is None:
+                        return
+                case SetParam(param="time", value=units):
+                    yield units * TIME_UNIT_S
+                case SetParam(param=param, value=value):
+                    self._take_posture(param, ok=value != 0)
+                case _:
+                    assert_never(action)
+
+    def _send(self, signal: str) -> Program:
+        yield SEND_DELAY_S
+        if self._lose_next:
+            self._lose_next = False
+        else:
+            self._node.publish(HUMAN_SIGNALS, signal, latched=True)
+        yield SEND_PAUSE_S
+
+    def _wait_for_robot(self) -> Program:
+        for _ in range(POLL_LIMIT):
+            self._node.subscribe(INFORMED)
+            yield POLL_S
+            if self._node.receive(INFORMED) is not None:
+                return
+
+    def _take_posture(self, param: str, *, ok: bool) -> None:
+        """Instantiate a posture from its range; other parameters move nobody."""
+        match param:
+            case "hgazeOk":
+                self._look(ok=ok)
+            case "hlocationOk":
+                self._reach(ok=ok)
+            case "hpressureOk":
+                self._human.grasp(closed=ok)
+            case "honTask" if not ok:
+                self._look(ok=False)
+                self._reach(ok=False)
+                self._human.grasp(closed=False)
+            case _:
+                pass
+
+    def _look(self, *, ok: bool) -> None:
+        offset, distance, angle = p.GAZE_OK if ok else p.GAZE_BAD
+        self._human.look(
+            self._rng.uniform(*offset), self._rng.uniform(*distance), self._rng.uniform(*angle)
+        )
+
+    def _reach(self, *, ok: bool) -> None:
+        if ok:
+            self._human.reach(*p.LOCATION_OK, near=True)
+        else:
+            away = self._rng.uniform(*p.LOCATION_BAD)
+            self._human.reach(away, away, near=False)

@@ -1,0 +1,102 @@
+"""How the robot behaves: the numbers and rules in which its two versions differ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """Numbers and rules of one version of the robot.
+
+    Attributes:
+        reset_s: seconds from the start to the first poll.
+        poll_s: seconds between two reads of the human's signals.
+        poll_limit: polls after which the robot gives up.
+        shared_polls: whether both receiving states count the same polls.
+        resubscribes: whether each poll subscribes again and never takes it down.
+        activation: signals that activate the robot.
+        readiness: signals that say that the human is ready.
+        only_fresh: whether signals from before the state was entered are ignored.
+        grip_pause_s: seconds from the command to close until the gripper counts as closed.
+        announce_pause_s: seconds between the messages about the closed gripper.
+        settle_s: seconds at the handover pose before the human is informed.
+        inform_pause_s: seconds before and after informing the human.
+        sense_delay_s: seconds in `sense` before the first poll of the sensors.
+        sense_poll_s: seconds between two reads of the sensors.
+        sense_limit_s: seconds in `sense` until it times out; `None`: the run's parameter
+            `timeout_time`, counted from the informing.
+        undefined_is_bad: whether a sensor without a reading counts as not ok, at once.
+        decide_s: seconds from sensing to the decision.
+        open_s: seconds from the command to open until the piece counts as released.
+        release_s: seconds after the release.
+    """
+
+    reset_s: float
+    poll_s: float
+    poll_limit: int
+    shared_polls: bool
+    resubscribes: bool
+    activation: frozenset[str]
+    readiness: frozenset[str]
+    only_fresh: bool
+    grip_pause_s: float
+    announce_pause_s: float
+    settle_s: float
+    inform_pause_s: float
+    sense_delay_s: float
+    sense_poll_s: float
+    sense_limit_s: float | None
+    undefined_is_bad: bool
+    decide_s: float
+    open_s: float
+    release_s: float
+
+
+CORRECT = Behaviour(
+    reset_s=0.9,
+    poll_s=0.1,
+    poll_limit=200,
+    shared_polls=False,
+    resubscribes=False,
+    activation=frozenset({"activateRobot"}),
+    readiness=frozenset({"humanIsReady"}),
+    only_fresh=True,
+    grip_pause_s=0.5,
+    announce_pause_s=0.1,
+    settle_s=0.3,
+    inform_pause_s=0.0,
+    sense_delay_s=0.0,
+    sense_poll_s=0.5,
+    sense_limit_s=5.0,
+    undefined_is_bad=False,
+    decide_s=0.1,
+    open_s=0.3,
+    release_s=2.0,
+)
+"""The protocol as it is meant: the right signal in each state, and every wait bounded."""
+
+LEGACY = Behaviour(
+    reset_s=1.0,
+    poll_s=0.2,
+    poll_limit=500,
+    shared_polls=True,
+    resubscribes=True,
+    activation=frozenset({"activateRobot", "humanIsReady"}),
+    readiness=frozenset({"activateRobot", "humanIsReady"}),
+    only_fresh=False,
+    grip_pause_s=0.5,
+    announce_pause_s=0.2,
+    settle_s=1.0,
+    inform_pause_s=0.5,
+    sense_delay_s=3.0,
+    sense_poll_s=0.2,
+    sense_limit_s=None,
+    undefined_is_bad=True,
+    decide_s=0.0,
+    open_s=0.5,
+    release_s=0.0,
+)
+"""The robot of the paper's public testbench, with its quirks."""
+
+BEHAVIOURS = {"correct": CORRECT, "legacy": LEGACY}

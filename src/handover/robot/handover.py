@@ -1,0 +1,249 @@
+"""The handover task as a state machine of nine states.
+
+Signals come in over the node and the sensors, commands go out to arm and gripper. The program
+is a generator: it waits by yielding seconds, and whoever runs it resumes it when they are over.
+
+::
+
+    reset → receive_activation ⟲ → move → send_signal → receive_readiness ⟲ → sense ⟲ → decide
+    decide → release → done        decide → done (not released)
+    receive_activation, receive_readiness, sense → done (timed out)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from handover.robot.behaviour import CORRECT, Behaviour
+from handover.robot.ports import Arm, Gripper, Node, Reading, Sensors, Steps
+
+STATES = (
+    "reset",
+    "receive_activation",
+    "move",
+    "send_signal",
+    "receive_readiness",
+    "sense",
+    "decide",
+    "release",
+    "done",
+)
+"""The states in the order of a successful handover; each is the method of that name."""
+
+END = "end"
+HUMAN_SIGNALS = "human_signals"
+HANDOVER_POINT = (0.20, 0.22)
+GRIP_ABOVE_CENTRE = 0.02
+APPROACH_HEIGHTS = (0.18, 0.06, 0.0)
+PLAN_ATTEMPTS = 3
+CLOCK_TOLERANCE_S = 1e-6
+
+
+class HandoverRobot:
+    """Fetches the piece, offers it to the human, and releases it when the human is ready.
+
+    Args:
+        node: connection to the message bus.
+        arm: plans and follows paths.
+        gripper: opens and closes.
+        sensors: camera, trackers, pressure.
+        behaviour: the version's numbers and rules.
+
+    Attributes:
+        state: the state that the robot is in.
+        outcome: why the task ended, once it has.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        arm: Arm[Any],
+        gripper: Gripper,
+        sensors: Sensors,
+        behaviour: Behaviour = CORRECT,
+    ) -> None:
+        self.node = node
+        self.arm = arm
+        self.gripper = gripper
+        self.sensors = sensors
+        self.behaviour = behaviour
+        self.state = "reset"
+        self.outcome = ""
+        self.entered = 0.0
+        self.polls = 0
+        self.informed_at = 0.0
+        self.holding = False
+        self.reading: Reading | None = None
+
+    def run(self) -> Steps[None]:
+        """Go through the states until the task is done."""
+        next_state = "reset"
+        while next_state != END:
+            if next_state != self.state:
+                self.entered = self.node.now()
+            self.state = next_state
+            self.node.publish("robot_state", next_state)
+            next_state = yield from getattr(self, next_state)()
+
+    # --- states: each returns the name of the next -------------------------------------------
+
+    def reset(self) -> Steps[str]:
+        """Forget the last task, open the gripper and go to the start pose."""
+        self.polls = 0
+        self.outcome = ""
+        self.informed_at = 0.0
+        self.reading = None
+        self.node.publish("robot_reset")
+        self.node.publish("robot_gripper", False)
+        self.node.publish("pressure_e1", False)
+        if not self.behaviour.resubscribes:
+            self.node.subscribe(HUMAN_SIGNALS)
+        self.gripper.open()
+        self.holding = False
+        for pose in ("zero_pose", "start_pose"):
+            shoulder, elbow, wrist = self.node.params[pose]
+            path = self.arm.interpolate((shoulder, elbow, wrist), self.behaviour.reset_s / 2)
+            yield from self.arm.follow(path)
+        return "receive_activation"
+
+    def receive_activation(self) -> Steps[str]:
+        """Wait for the human to start the task."""
+        signal = yield from self.poll_signal()
+        if signal in self.behaviour.activation:
+            if not self.behaviour.shared_polls:
+                self.polls = 0
+            return "move"
+        if self.polls >= self.behaviour.poll_limit:
+            self.outcome = "nobody activated the robot"
+            self.node.publish("timed_out")
+            return "done"
+        return "receive_activation"
+
+    def move(self) -> Steps[str]:
+        """Fetch the piece and hold it out to the human."""
+        found = self.sensors.piece()
+        if found is None:
+            self.outcome = "no piece in sight"
+            self.node.publish("timed_out")
+            return "done"
+        x, z = found
+        for height in APPROACH_HEIGHTS:
+            arrived = yield from self.go_to(x, z + GRIP_ABOVE_CENTRE + height)
+            if not arrived:
+                self.outcome = "no path to the piece"
+                self.node.publish("timed_out")
+                return "done"
+        self.gripper.close()
+        yield self.behaviour.grip_pause_s
+        self.holding = True
+        self.node.publish("grip_closed")
+        self.node.publish("robot_gripper", True)
+        yield self.behaviour.announce_pause_s
+        self.node.publish("pressure_e1", True)
+        yield self.behaviour.announce_pause_s
+        self.node.publish("robot_gripper", False)
+        x, z = HANDOVER_POINT
+        arrived = yield from self.go_to(x, z)
+        if not arrived:
+            self.outcome = "no path to the human"
+            self.node.publish("timed_out")
+            return "done"
+        yield self.behaviour.settle_s
+        return "send_signal"
+
+    def send_signal(self) -> Steps[str]:
+        """Tell the human that the piece can be taken."""
+        yield self.behaviour.inform_pause_s
+        self.node.publish("informed", latched=True)
+        yield self.behaviour.inform_pause_s
+        self.informed_at = self.node.now()
+        return "receive_readiness"
+
+    def receive_readiness(self) -> Steps[str]:
+        """Wait for the human to be ready to take the piece."""
+        signal = yield from self.poll_signal()
+        if signal in self.behaviour.readiness:
+            return "sense"
+        if self.polls >= self.behaviour.poll_limit:
+            self.outcome = "the human never was ready"
+            self.node.publish("timed_out")
+            return "done"
+        return "receive_readiness"
+
+    def sense(self) -> Steps[str]:
+        """Read the sensors until each of them has a reading."""
+        if self.node.now() == self.entered:
+            yield self.behaviour.sense_delay_s
+        yield self.behaviour.sense_poll_s
+        limit = self.behaviour.sense_limit_s
+        elapsed = self.node.now() - self.entered
+        if limit is None:
+            limit = self.node.params["timeout_time"]
+            elapsed = self.node.now() - self.informed_at
+        if elapsed > limit - CLOCK_TOLERANCE_S:
+            self.outcome = "the sensors gave no full reading in time"
+            self.node.publish("timed_out")
+            return "done"
+        reading = self.sensors.sense()
+        missing = None in (reading.gaze, reading.pressure, reading.location)
+        if missing and not self.behaviour.undefined_is_bad:
+            return "sense"
+        self.reading = reading
+        self.node.publish("sensed")
+        return "decide"
+
+    def decide(self) -> Steps[str]:
+        """Release the piece only if gaze, pressure and location are all right."""
+        self.node.publish("decide")
+        yield self.behaviour.decide_s
+        reading = self.reading
+        ready = reading is not None and all((reading.gaze, reading.pressure, reading.location))
+        self.node.publish("decided")
+        self.node.publish("gpl_is_ok", ready)
+        if ready:
+            return "release"
+        self.outcome = "the human was not ready"
+        self.node.publish("withheld")
+        return "done"
+
+    def release(self) -> Steps[str]:
+        """Let the piece go and give the human time to take it away."""
+        self.gripper.open()
+        yield self.behaviour.open_s
+        self.holding = False
+        self.node.publish("pressure_e1", False)
+        self.node.publish("resetpiece")
+        self.node.publish("released")
+        self.outcome = "released"
+        yield self.behaviour.release_s
+        return "done"
+
+    def done(self) -> Steps[str]:
+        """End the task; a piece that was not released stays in the gripper."""
+        self.node.publish("done")
+        yield 0.0
+        return END
+
+    # --- parts of states ---------------------------------------------------------------------
+
+    def poll_signal(self) -> Steps[str | None]:
+        """Wait for one poll period and read the human's signal, if there is one."""
+        if self.behaviour.resubscribes:
+            self.node.subscribe(HUMAN_SIGNALS)
+        yield self.behaviour.poll_s
+        self.polls += 1
+        message = self.node.receive(HUMAN_SIGNALS)
+        if message is None:
+            return None
+        if self.behaviour.only_fresh and message.stamp < self.entered:
+            return None
+        return str(message.value)
+
+    def go_to(self, x: float, z: float) -> Steps[bool]:
+        """Plan a path of the grip to a point and follow it; tell whether it got there."""
+        for _ in range(PLAN_ATTEMPTS):
+            path = yield from self.arm.plan(x, z)
+            if path is not None:
+                yield from self.arm.follow(path)
+                return True
+        return False

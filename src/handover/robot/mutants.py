@@ -1,0 +1,94 @@
+"""Robots with one known fault each: what a testbench has to find."""
+
+from __future__ import annotations
+
+from handover.robot.handover import END, HandoverRobot
+from handover.robot.ports import Steps
+
+
+class ReleasesAnyway(HandoverRobot):
+    """Decides without looking at the sensors."""
+
+    def decide(self) -> Steps[str]:
+        """Decide as always, then release whatever was decided."""
+        yield from super().decide()
+        return "release"
+
+
+class IgnoresPressure(HandoverRobot):
+    """Takes gaze and location for enough."""
+
+    def decide(self) -> Steps[str]:
+        """Release if gaze and location are all right."""
+        next_state = yield from super().decide()
+        reading = self.reading
+        return "release" if reading and reading.gaze and reading.location else next_state
+
+
+class ForgetsToRelease(HandoverRobot):
+    """Decides to release and then does nothing."""
+
+    def release(self) -> Steps[str]:
+        """Wait without opening the gripper."""
+        yield self.behaviour.release_s
+        return "done"
+
+
+class ReleasesLate(HandoverRobot):
+    """Opens the gripper four seconds after the decision."""
+
+    def release(self) -> Steps[str]:
+        """Hesitate, then release."""
+        yield 4.0
+        return (yield from super().release())
+
+
+class NeverDecides(HandoverRobot):
+    """Waits for a better reading for ever."""
+
+    def sense(self) -> Steps[str]:
+        """Look at the sensors and never be content."""
+        yield self.behaviour.sense_poll_s
+        self.sensors.sense()
+        return "sense"
+
+
+class WaitsForEver(HandoverRobot):
+    """Never gives up waiting for the human."""
+
+    def poll_signal(self) -> Steps[str | None]:
+        """Poll without counting."""
+        signal = yield from super().poll_signal()
+        self.polls = 0
+        return signal
+
+
+class EndsSilently(HandoverRobot):
+    """Gives up without telling anybody."""
+
+    def receive_activation(self) -> Steps[str]:
+        """Wait for a single poll and leave."""
+        yield self.behaviour.poll_s
+        return END
+
+
+class Crashes(HandoverRobot):
+    """Divides by zero when it should sense."""
+
+    def sense(self) -> Steps[str]:
+        """Crash."""
+        yield self.behaviour.sense_poll_s / (self.polls - self.polls)
+        return "decide"
+
+
+MUTATIONS: dict[str, type[HandoverRobot]] = {
+    "crashes": Crashes,
+    "ends-silently": EndsSilently,
+    "forgets-to-release": ForgetsToRelease,
+    "ignores-pressure": IgnoresPressure,
+    "never-decides": NeverDecides,
+    "releases-anyway": ReleasesAnyway,
+    "releases-late": ReleasesLate,
+    "waits-for-ever": WaitsForEver,
+}
+"""The mutated robots by name."""

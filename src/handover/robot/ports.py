@@ -1,0 +1,96 @@
+"""What the robot's code expects around it: a bus, an arm, a gripper, sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping
+from typing import Any, Protocol, TypeVar
+
+Result = TypeVar("Result")
+Steps = Generator[float, None, Result]
+"""A blocking call: it waits by yielding seconds, and returns a result in the end."""
+
+Path = TypeVar("Path")
+"""Whatever the arm's planner makes and the arm follows."""
+
+
+class Message(Protocol):
+    """A received message."""
+
+    @property
+    def value(self) -> bool | float | str | None:
+        """What it says; `None` if it only says that something happened."""
+
+    @property
+    def stamp(self) -> float:
+        """When it was published, seconds."""
+
+
+class Node(Protocol):
+    """The robot's connection to the message bus."""
+
+    @property
+    def params(self) -> Mapping[str, Any]:
+        """What the launch file gives to the robot."""
+
+    def now(self) -> float:
+        """Seconds since the start."""
+
+    def publish(
+        self, topic: str, value: bool | float | str | None = None, *, latched: bool = False
+    ) -> None:
+        """Publish a message; a latched one can be read later, too."""
+
+    def subscribe(self, topic: str) -> None:
+        """Subscribe to a topic."""
+
+    def receive(self, topic: str) -> Message | None:
+        """The topic's latched message, if there is one."""
+
+
+class Arm(Protocol[Path]):
+    """Plans and follows paths of the gripper."""
+
+    def plan(self, x: float, z: float) -> Steps[Path | None]:
+        """Find a path of the grip to a point (metres), gripper down; `None`: there is none."""
+
+    def interpolate(self, joints: tuple[float, float, float], duration: float) -> Path:
+        """A path to joint angles (rad) that takes so many seconds."""
+
+    def follow(self, path: Path) -> Steps[None]:
+        """Move along a path; returns when it is over."""
+
+
+class Gripper(Protocol):
+    """Opens and closes; both return at once."""
+
+    def open(self) -> None:
+        """Begin to open."""
+
+    def close(self) -> None:
+        """Begin to close, and go on pressing."""
+
+
+class Reading(Protocol):
+    """One reading of the sensors; `None`: this one has nothing to say yet."""
+
+    @property
+    def gaze(self) -> bool | None:
+        """Whether the human looks at the piece."""
+
+    @property
+    def pressure(self) -> bool | None:
+        """Whether robot and human both hold the piece."""
+
+    @property
+    def location(self) -> bool | None:
+        """Whether the human's hand is near the piece."""
+
+
+class Sensors(Protocol):
+    """The camera, the trackers of the human, and the pressure at the fingers."""
+
+    def piece(self) -> tuple[float, float] | None:
+        """Where the piece is, metres; `None`: not in sight."""
+
+    def sense(self) -> Reading:
+        """Read gaze, pressure and location."""

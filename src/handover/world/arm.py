@@ -1,0 +1,138 @@
+"""The arm and the gripper as a robot commands them: plan, follow, open, close."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from itertools import pairwise
+
+from handover.world import parameters as p
+from handover.world.kinematics import Joints, grip_point, joints_for
+from handover.world.motion import min_jerk
+from handover.world.scene import Scene
+
+CONTROL_S = p.CONTROL_STEPS * p.STEP_NS / p.NS
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """A path in joint space, at rest at both ends.
+
+    Attributes:
+        start: joint angles, rad.
+        goal: joint angles, rad.
+        duration: seconds.
+    """
+
+    start: Joints
+    goal: Joints
+    duration: float
+
+
+class Arm:
+    """Plans and follows paths; its motors are written only when their command changes.
+
+    Args:
+        scene: where the motors are.
+        rng: draws the planner's latency.
+        wake: called with the seconds for which the scene is going to move.
+    """
+
+    def __init__(self, scene: Scene, rng: random.Random, wake: Callable[[float], None]) -> None:
+        self._scene = scene
+        self._rng = rng
+        self._wake = wake
+        self._goal = self.joints()
+        self._path: Trajectory | None = None
+        self._path_s = 0.0
+        self._rates = [0.0, 0.0, 0.0]
+
+    def joints(self) -> Joints:
+        """The joint angles as they are, rad."""
+        upper, fore, palm = (link.angle for link in self._scene.links)
+        return upper, fore - upper, palm - fore
+
+    def plan(self, x: float, z: float) -> Generator[float, None, Trajectory | None]:
+        """Find a path for the grip to a point, gripper down; takes the planner's time.
+
+        Returns:
+            `None` if there is no path.
+        """
+        yield self._rng.uniform(*p.PLAN_LATENCY_S)
+        goal = joints_for(x, z)
+        return None if goal is None else self._path_to(goal)
+
+    def interpolate(self, joints: Joints, duration: float) -> Trajectory:
+        """A path to joint angles, in a given time and without planning."""
+        return Trajectory(self.joints(), joints, duration)
+
+    def follow(self, path: Trajectory) -> Generator[float, None, None]:
+        """Move along a path; returns when it is over."""
+        self._path, self._path_s = path, 0.0
+        self._goal = path.goal
+        self._wake(path.duration)
+        yield path.duration
+
+    def control(self) -> None:
+        """Set the motors so that the next control step ends on the path."""
+        wanted = self._goal
+        path = self._path
+        if path is not None:
+            self._path_s += CONTROL_S
+            share = min_jerk(self._path_s / path.duration)
+            a, b = path.start, path.goal
+            wanted = (
+                a[0] + (b[0] - a[0]) * share,
+                a[1] + (b[1] - a[1]) * share,
+                a[2] + (b[2] - a[2]) * share,
+            )
+            if self._path_s >= path.duration:
+                self._path = None
+        for index, (motor, want, have) in enumerate(
+            zip(self._scene.joint_motors, wanted, self.joints(), strict=True)
+        ):
+            error = want - have
+            rate = -error / CONTROL_S if abs(error) > 1e-6 else 0.0
+            if rate != self._rates[index]:
+                self._rates[index] = rate
+                motor.rate = rate
+
+    def _path_to(self, goal: Joints) -> Trajectory:
+        start = self.joints()
+        steps = 40
+        points = [
+            grip_point(
+                (
+                    start[0] + (goal[0] - start[0]) * share,
+                    start[1] + (goal[1] - start[1]) * share,
+                    start[2] + (goal[2] - start[2]) * share,
+                )
+            )
+            for share in (min_jerk(i / steps) for i in range(steps + 1))
+        ]
+        fastest = max(math.dist(a, b) for a, b in pairwise(points)) * steps
+        return Trajectory(start, goal, max(p.SHORTEST_MOTION_S, fastest / p.TOOL_SPEED_LIMIT))
+
+
+class Gripper:
+    """Two fingers that turn with a limited torque until something or their stop holds them."""
+
+    def __init__(self, scene: Scene, wake: Callable[[float], None]) -> None:
+        self._scene = scene
+        self._wake = wake
+        self._travel_s = (p.FINGER_OPEN - p.FINGER_OVERCLOSED) / p.FINGER_SPEED
+
+    def open(self) -> None:
+        """Begin to open both fingers."""
+        self._turn(-p.FINGER_SPEED)
+
+    def close(self) -> None:
+        """Begin to close both fingers; they go on pressing."""
+        self._turn(p.FINGER_SPEED)
+
+    def _turn(self, closing_speed: float) -> None:
+        left, right = self._scene.finger_motors
+        left.rate, right.rate = closing_speed, -closing_speed
+        self._wake(self._travel_s)

@@ -1,0 +1,106 @@
+"""The message bus: topics, latched messages, and publishers that live and end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from handover.world.parameters import LATCH_LINGER_S, NS
+from handover.world.schedule import Schedule
+
+Value = bool | float | str | None
+"""What a message says; `None` says only that it was published: an event."""
+
+Tap = Callable[[str, Value], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A message as a node receives it.
+
+    Attributes:
+        value: what it says.
+        stamp: when it was published, seconds.
+    """
+
+    value: Value
+    stamp: float
+
+
+class Bus:
+    """Carries messages between nodes; every message passes the taps at its instant."""
+
+    def __init__(self, schedule: Schedule) -> None:
+        self.schedule = schedule
+        self._latched: dict[str, tuple[Node, Message]] = {}
+        self._taps: list[Tap] = []
+
+    def tap(self, tap: Tap) -> None:
+        """Call `tap(topic, value)` with every message from now on."""
+        self._taps.append(tap)
+
+    def publish(self, publisher: Node, topic: str, value: Value, *, latched: bool) -> None:
+        """Carry one message; a latched one replaces the topic's latched message."""
+        if latched:
+            stamp = self.schedule.now_ns / NS
+            self._latched[topic] = (publisher, Message(value, stamp))
+        for tap in self._taps:
+            tap(topic, value)
+
+    def latched(self, topic: str) -> Message | None:
+        """The topic's latched message while its publisher can still hand it out."""
+        entry = self._latched.get(topic)
+        if entry is None:
+            return None
+        publisher, message = entry
+        return message if publisher.hands_out(self.schedule.now_ns) else None
+
+
+class Node:
+    """One process on the bus: publishes, subscribes, reads, and ends.
+
+    Attributes:
+        params: what the launch file gives to it.
+    """
+
+    def __init__(self, bus: Bus, params: Mapping[str, Any], poll_growth_s: float) -> None:
+        self.params = params
+        self._bus = bus
+        self._growth_s = poll_growth_s
+        self._subscriptions: dict[str, int] = {}
+        self._owed_s = 0.0
+        self._ended_ns: int | None = None
+
+    def now(self) -> float:
+        """Seconds since the start."""
+        return self._bus.schedule.now_ns / NS
+
+    def publish(self, topic: str, value: Value = None, *, latched: bool = False) -> None:
+        """Publish a message; a latched one can be read while this node lives."""
+        self._bus.publish(self, topic, value, latched=latched)
+
+    def subscribe(self, topic: str) -> None:
+        """Subscribe once more; subscriptions that pile up slow every read of the topic down."""
+        self._subscriptions[topic] = self._subscriptions.get(topic, 0) + 1
+
+    def receive(self, topic: str) -> Message | None:
+        """The topic's latched message, if this node subscribed and the publisher still lives."""
+        count = self._subscriptions.get(topic, 0)
+        if count == 0:
+            return None
+        self._owed_s += (count - 1) * self._growth_s
+        return self._bus.latched(topic)
+
+    def take_owed_s(self) -> float:
+        """The seconds by which reads have slowed this node down since the last call."""
+        owed, self._owed_s = self._owed_s, 0.0
+        return owed
+
+    def end(self) -> None:
+        """End the process; its latched messages soon vanish."""
+        self._ended_ns = self._bus.schedule.now_ns
+
+    def hands_out(self, now_ns: int) -> bool:
+        """Whether latched messages of this node can be read at an instant."""
+        return self._ended_ns is None or now_ns <= self._ended_ns + round(LATCH_LINGER_S * NS)

@@ -1,0 +1,72 @@
+"""A program as a generator that waits by yielding seconds, run by the schedule."""
+
+from __future__ import annotations
+
+import math
+import traceback
+from collections.abc import Callable, Generator
+from contextlib import AbstractContextManager, nullcontext
+
+from handover.world.bus import Node
+from handover.world.parameters import NS
+from handover.world.schedule import Schedule
+
+Program = Generator[float, None, None]
+
+STALL_LIMIT = 10_000
+"""Steps at one instant after which a program is taken to hang."""
+
+
+class Process:
+    """Runs one program on one node, from now until it returns, crashes or the time is over.
+
+    Attributes:
+        error: what crashed it, as one line with its place, or `None`.
+    """
+
+    def __init__(
+        self,
+        schedule: Schedule,
+        node: Node,
+        program: Program,
+        around: Callable[[], AbstractContextManager[object]] = nullcontext,
+    ) -> None:
+        self.error: str | None = None
+        self._schedule = schedule
+        self._node = node
+        self._program = program
+        self._around = around
+        self._steps_now = 0
+        schedule.at(schedule.now_ns, self._step)
+
+    def _step(self) -> None:
+        try:
+            with self._around():
+                wait_s = next(self._program)
+            wait_ns = self._checked_ns(wait_s)
+        except StopIteration:
+            self._node.end()
+            return
+        except Exception as error:  # noqa: BLE001  # whatever the code under test does is a result
+            self.error = describe(error)
+            self._program.close()
+            self._node.end()
+            return
+        self._schedule.at(self._schedule.now_ns + wait_ns, self._step)
+
+    def _checked_ns(self, wait_s: float) -> int:
+        is_number = isinstance(wait_s, int | float) and not isinstance(wait_s, bool)
+        if not (is_number and math.isfinite(wait_s) and wait_s >= 0):
+            raise ValueError(f"a program waits by yielding seconds ≥ 0, not {wait_s!r}")
+        wait_ns = round((wait_s + self._node.take_owed_s()) * NS)
+        self._steps_now = 0 if wait_ns else self._steps_now + 1
+        if self._steps_now > STALL_LIMIT:
+            raise RuntimeError(f"no time passed in {STALL_LIMIT} steps: the program hangs")
+        return wait_ns
+
+
+def describe(error: Exception) -> str:
+    """An exception as one line: type, text, and the innermost place."""
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" ({frames[-1].name}, line {frames[-1].lineno})" if frames else ""
+    return f"{type(error).__name__}: {error}{place}"

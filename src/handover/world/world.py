@@ -1,0 +1,161 @@
+"""The simulated world: time, physics and messages, advanced together."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+
+from handover.world import parameters as p
+from handover.world import scene as scenes
+from handover.world import sensing
+from handover.world.arm import Arm, Gripper
+from handover.world.bus import Bus, Value
+from handover.world.human import Human
+from handover.world.poses import Poses
+from handover.world.recorder import Recorder, SampleValue
+from handover.world.schedule import Schedule
+
+CLOSINGS = ("grip_closed", "robot_gripper")
+"""Topics at whose messages the hand's distance is measured, whatever else is going on."""
+
+
+class World:
+    """Robot body, human body and bus in one timeline of integer nanoseconds.
+
+    Physics is stepped while something moves; over rest it jumps to the next scheduled call.
+
+    Args:
+        rng: draws what the world leaves to chance (the planner's latency).
+        jump: `False` steps the physics over rest, too.
+        record_poses: keep a frame at 10 Hz while something moves.
+        observer: called with each whole sample.
+
+    """
+
+    def __init__(
+        self,
+        rng: random.Random,
+        *,
+        jump: bool = True,
+        record_poses: bool = False,
+        observer: Callable[[int, dict[str, SampleValue]], None] | None = None,
+    ) -> None:
+        self.schedule = Schedule()
+        self.bus = Bus(self.schedule)
+        self.recorder = Recorder(observer)
+        self.scene = scenes.build(p.ZERO_POSE)
+        self.arm = Arm(self.scene, rng, self._wake)
+        self.gripper = Gripper(self.scene, self._wake)
+        self.human = Human(self.scene, self._wake, self._after)
+        self._stepped = 0
+        self._step = 0
+        self._planned_until = 0
+        self._at_rest = False
+        self._jump = jump
+        self._frames: list[tuple[int, tuple[float, ...]]] | None = [] if record_poses else None
+        self.bus.tap(self._record)
+        self._wake(0.0)
+        self._watch()
+
+    def run(self, horizon_ns: int) -> None:
+        """Make all scheduled calls up to an instant and end the recording there."""
+        while (t_ns := self.schedule.next_ns()) is not None and t_ns <= horizon_ns:
+            self._advance(t_ns)
+            self.schedule.run_next()
+        self._advance(horizon_ns)
+        self.recorder.finish()
+
+    def sense(self) -> sensing.Reading:
+        """Read the sensors as the robot does; the reading is published, nothing as false."""
+        reading = sensing.read(self.scene, self.human)
+        now = self.schedule.now_ns
+        self.recorder.signal(now, "gaze_ok", bool(reading.gaze))
+        self.recorder.signal(now, "pressure_ok", bool(reading.pressure))
+        self.recorder.signal(now, "location_ok", bool(reading.location))
+        return reading
+
+    def piece(self) -> tuple[float, float]:
+        """Where the robot's camera sees the piece, (x, z) in metres."""
+        x, z = self.scene.piece.position
+        return x, z
+
+    @property
+    def stepped_s(self) -> float:
+        """Seconds for which the physics was stepped."""
+        return self._stepped * p.STEP_NS / p.NS
+
+    def poses(self) -> Poses | None:
+        """The recorded frames, if they were asked for."""
+        if self._frames is None:
+            return None
+        return Poses(scenes.BODIES, scenes.outlines(), tuple(self._frames))
+
+    def _advance(self, t_ns: int) -> None:
+        """Bring the physics to the last step at or before an instant."""
+        target = t_ns // p.STEP_NS
+        while self._step < target:
+            if self._at_rest and self._jump:
+                self._step = target
+                return
+            if self._step % p.CONTROL_STEPS == 0:
+                self.arm.control()
+                self.human.control()
+            self.scene.space.step(p.STEP_NS / p.NS)
+            self._step += 1
+            self._stepped += 1
+            if self._step % p.WATCH_STEPS == 0 and not self._at_rest:
+                self._at_rest = self._step >= self._planned_until and self._is_still()
+                self._watch()
+
+    def _wake(self, seconds: float) -> None:
+        """The scene is going to move for so long."""
+        until = self._now_step() + round((seconds + p.SETTLE_S) * p.NS) // p.STEP_NS
+        self._planned_until = max(self._planned_until, until)
+        self._at_rest = False
+
+    def _now_step(self) -> int:
+        return self.schedule.now_ns // p.STEP_NS
+
+    def _after(self, seconds: float, call: Callable[[], None]) -> None:
+        self.schedule.at(self.schedule.now_ns + round(seconds * p.NS), call)
+
+    def _is_still(self) -> bool:
+        scene = self.scene
+        return all(
+            body.velocity.length < p.REST_SPEED and abs(body.angular_velocity) < 10 * p.REST_SPEED
+            for body in (scene.piece, scene.hand, scene.links[2], *scene.fingers)
+        )
+
+    def _watch(self) -> None:
+        """Publish distance and speed, and keep a frame."""
+        t_ns = self._step * p.STEP_NS
+        self.recorder.refresh(t_ns, "hand_distance", round(sensing.hand_distance(self.scene), 4))
+        speed = 0.0 if self._at_rest else round(sensing.tool_speed(self.scene), 3)
+        self.recorder.signal(t_ns, "tool_speed", speed)
+        if self._frames is not None:
+            frame = [
+                value
+                for body in scenes.bodies(self.scene)
+                for value in (
+                    round(body.position.x, 4),
+                    round(body.position.y, 4),
+                    round(body.angle, 4),
+                )
+            ]
+            self._frames.append((t_ns, tuple(frame)))
+
+    def _record(self, topic: str, value: Value) -> None:
+        now = self.schedule.now_ns
+        if topic in CLOSINGS and value is not False:
+            x, z = sensing.hand_offset(self.scene)
+            self.recorder.refresh(now, "hand_distance", round(sensing.hand_distance(self.scene), 4))
+            self.recorder.signal(now, "hand_offset_x", round(x, 4))
+            self.recorder.signal(now, "hand_offset_z", round(z, 4))
+        if topic == "robot_state":
+            return
+        if value is None:
+            self.recorder.event(now, topic)
+        elif isinstance(value, str):
+            self.recorder.event(now, value)
+        else:
+            self.recorder.signal(now, topic, value)
