@@ -61,7 +61,7 @@ def obligation(requirement: Requirement, start: Start, truths: Truths) -> Truth:
 
     Source: SEMANTICS, section 3; decision record 1 (`whenever`).
     """
-    if requirement.mode is Mode.UPON or _at_end(requirement):
+    if requirement.mode is Mode.UPON or is_upon_end(requirement):
         return truths.truth(requirement.consequent, start.position)
     ended = start.stop is not None and start.stop < truths.known
     last = start.stop if ended and start.stop is not None else truths.known
@@ -119,7 +119,7 @@ def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
 
 def _starts(requirement: Requirement, instance: _Instance) -> Iterator[Start]:
     word = instance.word
-    if _at_end(requirement):
+    if is_upon_end(requirement):
         if word.letters:
             yield Start(word, len(word.letters) - 1, {})
         return
@@ -158,6 +158,7 @@ def _captures(requirement: Requirement, instance: _Instance, start: Start) -> di
     return captured
 
 
-def _at_end(requirement: Requirement) -> bool:
+def is_upon_end(requirement: Requirement) -> bool:
+    """Whether the requirement is judged when the trace is finished."""
     trigger = requirement.trigger
     return isinstance(trigger, BoundAtom) and trigger.bound is Bound.END

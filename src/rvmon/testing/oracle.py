@@ -12,13 +12,11 @@ from typing import Protocol
 
 from rvmon.errors import TraceError
 from rvmon.spec.checked import (
-    Bound,
-    BoundAtom,
     CheckedSpec,
     EndPolicy,
     Requirement,
 )
-from rvmon.testing.attempts import Start, obligation, starts
+from rvmon.testing.attempts import Start, is_upon_end, obligation, starts
 from rvmon.testing.kleene import Truth
 from rvmon.testing.truths import Rest, Truths
 from rvmon.testing.word import Word
@@ -131,7 +129,7 @@ def _record(
     else:
         verdict, decision = _settle(requirement, start)
         instant = None if verdict is Verdict.INCONCLUSIVE else end
-    if isinstance(requirement.trigger, BoundAtom) and requirement.trigger.bound is Bound.END:
+    if is_upon_end(requirement):
         triggered = end
         instant = None if instant is None else end
     return Attempt(

@@ -1,0 +1,97 @@
+"""Engines against the oracle on random specs and traces: verdicts and decision instants.
+
+    python benchmarks/differential.py --pairs 10000 --seed 1 --workers 2
+
+Prints how the attempts were decided and every disagreement, shrunk; exits 1 if there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from functools import partial
+
+from rvmon.session import Spec
+from rvmon.spec.checked import TimeModel
+from rvmon.testing.case import Case
+from rvmon.testing.differential import Tally, campaign
+from rvmon.testing.drive import Monitored
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+
+MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeModel.CLOCKED}
+FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale")
+
+
+def make_monitor(engine: str, case: Case) -> Monitored:
+    """A monitor of the public interface."""
+    return Spec(case.spec).monitor(engine=engine, sources=case.names)
+
+
+def run_part(
+    engine: str, profile: Profile, traces: TraceProfile, every: int, seeds: list[str]
+) -> Tally:
+    """Judge the cases of some seeds; runs in a worker."""
+    return campaign(partial(make_monitor, engine), seeds, profile, traces, online_every=every)
+
+
+def parse(argv: list[str]) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--pairs", type=int, default=1_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
+    parser.add_argument("--engine", default="auto")
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--depth", type=int, default=4)
+    parser.add_argument("--online-every", type=int, default=10, metavar="N")
+    parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
+    parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
+    parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
+    return parser.parse_args(argv)
+
+
+def main(argv: list[str]) -> int:
+    """Run the campaign and print its figures."""
+    options = parse(argv)
+    profile = Profile(time=MODELS.get(options.time or ""), depth=options.depth)
+    profile = replace(profile, **dict.fromkeys(options.without, False))
+    traces = TraceProfile(unknowns=not options.known)
+    seeds = [f"{options.seed}/{number}" for number in range(options.pairs)]
+    size = 250
+    parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]
+    work = partial(run_part, options.engine, profile, traces, options.online_every)
+    began = time.perf_counter()
+    total = Tally()
+    if options.workers > 1:
+        with ProcessPoolExecutor(options.workers) as pool:
+            for part in pool.map(work, parts):
+                total.add(part)
+    else:
+        for seeds_of_part in parts:
+            total.add(work(seeds_of_part))
+    show(total, options, time.perf_counter() - began)
+    return 1 if total.disagreements else 0
+
+
+def show(total: Tally, options: argparse.Namespace, seconds: float) -> None:
+    """Print the figures, then the disagreements."""
+    attempts = sum(total.attempts.values())
+    share = {name: f"{100 * n / max(attempts, 1):.1f} %" for name, n in total.attempts.items()}
+    decided = sum(n for name, n in total.attempts.items() if name != "I")
+    print(f"engine {options.engine}, time {options.time or 'all'}, seed {options.seed}")
+    print(f"pairs {total.pairs}, attempts {attempts}, in {seconds:.0f} s")
+    print("verdicts  ", ", ".join(f"{name} {share[name]}" for name in sorted(share)))
+    print("settled by", ", ".join(f"{name} {n}" for name, n in total.decisions.most_common()))
+    on_bound = 100 * total.on_bound / max(decided, 1)
+    print(f"on a bound {total.on_bound} of {decided} decided ({on_bound:.1f} %)")
+    print(f"disagreements {len(total.disagreements)}")
+    for text in total.disagreements[: options.show]:
+        print("\n" + "=" * 72 + "\n" + text)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,168 @@
+"""An engine against the oracle on random cases; a disagreement is shrunk and shown."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+from rvmon.spec.checked import CheckedSpec
+from rvmon.testing.attempts import is_upon_end
+from rvmon.testing.case import Case
+from rvmon.testing.compare import differences, outcomes
+from rvmon.testing.drive import Monitored, drive
+from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate_trace import TraceProfile, random_trace
+from rvmon.testing.oracle import evaluate
+from rvmon.testing.show import show_case
+from rvmon.testing.shrink import shrink
+from rvmon.testing.walk import intervals
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
+
+MakeMonitor = Callable[[Case], Monitored]
+"""A fresh monitor for the spec and the sources of a case."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """What a campaign found; tallies of parts add up.
+
+    Attributes:
+        pairs: cases judged.
+        attempts: by verdict.
+        decisions: by what settled them.
+        on_bound: attempts that the prefix decided at a window's last instant, or a tick later.
+        disagreements: one text each, with seed, differences and the shrunk case.
+    """
+
+    pairs: int = 0
+    attempts: Counter[str] = field(default_factory=Counter)
+    decisions: Counter[str] = field(default_factory=Counter)
+    on_bound: int = 0
+    disagreements: list[str] = field(default_factory=list)
+
+    def add(self, other: Tally) -> None:
+        """Take in the figures of another part."""
+        self.pairs += other.pairs
+        self.attempts += other.attempts
+        self.decisions += other.decisions
+        self.on_bound += other.on_bound
+        self.disagreements += other.disagreements
+
+
+def case_of(seed: object, profile: Profile, traces: TraceProfile) -> Case:
+    """The random case of a seed; the same for ever.
+
+    >>> case_of(1, Profile(), TraceProfile()) == case_of(1, Profile(), TraceProfile())
+    True
+    """
+    dice = random.Random(str(seed))  # noqa: S311 - a seed is meant to be repeated
+    return random_trace(dice, random_spec(dice, profile), traces)
+
+
+def judge(case: Case) -> Report:
+    """The oracle's report on a case."""
+    return evaluate(case.spec, case.samples, end=case.end, advances=case.advances, names=case.names)
+
+
+def disagreements(case: Case, make: MakeMonitor, *, online: bool = False) -> list[str]:
+    """How a monitor departs from the oracle on a case; empty if it does not.
+
+    Args:
+        case: what to judge.
+        make: gives a fresh monitor.
+        online: whether to check as well that each call returned what could be decided by then,
+            no sooner and no later; costs one run of the oracle per action.
+    """
+    expected = judge(case)
+    try:
+        actual, returned = drive(make(case), case)
+    except Exception as error:  # noqa: BLE001 - whatever an engine raises is a finding
+        return [f"raised {type(error).__name__}: {error}"]
+    found = differences(expected, actual)
+    if online and not found:
+        found = _late_or_early(case, returned)
+    return found
+
+
+def _late_or_early(case: Case, returned: Sequence[Sequence[Attempt]]) -> list[str]:
+    told: set[tuple[str, int]] = set()
+    for count, attempts in enumerate(returned, start=1):
+        prefix = Case(case.spec, case.actions[:count], None, case.names)
+        report = judge(prefix)
+        at_end = {a.id for a in case.spec.requirements.values() if is_upon_end(a)}
+        due = {
+            (a.requirement, a.number)
+            for a in report.attempts
+            if a.decision is Decision.PREFIX and a.requirement not in at_end
+        }
+        now = {(a.requirement, a.number) for a in attempts}
+        if now != due - told:
+            return [f"action {count} decides {sorted(due - told)}, returned {sorted(now)}"]
+        told |= now
+        wanted = outcomes(report)
+        for attempt in attempts:
+            key = (attempt.requirement, attempt.number)
+            if (attempt.decided, attempt.verdict) != (wanted[key].decided, wanted[key].verdict):
+                return [f"action {count} returned {attempt}, expected {wanted[key]}"]
+    return []
+
+
+def campaign(
+    make: MakeMonitor,
+    seeds: Iterable[object],
+    profile: Profile,
+    traces: TraceProfile,
+    *,
+    online_every: int = 10,
+) -> Tally:
+    """Judge the case of each seed with an engine and the oracle.
+
+    Args:
+        make: gives a fresh monitor.
+        seeds: whatever tells cases apart.
+        profile: of the specs.
+        traces: of the traces.
+        online_every: in every so many-th case the return values of all calls are checked too;
+            0 for none.
+    """
+    tally = Tally()
+    for index, seed in enumerate(seeds):
+        case = case_of(seed, profile, traces)
+        online = online_every > 0 and index % online_every == 0
+        _count(tally, case)
+        found = disagreements(case, make, online=online)
+        if found:
+            shown = _shrunk(case, make, online)
+            tally.disagreements.append("\n".join([f"seed {seed}", *found, shown]))
+    return tally
+
+
+def _shrunk(case: Case, make: MakeMonitor, online: bool) -> str:
+    def disagree(smaller: Case) -> bool:
+        return bool(disagreements(smaller, make, online=online))
+
+    small = shrink(case, disagree)
+    return "\n".join(["shrunk:", *disagreements(small, make, online=online), show_case(small)])
+
+
+def _count(tally: Tally, case: Case) -> None:
+    tally.pairs += 1
+    for attempt in judge(case).attempts:
+        tally.attempts[attempt.verdict.value] += 1
+        tally.decisions[attempt.decision.value] += 1
+        tally.on_bound += decided_on_bound(case.spec, attempt)
+
+
+def decided_on_bound(spec: CheckedSpec, attempt: Attempt) -> bool:
+    """Whether an attempt was decided as a window (of an operator at its trigger) closed.
+
+    That is: b or b + 1 ticks after the trigger, for the b > 0 of an interval in the consequent.
+    """
+    if attempt.decision is not Decision.PREFIX or attempt.decided is None:
+        return False
+    after = attempt.decided - attempt.triggered
+    windows = intervals(spec.requirements[attempt.requirement].consequent)
+    return any(window.high and after in (window.high, window.high + 1) for window in windows)

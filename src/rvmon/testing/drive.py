@@ -1,0 +1,43 @@
+"""Lead a monitor through a case, as a program that uses it would."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+from rvmon.testing.case import Case
+from rvmon.trace.sample import Sample, Value
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+
+class Monitored(Protocol):
+    """The part of a monitor that is driven."""
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        """Take a sample."""
+
+    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
+        """Let time pass."""
+
+    def finish_ns(self, t_ns: int | None = None, /) -> Report:
+        """End the trace."""
+
+
+def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:
+    """Tell a monitor the actions of a case, then finish.
+
+    Args:
+        monitor: fresh, for the spec and the sources of the case.
+        case: what to tell.
+
+    Returns:
+        The report, and what each action returned.
+    """
+    returned = []
+    for action in case.actions:
+        if isinstance(action, Sample):
+            returned.append(monitor.step_ns(action.t, action.values))
+        else:
+            returned.append(monitor.advance_ns(action))
+    return monitor.finish_ns(case.end), returned
