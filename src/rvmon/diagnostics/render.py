@@ -1,0 +1,79 @@
+"""Findings as text: in full for people, one line each for tools, JSON for programs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Label
+from rvmon.diagnostics.snippet import snippet
+from rvmon.diagnostics.span import Source, Span
+
+
+def render_full(diagnostics: Sequence[Diagnostic]) -> str:
+    """Every finding with its places underlined and what mends it, a blank line between."""
+    return "\n\n".join(map(_full, diagnostics))
+
+
+def render_concise(diagnostics: Sequence[Diagnostic]) -> str:
+    """One line per finding: `file:line:column: error[code name]: message (help: …)`."""
+    return "\n".join(map(_concise, diagnostics))
+
+
+def render_json(diagnostics: Sequence[Diagnostic]) -> str:
+    """A JSON array of findings; lines and columns count from 1, offsets from 0."""
+    return json.dumps([_plain(diagnostic) for diagnostic in diagnostics], indent=2)
+
+
+def _full(diagnostic: Diagnostic) -> str:
+    lines = [_heading(diagnostic)]
+    for number, label in enumerate(diagnostic.spans):
+        arrow, mark = (":::", "-") if number else ("-->", "^")
+        lines.append(snippet(label.span, label.text, arrow=arrow, mark=mark))
+    if diagnostic.help:
+        lines.append(f"help: {diagnostic.help}")
+    return "\n".join(lines)
+
+
+def _heading(diagnostic: Diagnostic) -> str:
+    return f"{diagnostic.severity}[{diagnostic.code} {diagnostic.name}]: {_one_line(diagnostic.message)}"
+
+
+def _concise(diagnostic: Diagnostic) -> str:
+    place = ""
+    if diagnostic.spans:
+        span = diagnostic.spans[0].span
+        place = f"{span.source.name}:{span.line}:{span.column}: "
+    mend = f" (help: {_one_line(diagnostic.help)})" if diagnostic.help else ""
+    return f"{place}{_heading(diagnostic)}{mend}"
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split("\n"))
+
+
+def _plain(diagnostic: Diagnostic) -> dict[str, Any]:
+    return {
+        "code": diagnostic.code,
+        "name": diagnostic.name,
+        "severity": str(diagnostic.severity),
+        "message": diagnostic.message,
+        "spans": [_place(label) for label in diagnostic.spans],
+        "help": diagnostic.help,
+    }
+
+
+def _place(label: Label) -> dict[str, Any]:
+    span = label.span
+    return {
+        "file": span.source.name,
+        "start": _position(span.source, span.start),
+        "end": _position(span.source, span.end),
+        "text": label.text,
+    }
+
+
+def _position(source: Source, offset: int) -> dict[str, int]:
+    point = Span(source, offset, offset)
+    return {"line": point.line, "column": point.column, "offset": offset}

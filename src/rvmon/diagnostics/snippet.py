@@ -1,0 +1,66 @@
+"""A place in a text as people like to see it: file, line, and an underline."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from rvmon.diagnostics.span import Span
+
+WIDEST = 160
+"""Longer lines are cut to so many characters around the place."""
+
+
+def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^") -> str:
+    """The line of a place with the place underlined.
+
+    Args:
+        span: the place; of one that spans lines, the part on its first line is underlined.
+        remark: stands behind the underline.
+        arrow: leads to the file's name; other places of the same finding take `:::`.
+        mark: the character to underline with.
+
+    >>> from rvmon.diagnostics.span import Source
+    >>> print(snippet(Span(Source("a.rv", "upon sensd"), 5, 10)))
+      --> a.rv:1:6
+       |
+     1 | upon sensd
+       |      ^^^^^
+    """
+    text = span.source.text
+    first = text.rfind("\n", 0, span.start) + 1
+    stop = text.find("\n", span.start)
+    last = len(text) if stop < 0 else stop
+    end = min(max(span.end, span.start), last)
+    left = max(first, min(span.start - 40, last - WIDEST))
+    right = min(last, left + WIDEST)
+    head = ("…" if left > first else "") + _shown(text[left : span.start])
+    body = _shown(text[span.start : min(end, right)])
+    tail = _shown(text[min(end, right) : right]) + ("…" if right < last else "")
+    number = str(span.line)
+    width = max(len(number), 2)
+    gutter = " " * width
+    underline = " " * _width(head) + mark * max(_width(body), 1)
+    return "\n".join(
+        (
+            f"{gutter}{arrow} {span.source.name}:{number}:{span.column}",
+            f"{gutter} |",
+            f"{number:>{width}} | {head}{body}{tail}".rstrip(),
+            f"{gutter} | {underline}{' ' + remark if remark else ''}",
+        )
+    )
+
+
+def _shown(text: str) -> str:
+    """Tabs as one space, what does not print as the replacement character."""
+    return "".join(
+        " " if char in "\t " else char if char.isprintable() else "\N{REPLACEMENT CHARACTER}"
+        for char in text.rstrip("\r")
+    )
+
+
+def _width(text: str) -> int:
+    """Columns that a terminal gives to a text."""
+    return sum(
+        0 if unicodedata.combining(char) else 2 if unicodedata.east_asian_width(char) in "WF" else 1
+        for char in text
+    )
