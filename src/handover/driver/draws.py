@@ -15,14 +15,14 @@ class Draws:
 
     Attributes:
         human_start_s: when the human's script starts.
-        signal_lost: whether the human's first signal is lost.
+        connected: whether the human's signals reach the robot at all.
         timeout_time_s: the parameter of the legacy robot.
         poll_growth_s: how much each subscription slows a poll down.
         start_pose: joint angles after the reset, rad.
     """
 
     human_start_s: float
-    signal_lost: bool
+    connected: bool
     timeout_time_s: int
     poll_growth_s: float
     start_pose: Joints
@@ -38,7 +38,7 @@ def draw(seed: int, *, startup_loss: bool) -> Draws:
     reach = p.START_POSE_RANGE
     return Draws(
         human_start_s=rng.uniform(*p.HUMAN_START_S),
-        signal_lost=(rng.random() < p.STARTUP_LOSS) and startup_loss,
+        connected=rng.random() >= p.STARTUP_LOSS or not startup_loss,
         timeout_time_s=rng.randint(*p.TIMEOUT_TIME_S),
         poll_growth_s=rng.uniform(*p.POLL_GROWTH_S),
         start_pose=(

@@ -32,7 +32,7 @@ def run_test(
         test: what the human does, and the seed of everything random.
         robot: `"correct"` or `"legacy"`; default: the robot that the test names, else correct.
         mutation: default: the one that the test names.
-        startup_loss: `False` switches the fitted loss of the first signal off in any case.
+        startup_loss: `False` switches the fitted loss of signals off in any case.
         jump: skip the physics while nothing moves; `False` steps all of it.
         record_poses: keep the scene over time for an animation.
         observer: called with each whole sample, in time order.
@@ -84,7 +84,7 @@ def run_test(
         world.human,
         stream(test.seed, "postures"),
         start_s=draws.human_start_s,
-        first_lost=draws.signal_lost,
+        connected=draws.connected,
     )
     process = Process(world.schedule, robot_node, machine.run(), around_robot_step or nullcontext)
     Process(world.schedule, human_node, script.run())

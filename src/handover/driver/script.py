@@ -30,7 +30,7 @@ class Script:
         human: the body that takes the postures.
         rng: draws postures from their ranges.
         start_s: seconds until the script begins.
-        first_lost: whether the first signal is lost.
+        connected: whether signals reach the robot.
     """
 
     def __init__(
@@ -41,14 +41,14 @@ class Script:
         rng: random.Random,
         *,
         start_s: float,
-        first_lost: bool,
+        connected: bool,
     ) -> None:
         self._actions = actions
         self._node = node
         self._human = human
         self._rng = rng
         self._start_s = start_s
-        self._lose_next = first_lost
+        self._connected = connected
 
     def run(self) -> Program:
         """Wait for the process to be up, then play all actions, or up to a wait in vain."""
@@ -72,9 +72,7 @@ class Script:
 
     def _send(self, signal: str) -> Program:
         yield SEND_DELAY_S
-        if self._lose_next:
-            self._lose_next = False
-        else:
+        if self._connected:
             self._node.publish(HUMAN_SIGNALS, signal, latched=True)
         yield SEND_PAUSE_S
 

@@ -60,7 +60,7 @@ class AbstractTest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
         robot: the robot it is written for; `None`: any.
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
         horizon_s: simulated seconds.
-        startup_loss: whether the first signal may get lost while the processes start.
+        startup_loss: whether the human's signals may get lost as the processes start.
         faults: of the sensors, names of `handover.world.sensing.FAULTS`.
         expected: verdicts by requirement, for tests that know them.
     """

@@ -1,0 +1,102 @@
+"""Tests made by chance: pseudorandom sequences, and those constrained to follow the protocol."""
+
+from __future__ import annotations
+
+import random
+from typing import get_args
+
+from handover.generator.abstract_test import (
+    AbstractTest,
+    Action,
+    HumanSignal,
+    Parameter,
+    ReceiveSignal,
+    RobotSignal,
+    SendSignal,
+    SetParam,
+)
+
+LENGTH = (4, 15)
+"""Actions of a pseudorandom test, uniform."""
+
+TAIL_LENGTH = (1, 10)
+"""Random actions after the prefix of a constrained test, uniform."""
+
+TIME = (1, 100)
+"""Units of 0.05 s of a wait, uniform."""
+
+PREFIX: tuple[Action, ...] = (
+    SendSignal("activateRobot"),
+    SetParam("time", 40),
+    ReceiveSignal("informHumanOfHandoverStart"),
+    SendSignal("humanIsReady"),
+    SetParam("time", 10),
+    SendSignal("setv"),
+)
+"""The protocol up to the human's readiness, which every constrained test begins with."""
+
+_HUMAN_SIGNALS: tuple[HumanSignal, ...] = get_args(HumanSignal)
+_ROBOT_SIGNALS: tuple[RobotSignal, ...] = get_args(RobotSignal)
+_PARAMETERS: tuple[Parameter, ...] = get_args(Parameter)
+
+
+def pseudorandom(count: int, seed: int) -> tuple[AbstractTest, ...]:
+    """Tests of uniformly random actions, whether or not they make sense together.
+
+    Source: Araiza-Illan et al. 2015, "Coverage-Driven Verification", section 3.3; lengths and
+    alphabet as in its public testbench.
+
+    >>> [len(test.actions) for test in pseudorandom(3, seed=1)]
+    [13, 11, 9]
+    """
+    return tuple(_pseudorandom_test(_rng("pseudorandom", seed, i), i) for i in range(count))
+
+
+def constrained(count: int, seed: int) -> tuple[AbstractTest, ...]:
+    """Tests that activate the robot and get ready by the protocol, then act at random.
+
+    Source: as `pseudorandom`.
+
+    >>> all(test.actions[:6] == PREFIX for test in constrained(3, seed=1))
+    True
+    """
+    return tuple(_constrained_test(_rng("constrained", seed, i), i) for i in range(count))
+
+
+def _rng(strategy: str, seed: int, index: int) -> random.Random:
+    return random.Random(f"{strategy}/{seed}/{index}")  # noqa: S311  # repeatable, not secret
+
+
+def _pseudorandom_test(rng: random.Random, index: int) -> AbstractTest:
+    actions = _random_actions(rng, rng.randint(*LENGTH))
+    return AbstractTest(
+        name=f"pseudorandom-{index:03}",
+        strategy="pseudorandom",
+        seed=rng.getrandbits(32),
+        actions=actions,
+    )
+
+
+def _constrained_test(rng: random.Random, index: int) -> AbstractTest:
+    actions = _random_actions(rng, rng.randint(*TAIL_LENGTH))
+    return AbstractTest(
+        name=f"constrained-{index:03}",
+        strategy="constrained",
+        seed=rng.getrandbits(32),
+        actions=PREFIX + actions,
+    )
+
+
+def _random_actions(rng: random.Random, count: int) -> tuple[Action, ...]:
+    return tuple(_random_action(rng) for _ in range(count))
+
+
+def _random_action(rng: random.Random) -> Action:
+    match rng.randrange(3):
+        case 0:
+            return SendSignal(rng.choice(_HUMAN_SIGNALS))
+        case 1:
+            return ReceiveSignal(rng.choice(_ROBOT_SIGNALS))
+        case _:
+            param = rng.choice(_PARAMETERS)
+            return SetParam(param, rng.randint(*TIME) if param == "time" else rng.randint(0, 1))
