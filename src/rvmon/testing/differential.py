@@ -117,6 +117,7 @@ def campaign(
     traces: TraceProfile,
     *,
     online_every: int = 10,
+    shrunk: int = 3,
 ) -> Tally:
     """Judge the case of each seed with an engine and the oracle.
 
@@ -127,6 +128,7 @@ def campaign(
         traces: of the traces.
         online_every: in every so many-th case the return values of all calls are checked too;
             0 for none.
+        shrunk: so many disagreements are shrunk and shown, the others only named.
     """
     tally = Tally()
     for index, seed in enumerate(seeds):
@@ -135,8 +137,10 @@ def campaign(
         _count(tally, case)
         found = disagreements(case, make, online=online)
         if found:
-            shown = _shrunk(case, make, online)
-            tally.disagreements.append("\n".join([f"seed {seed}", *found, shown]))
+            lines = [f"seed {seed}", *found]
+            if len(tally.disagreements) < shrunk:
+                lines.append(_shrunk(case, make, online))
+            tally.disagreements.append("\n".join(lines))
     return tally
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rvmon.spec.checked import (
@@ -15,7 +14,6 @@ from rvmon.spec.checked import (
     Compare,
     CompareOp,
     Constant,
-    Event,
     EventAtom,
     FieldValue,
     Formula,
@@ -27,23 +25,13 @@ from rvmon.spec.checked import (
     ProbeAtom,
     SignalAtom,
     SignalValue,
-    Type,
     Unary,
     UnaryOp,
     UpdateFunction,
     UpdateValue,
 )
 from rvmon.testing.dice import Dice, chance, pick, weighted
-from rvmon.trace.schema import Kind
-
-BOOLS = ("p", "q", "r")
-NUMBERS = ("x", "y")
-LABEL = "mode"
-LABELS = ("red", "green", "blue")
-EVENTS = ("e", "f")
-CARRIER = "g"
-"""The event with a payload."""
-FIELD = "k"
+from rvmon.testing.vocabulary import BOOLS, CARRIER, EVENTS, FIELD, LABEL, LABELS, NUMBERS
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,12 +55,6 @@ class Shape:
     numbers: bool = True
     captured: tuple[str, ...] = ()
     longest: int = 6
-
-
-def events() -> Mapping[str, Event]:
-    """The events of the vocabulary."""
-    carrier = Event(CARRIER, {FIELD: Type(Kind.INT)})
-    return {**{name: Event(name) for name in EVENTS}, CARRIER: carrier}
 
 
 def interval(dice: Dice, shape: Shape, *, from_zero: bool = False) -> Interval:

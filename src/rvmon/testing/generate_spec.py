@@ -22,29 +22,14 @@ from rvmon.spec.checked import (
     Mode,
     Numeric,
     Requirement,
-    Signal,
     SignalAtom,
     SignalValue,
     TimeModel,
-    Type,
 )
 from rvmon.testing.dice import Dice, chance, pick, weighted
-from rvmon.testing.generate_formula import (
-    BOOLS,
-    CARRIER,
-    EVENTS,
-    FIELD,
-    LABEL,
-    LABELS,
-    NUMBERS,
-    Shape,
-    comparison,
-    consequent,
-    events,
-    formula,
-)
+from rvmon.testing.generate_formula import Shape, comparison, consequent, formula
 from rvmon.testing.pulse import is_pulse
-from rvmon.trace.schema import Kind
+from rvmon.testing.vocabulary import BOOLS, CARRIER, EVENTS, FIELD, LABEL, NUMBERS, events, signals
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,18 +77,16 @@ def random_spec(dice: Dice, profile: Profile) -> CheckedSpec:
         name="random",
         title="",
         time=time,
-        signals={name: _signal(dice, profile, name) for name in (*BOOLS, *NUMBERS, LABEL)},
+        signals=signals(_stale(dice, profile)),
         events=events(),
         requirements={requirement.id: requirement for requirement in found},
         period=dice.randint(1, 4) if time is TimeModel.CLOCKED else None,
     )
 
 
-def _signal(dice: Dice, profile: Profile, name: str) -> Signal:
-    kind = Kind.BOOL if name in BOOLS else Kind.LABEL if name == LABEL else Kind.REAL
-    stale = dice.randint(1, 9) if profile.stale and chance(dice, 10) else None
-    labels = LABELS if kind is Kind.LABEL else ()
-    return Signal(name, Type(kind, labels=labels), stale_after=stale)
+def _stale(dice: Dice, profile: Profile) -> dict[str, int]:
+    names = (*BOOLS, *NUMBERS, LABEL)
+    return {n: dice.randint(1, 9) for n in names if profile.stale and chance(dice, 10)}
 
 
 def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Requirement:

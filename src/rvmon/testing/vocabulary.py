@@ -1,0 +1,34 @@
+"""The names that random and hand-written test specifications speak of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rvmon.spec.checked import Event, Signal, Type
+from rvmon.trace.schema import Kind
+
+BOOLS = ("p", "q", "r")
+NUMBERS = ("x", "y")
+LABEL = "mode"
+LABELS = ("red", "green", "blue")
+EVENTS = ("e", "f")
+CARRIER = "g"
+"""The event with a payload."""
+FIELD = "k"
+
+
+def signals(stale: Mapping[str, int] | None = None) -> dict[str, Signal]:
+    """The signals; `stale` gives those that are `stale after` so many ticks."""
+    kinds = {
+        **dict.fromkeys(BOOLS, Type(Kind.BOOL)),
+        **dict.fromkeys(NUMBERS, Type(Kind.REAL)),
+        LABEL: Type(Kind.LABEL, labels=LABELS),
+    }
+    after = stale or {}
+    return {name: Signal(name, type_, stale_after=after.get(name)) for name, type_ in kinds.items()}
+
+
+def events() -> dict[str, Event]:
+    """The events."""
+    carrier = Event(CARRIER, {FIELD: Type(Kind.INT)})
+    return {**{name: Event(name) for name in EVENTS}, CARRIER: carrier}
