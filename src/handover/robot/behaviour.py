@@ -21,6 +21,7 @@ class Behaviour:
         grip_pause_s: seconds from the command to close until the gripper counts as closed.
         announce_pause_s: seconds between the messages about the closed gripper.
         settle_s: seconds at the handover pose before the human is informed.
+        checks_grip: whether it looks whether the piece came along.
         inform_pause_s: seconds before and after informing the human.
         sense_delay_s: seconds in `sense` before the first poll of the sensors.
         sense_poll_s: seconds between two reads of the sensors.
@@ -43,6 +44,7 @@ class Behaviour:
     grip_pause_s: float
     announce_pause_s: float
     settle_s: float
+    checks_grip: bool
     inform_pause_s: float
     sense_delay_s: float
     sense_poll_s: float
@@ -64,7 +66,8 @@ CORRECT = Behaviour(
     only_fresh=True,
     grip_pause_s=0.5,
     announce_pause_s=0.05,
-    settle_s=0.2,
+    settle_s=0.15,
+    checks_grip=True,
     inform_pause_s=0.0,
     sense_delay_s=0.0,
     sense_poll_s=0.5,
@@ -88,6 +91,7 @@ LEGACY = Behaviour(
     grip_pause_s=0.5,
     announce_pause_s=0.2,
     settle_s=1.0,
+    checks_grip=False,
     inform_pause_s=0.5,
     sense_delay_s=3.0,
     sense_poll_s=0.2,

@@ -12,6 +12,7 @@ is a generator: it waits by yielding seconds, and whoever runs it resumes it whe
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from handover.robot.behaviour import CORRECT, Behaviour
@@ -36,6 +37,7 @@ HANDOVER_POINT = (0.20, 0.22)
 GRIP_ABOVE_CENTRE = 0.02
 APPROACH_HEIGHTS = (0.18, 0.06, 0.0)
 PLAN_ATTEMPTS = 3
+PIECE_TOLERANCE = 0.05
 CLOCK_TOLERANCE_S = 1e-6
 
 
@@ -72,7 +74,6 @@ class HandoverRobot:
         self.entered = 0.0
         self.polls = 0
         self.informed_at = 0.0
-        self.holding = False
         self.reading: Reading | None = None
 
     def run(self) -> Steps[None]:
@@ -99,7 +100,6 @@ class HandoverRobot:
         if not self.behaviour.resubscribes:
             self.node.subscribe(HUMAN_SIGNALS)
         self.gripper.open()
-        self.holding = False
         for pose in ("zero_pose", "start_pose"):
             shoulder, elbow, wrist = self.node.params[pose]
             path = self.arm.interpolate((shoulder, elbow, wrist), self.behaviour.reset_s / 2)
@@ -114,28 +114,21 @@ class HandoverRobot:
                 self.polls = 0
             return "move"
         if self.polls >= self.behaviour.poll_limit:
-            self.outcome = "nobody activated the robot"
-            self.node.publish("timed_out")
-            return "done"
+            return self.give_up("nobody activated the robot")
         return "receive_activation"
 
     def move(self) -> Steps[str]:
         """Fetch the piece and hold it out to the human."""
         found = self.sensors.piece()
         if found is None:
-            self.outcome = "no piece in sight"
-            self.node.publish("timed_out")
-            return "done"
+            return self.give_up("no piece in sight")
         x, z = found
         for height in APPROACH_HEIGHTS:
             arrived = yield from self.go_to(x, z + GRIP_ABOVE_CENTRE + height)
             if not arrived:
-                self.outcome = "no path to the piece"
-                self.node.publish("timed_out")
-                return "done"
+                return self.give_up("no path to the piece")
         self.gripper.close()
         yield self.behaviour.grip_pause_s
-        self.holding = True
         self.node.publish("grip_closed")
         self.node.publish("robot_gripper", True)
         yield self.behaviour.announce_pause_s
@@ -145,10 +138,10 @@ class HandoverRobot:
         x, z = HANDOVER_POINT
         arrived = yield from self.go_to(x, z)
         if not arrived:
-            self.outcome = "no path to the human"
-            self.node.publish("timed_out")
-            return "done"
+            return self.give_up("no path to the human")
         yield self.behaviour.settle_s
+        if self.behaviour.checks_grip and not self.has_piece():
+            return self.give_up("the piece did not come along")
         return "send_signal"
 
     def send_signal(self) -> Steps[str]:
@@ -165,9 +158,7 @@ class HandoverRobot:
         if signal in self.behaviour.readiness:
             return "sense"
         if self.polls >= self.behaviour.poll_limit:
-            self.outcome = "the human never was ready"
-            self.node.publish("timed_out")
-            return "done"
+            return self.give_up("the human never was ready")
         return "receive_readiness"
 
     def sense(self) -> Steps[str]:
@@ -181,9 +172,7 @@ class HandoverRobot:
             limit = self.node.params["timeout_time"]
             elapsed = self.node.now() - self.informed_at
         if elapsed > limit - CLOCK_TOLERANCE_S:
-            self.outcome = "the sensors gave no full reading in time"
-            self.node.publish("timed_out")
-            return "done"
+            return self.give_up("the sensors gave no full reading in time")
         reading = self.sensors.sense()
         missing = None in (reading.gaze, reading.pressure, reading.location)
         if missing and not self.behaviour.undefined_is_bad:
@@ -202,7 +191,14 @@ class HandoverRobot:
         self.node.publish("gpl_is_ok", ready)
         if ready:
             return "release"
-        self.outcome = "the human was not ready"
+        if reading is None:
+            self.outcome = "not released: nothing was sensed"
+        elif not reading.location:
+            self.outcome = "not released: the hand is not near the piece"
+        elif not reading.pressure:
+            self.outcome = "not released: the human does not hold the piece"
+        else:
+            self.outcome = "not released: the human does not look at the piece"
         self.node.publish("withheld")
         return "done"
 
@@ -210,7 +206,6 @@ class HandoverRobot:
         """Let the piece go and give the human time to take it away."""
         self.gripper.open()
         yield self.behaviour.open_s
-        self.holding = False
         self.node.publish("pressure_e1", False)
         self.node.publish("resetpiece")
         self.node.publish("released")
@@ -238,6 +233,20 @@ class HandoverRobot:
         if self.behaviour.only_fresh and message.stamp < self.entered:
             return None
         return str(message.value)
+
+    def give_up(self, reason: str) -> str:
+        """End the task without a decision."""
+        self.outcome = reason
+        self.node.publish("timed_out")
+        return "done"
+
+    def has_piece(self) -> bool:
+        """Whether the piece is seen where the gripper holds it out."""
+        found = self.sensors.piece()
+        if found is None:
+            return False
+        x, z = HANDOVER_POINT
+        return math.hypot(found[0] - x, found[1] + GRIP_ABOVE_CENTRE - z) < PIECE_TOLERANCE
 
     def go_to(self, x: float, z: float) -> Steps[bool]:
         """Plan a path of the grip to a point and follow it; tell whether it got there."""

@@ -15,6 +15,9 @@ from handover.world.poses import Poses
 from handover.world.recorder import Recorder, SampleValue
 from handover.world.schedule import Schedule
 
+HUMAN_SIGNALS = "human_signals"
+"""Topic whose text is the name of an event."""
+
 CLOSINGS = ("grip_closed", "robot_gripper")
 """Topics at whose messages the hand's distance is measured, whatever else is going on."""
 
@@ -151,11 +154,10 @@ class World:
             self.recorder.refresh(now, "hand_distance", round(sensing.hand_distance(self.scene), 4))
             self.recorder.signal(now, "hand_offset_x", round(x, 4))
             self.recorder.signal(now, "hand_offset_z", round(z, 4))
-        if topic == "robot_state":
-            return
         if value is None:
             self.recorder.event(now, topic)
         elif isinstance(value, str):
-            self.recorder.event(now, value)
+            if topic == HUMAN_SIGNALS:
+                self.recorder.event(now, value)
         else:
             self.recorder.signal(now, topic, value)
