@@ -61,11 +61,12 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
 def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
     from rich import box
     from rich.table import Table
+
     from rvmon.report.style import verdict_text
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading, justify in (("", "left"), ("verdict", "left"), ("attempts", "left")):
-        table.add_column(heading, justify=justify, no_wrap=True)
+    for heading in ("", "verdict", "attempts"):
+        table.add_column(heading, no_wrap=True)
     table.add_column("requirement", style="dim")
     for name, verdict in report.verdicts.items():
         counts = report.counts[name]
@@ -76,6 +77,7 @@ def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
 
 def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
     from rich.text import Text
+
     from rvmon.diagnostics.snippet import snippet
     from rvmon.report.style import verdict_text
 

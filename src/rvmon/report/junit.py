@@ -1,0 +1,72 @@
+"""Verdicts as JUnit XML, which CI servers show."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rvmon.spec.checked import CheckedSpec
+
+_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def junit_xml(reports: Sequence[Report], spec: CheckedSpec) -> str:
+    """A test suite per run, a test case per requirement.
+
+    F is a failure; NT and I are skipped with their reason, since neither is a pass.
+    """
+    root = ET.Element("testsuites", name=_clean(spec.name))
+    for report in reports:
+        verdicts = list(report.verdicts.values())
+        skipped = verdicts.count(Verdict.NOT_TRIGGERED) + verdicts.count(Verdict.INCONCLUSIVE)
+        suite = ET.SubElement(
+            root,
+            "testsuite",
+            name=_clean(report.trace or spec.name),
+            tests=str(len(verdicts)),
+            failures=str(verdicts.count(Verdict.FAIL)),
+            errors="0",
+            skipped=str(skipped),
+        )
+        for name, verdict in report.verdicts.items():
+            _add_case(suite, report, name, verdict, spec.requirements[name].text)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _add_case(
+    suite: ET.Element, report: Report, name: str, verdict: Verdict, requirement: str
+) -> None:
+    case = ET.SubElement(suite, "testcase", name=_clean(name), classname=suite.get("name", ""))
+    if requirement:
+        properties = ET.SubElement(case, "properties")
+        ET.SubElement(properties, "property", name="requirement", value=_clean(requirement))
+    if verdict is Verdict.PASS:
+        return
+    if verdict is Verdict.NOT_TRIGGERED:
+        ET.SubElement(case, "skipped", message="NT: never triggered")
+        return
+    reasons = [
+        _clean(f"attempt {attempt.number}, {_when(attempt.decided)}: {attempt.reason}")
+        for attempt in report.attempts
+        if attempt.requirement == name and attempt.verdict is verdict
+    ]
+    kind = "failure" if verdict is Verdict.FAIL else "skipped"
+    told = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
+    told.text = "\n".join(reasons)
+
+
+def _when(decided: int | None) -> str:
+    return "undecided" if decided is None else format_ticks(decided)
+
+
+def _clean(text: str) -> str:
+    """Text without the characters that XML cannot hold."""
+    return _NOT_IN_XML.sub("�", text)

@@ -1,0 +1,28 @@
+"""Tables of verdicts as CSV: one row per table, group of runs and requirement."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping
+
+from rvmon.report.table import VerdictTable
+from rvmon.verdict.verdict import Verdict
+
+
+def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str:
+    """Several tables as one CSV text.
+
+    Args:
+        tables: by what the first column calls them.
+        key: heading of the first column.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([key, "strategy", "requirement", "tests", *(v.value for v in Verdict)])
+    for name, table in tables.items():
+        for group in table.groups:
+            for requirement, counts in group.counts.items():
+                figures = (counts.get(verdict, 0) for verdict in Verdict)
+                writer.writerow([name, group.name, requirement, group.runs, *figures])
+    return text.getvalue()
