@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from handover.driver.draws import draw, stream
 from handover.driver.run import Run
+from handover.generator.files import AbstractTestError
 
 if TYPE_CHECKING:
     from handover.driver.run import AroundRobotStep, Observer
@@ -39,7 +40,7 @@ def run_test(
         around_robot_step: context in which each step of the robot's code runs.
 
     Raises:
-        ValueError: no robot or mutation of that name.
+        AbstractTestError: no robot or mutation of that name.
     """
     # The physics engine takes a tenth of a second to import: only who simulates pays.
     from handover.driver.script import Script
@@ -54,14 +55,18 @@ def run_test(
     robot = robot or test.robot or "correct"
     mutation = mutation or test.mutation
     if robot not in BEHAVIOURS:
-        raise ValueError(f"no robot named {robot!r}: there are {', '.join(BEHAVIOURS)}")
+        raise AbstractTestError(f"no robot named {robot!r}: there are {', '.join(BEHAVIOURS)}")
     if mutation is not None and mutation not in MUTATIONS:
-        raise ValueError(f"no mutation named {mutation!r}: there are {', '.join(MUTATIONS)}")
+        raise AbstractTestError(f"no mutation named {mutation!r}: there are {', '.join(MUTATIONS)}")
     make_robot = HandoverRobot if mutation is None else MUTATIONS[mutation]
 
     draws = draw(test.seed, startup_loss=startup_loss and test.startup_loss)
     world = World(
-        stream(test.seed, "world"), jump=jump, record_poses=record_poses, observer=observer
+        stream(test.seed, "world"),
+        faults=test.faults,
+        jump=jump,
+        record_poses=record_poses,
+        observer=observer,
     )
     states: list[tuple[int, str]] = []
 

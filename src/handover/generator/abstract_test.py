@@ -6,6 +6,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from handover.world.faults import SensorFaults
+
 HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
 RobotSignal = Literal["informHumanOfHandoverStart", "setv"]
 Switch = Literal[
@@ -42,13 +44,19 @@ class SetParam(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="set
     """The human takes a posture (0 bad, 1 ok), or waits: `time` is in units of 0.05 s."""
 
     param: Parameter
-    value: Annotated[int, msgspec.Meta(ge=0)]
+    value: Annotated[int, msgspec.Meta(ge=0, le=4000)]
+
+    def __post_init__(self) -> None:
+        if self.param != "time" and self.value > 1:
+            raise ValueError(f"`{self.param}` is 0 or 1, not {self.value}")
 
 
 Action = SendSignal | ReceiveSignal | SetParam
 
 
-class AbstractTest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class AbstractTest(
+    msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, omit_defaults=True
+):
     """A test that can be replayed alone: actions, seed, and what it is to be played against.
 
     Attributes:
@@ -61,7 +69,7 @@ class AbstractTest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
         horizon_s: simulated seconds.
         startup_loss: whether the human's signals may get lost as the processes start.
-        faults: of the sensors, names of `handover.world.sensing.FAULTS`.
+        faults: what is wrong with the sensors.
         expected: verdicts by requirement, for tests that know them.
     """
 
@@ -72,7 +80,7 @@ class AbstractTest(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
     text: str = ""
     robot: Literal["correct", "legacy"] | None = None
     mutation: str | None = None
-    horizon_s: float = 200.0
+    horizon_s: Annotated[float, msgspec.Meta(gt=0, le=3600)] = 200.0
     startup_loss: bool = True
-    faults: tuple[str, ...] = ()
+    faults: SensorFaults = SensorFaults()
     expected: dict[str, Verdict] = {}

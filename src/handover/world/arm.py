@@ -32,7 +32,7 @@ class Trajectory:
 
 
 class Arm:
-    """Plans and follows paths; its motors are written only when their command changes.
+    """Plans and follows paths, the gripper's speed limited; its motors are written only when their command changes.
 
     Args:
         scene: where the motors are.
@@ -66,7 +66,7 @@ class Arm:
 
     def interpolate(self, joints: Joints, duration: float) -> Trajectory:
         """A path to joint angles, in a given time and without planning."""
-        return Trajectory(self.joints(), joints, duration)
+        return Trajectory(self._start(), joints, duration)
 
     def follow(self, path: Trajectory) -> Generator[float, None, None]:
         """Move along a path; returns when it is over."""
@@ -99,8 +99,12 @@ class Arm:
                 self._rates[index] = rate
                 motor.rate = rate
 
+    def _start(self) -> Joints:
+        """Where the arm was sent to last; where it is, if it is still on its way."""
+        return self._goal if self._path is None else self.joints()
+
     def _path_to(self, goal: Joints) -> Trajectory:
-        start = self.joints()
+        start = self._start()
         steps = 40
         points = [
             grip_point(

@@ -11,7 +11,7 @@ import pymunk
 from handover.world import parameters as p
 from handover.world.contacts import contact_force
 from handover.world.motion import PEAK_OVER_MEAN, Quintic, evaluate, quintic, slope
-from handover.world.scene import Scene
+from handover.world.scene import Scene, seen_piece
 
 CONTROL_S = p.CONTROL_STEPS * p.STEP_NS / p.NS
 Point = tuple[float, float]
@@ -154,9 +154,9 @@ class Human:
     def _start_to_look(self) -> None:
         assert self._gaze is not None  # noqa: S101  # set by look(), which enters this call
         offset, distance, angle = self._gaze
-        piece = self._scene.piece.position
-        x, z = piece.x + distance, piece.y + offset
-        towards = math.atan2(piece.y - z, piece.x - x) % math.tau
+        piece_x, piece_z = seen_piece(self._scene)
+        x, z = piece_x + distance, piece_z + offset
+        towards = math.atan2(piece_z - z, piece_x - x) % math.tau
         self.gaze_taken_up = True
         self._wake(self._head.start((x, z, towards - math.radians(angle))))
 
@@ -183,20 +183,20 @@ class Human:
 
     def _beside(self) -> Point:
         assert self._place is not None  # noqa: S101  # _move_hand() has checked it
-        piece = self._scene.piece.position
-        x, z = piece.x + self._place[0], piece.y + self._place[1]
-        above_table = p.TABLE[0] <= x <= p.TABLE[1] + p.HAND_RADIUS and piece.y > 0
+        piece_x, piece_z = seen_piece(self._scene)
+        x, z = piece_x + self._place[0], piece_z + self._place[1]
+        above_table = p.TABLE[0] <= x <= p.TABLE[1] + p.HAND_RADIUS and piece_z > 0
         return (x, max(z, p.HAND_RADIUS)) if above_table else (x, z)
 
     def _hold_point(self) -> Point:
         """People lift a thing from a table by its top, and take a held one by its free end."""
-        piece = self._scene.piece.position
+        x, z = seen_piece(self._scene)
         width, height = p.PIECE_SIZE
         reach = p.HAND_RADIUS - p.GRASP_DEPTH
-        stands_on_table = abs(piece.y - height / 2) < height / 10
+        stands_on_table = abs(z - height / 2) < height / 10
         if stands_on_table:
-            return piece.x, piece.y + height / 2 + reach
-        return piece.x + width / 2 + reach, piece.y - 0.3 * height
+            return x, z + height / 2 + reach
+        return x + width / 2 + reach, z - 0.3 * height
 
     def _touches(self) -> bool:
         return contact_force(self._scene.hand, self._scene.piece) > 0.0

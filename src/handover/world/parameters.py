@@ -93,6 +93,9 @@ START_POSE_RANGE: Final = 0.5
 ZERO_POSE: Final = (1.20, -2.31, -0.46)
 """rad: gripper down, 0.4 m above the table; no start pose comes near table or piece."""
 
+SIGHT_RESOLUTION_DIGITS: Final = 3
+"""Camera and eyes see places to the millimetre."""
+
 # --- human ----------------------------------------------------------------------------------
 REACTION_S: Final = 0.2
 """From a decision to the first motion: a fast human reaction."""

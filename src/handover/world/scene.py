@@ -87,6 +87,12 @@ def build(pose: Joints) -> Scene:
     )
 
 
+def seen_piece(scene: Scene) -> tuple[float, float]:
+    """Where camera and eyes see the piece, (x, z) in metres."""
+    x, z = scene.piece.position
+    return round(x, p.SIGHT_RESOLUTION_DIGITS), round(z, p.SIGHT_RESOLUTION_DIGITS)
+
+
 def outlines() -> tuple[Outline, ...]:
     """What to draw for each body of `BODIES`, and for the ground."""
     length, width = p.FINGER_LENGTH / 2, p.FINGER_THICKNESS / 2

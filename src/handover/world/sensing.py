@@ -3,72 +3,115 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import random
+from collections import deque
 
 from handover.world import parameters as p
 from handover.world.contacts import contact_force
+from handover.world.faults import SensorFaults
 from handover.world.human import Human
+from handover.world.reading import Reading
 from handover.world.scene import Scene
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """One reading of the three sensors; `None`: this sensor has nothing to say yet."""
+class Sensors:
+    """Gaze, pressure, location and the distance of the hand, measured on the bodies.
 
-    gaze: bool | None
-    pressure: bool | None
-    location: bool | None
-
-
-def read(scene: Scene, human: Human) -> Reading:
-    """Read gaze, pressure and location.
-
-    A sensor has a reading once the human has begun to take part in its respect, and not while
-    the tracked head or hand is moving. The value comes from the bodies alone.
+    Args:
+        scene: where the bodies are.
+        human: whose head and hand are tracked.
+        faults: what is wrong with the sensors.
+        rng: draws the noise.
     """
-    head_moves, hand_moves = human.is_moving()
-    return Reading(
-        gaze=None if head_moves or not human.gaze_taken_up else gaze_is_ok(scene),
-        pressure=None
-        if hand_moves or not human.pressure_taken_up
-        else pressure_is_ok(scene, human),
-        location=None if hand_moves or not human.location_taken_up else location_is_ok(scene),
-    )
 
+    def __init__(
+        self, scene: Scene, human: Human, faults: SensorFaults, rng: random.Random
+    ) -> None:
+        self._scene = scene
+        self._human = human
+        self._faults = faults
+        self._rng = rng
+        self._delay_ns = round(faults.delay_s * p.NS)
+        self._past: deque[tuple[int, Reading]] = deque()
 
-def gaze_is_ok(scene: Scene) -> bool:
-    """Whether the head is close to the piece and turned towards it.
+    def remember(self, t_ns: int) -> None:
+        """Keep the reading of this instant, if the sensors are slow."""
+        if self._delay_ns:
+            self._past.append((t_ns, self._read()))
 
-    Offset is the head's height over the piece, distance is along x, and the angle is that
-    between the line of sight and the direction from head to piece.
-    """
-    head, piece = scene.head.position, scene.piece.position
-    towards = math.atan2(piece.y - head.y, piece.x - head.x)
-    angle = math.degrees(abs((scene.head.angle - towards + math.pi) % math.tau - math.pi))
-    return (
-        abs(head.y - piece.y) <= p.GAZE_MAX_OFFSET
-        and abs(head.x - piece.x) <= p.GAZE_MAX_DISTANCE
-        and angle < p.GAZE_MAX_ANGLE
-    )
+    def read(self, t_ns: int) -> Reading:
+        """Read gaze, pressure and location.
 
+        A sensor has a reading once the human has begun to take part in its respect, and not
+        while the tracked head or hand is moving. The value comes from the bodies alone.
 
-def location_is_ok(scene: Scene) -> bool:
-    """Whether the hand is near the piece on both axes."""
-    hand, piece = scene.hand.position, scene.piece.position
-    return abs(hand.x - piece.x) <= p.LOCATION_MAX and abs(hand.y - piece.y) <= p.LOCATION_MAX
+        Args:
+            t_ns: the instant of the reading.
+        """
+        if not self._delay_ns:
+            return self._read()
+        while len(self._past) > 1 and self._past[1][0] <= t_ns - self._delay_ns:
+            self._past.popleft()
+        if self._past and self._past[0][0] <= t_ns - self._delay_ns:
+            return self._past[0][1]
+        return Reading(gaze=None, pressure=None, location=None)
 
+    def distance(self) -> float | None:
+        """Metres between the mass centres of hand and gripper; `None`: the sensor is dead."""
+        if "distance" in self._faults.dropout:
+            return None
+        x, z = hand_offset(self._scene)
+        return abs(math.hypot(x, z) + self._noise())
 
-def pressure_is_ok(scene: Scene, human: Human) -> bool:
-    """Whether robot and human both hold the piece, by the forces between them and it."""
-    left, right = (contact_force(scene.piece, finger) for finger in scene.fingers)
-    by_hand = human.grasp_force() + contact_force(scene.piece, scene.hand)
-    return min(left, right) >= p.PRESSURE_MIN and by_hand >= p.PRESSURE_MIN
+    def is_dead(self, sensor: str) -> bool:
+        """Whether a sensor drops out."""
+        return sensor in self._faults.dropout
 
+    def _read(self) -> Reading:
+        head_moves, hand_moves = self._human.is_moving()
+        human = self._human
+        gaze_known = human.gaze_taken_up and not head_moves and not self.is_dead("gaze")
+        hand_known = human.location_taken_up and not hand_moves and not self.is_dead("location")
+        force_known = human.pressure_taken_up and not hand_moves and not self.is_dead("pressure")
+        return Reading(
+            gaze=self._gaze_is_ok() if gaze_known else None,
+            pressure=self._pressure_is_ok() if force_known else None,
+            location=self._location_is_ok() if hand_known else None,
+        )
 
-def hand_distance(scene: Scene) -> float:
-    """Metres between the mass centres of hand and gripper."""
-    x, z = hand_offset(scene)
-    return math.hypot(x, z)
+    def _gaze_is_ok(self) -> bool:
+        """Whether the head is close to the piece and turned towards it.
+
+        Offset is the head's height over the piece, distance is along x, and the angle is that
+        between the line of sight and the direction from head to piece.
+        """
+        head, piece = self._scene.head.position, self._scene.piece.position
+        towards = math.atan2(piece.y - head.y, piece.x - head.x)
+        turn = (self._scene.head.angle - towards + math.pi) % math.tau - math.pi
+        return (
+            abs(head.y - piece.y + self._noise()) <= p.GAZE_MAX_OFFSET
+            and abs(head.x - piece.x + self._noise()) <= p.GAZE_MAX_DISTANCE
+            and math.degrees(abs(turn)) < p.GAZE_MAX_ANGLE
+        )
+
+    def _location_is_ok(self) -> bool:
+        """Whether the hand is near the piece on both axes."""
+        hand, piece = self._scene.hand.position, self._scene.piece.position
+        return (
+            abs(hand.x - piece.x + self._noise()) <= p.LOCATION_MAX
+            and abs(hand.y - piece.y + self._noise()) <= p.LOCATION_MAX
+        )
+
+    def _pressure_is_ok(self) -> bool:
+        """Whether robot and human both hold the piece, by the forces between them and it."""
+        piece = self._scene.piece
+        by_robot = min(contact_force(piece, finger) for finger in self._scene.fingers)
+        by_human = self._human.grasp_force() + contact_force(piece, self._scene.hand)
+        return min(by_robot, by_human) >= p.PRESSURE_MIN
+
+    def _noise(self) -> float:
+        sd = self._faults.noise_m
+        return self._rng.gauss(0.0, sd) if sd else 0.0
 
 
 def hand_offset(scene: Scene) -> tuple[float, float]:
@@ -85,10 +128,8 @@ def tool_speed(scene: Scene) -> float:
 
 def gripper_centre(scene: Scene) -> tuple[float, float]:
     """The mass centre of palm and fingers, (x, z) in metres."""
-    palm = scene.links[2]
-    left, right = scene.fingers
-    mass = palm.mass + left.mass + right.mass
-    x, z = (palm.position * palm.mass + left.position * left.mass + right.position * right.mass) / (
-        mass
-    )
+    parts = (scene.links[2], *scene.fingers)
+    mass = sum(part.mass for part in parts)
+    x = sum(part.mass * part.position.x for part in parts) / mass
+    z = sum(part.mass * part.position.y for part in parts) / mass
     return x, z

@@ -7,13 +7,17 @@ from collections.abc import Callable
 
 from handover.world import parameters as p
 from handover.world import scene as scenes
-from handover.world import sensing
 from handover.world.arm import Arm, Gripper
 from handover.world.bus import Bus, Value
+from handover.world.faults import SensorFaults
 from handover.world.human import Human
 from handover.world.poses import Poses
+from handover.world.reading import Reading
 from handover.world.recorder import Recorder, SampleValue
 from handover.world.schedule import Schedule
+from handover.world.sensing import Sensors, hand_offset, tool_speed
+
+PERFECT = SensorFaults()
 
 HUMAN_SIGNALS = "human_signals"
 """Topic whose text is the name of an event."""
@@ -28,7 +32,8 @@ class World:
     Physics is stepped while something moves; over rest it jumps to the next scheduled call.
 
     Args:
-        rng: draws what the world leaves to chance (the planner's latency).
+        rng: draws what the world leaves to chance: the planner's latency, sensor noise.
+        faults: what is wrong with the sensors.
         jump: `False` steps the physics over rest, too.
         record_poses: keep a frame at 10 Hz while something moves.
         observer: called with each whole sample.
@@ -39,6 +44,7 @@ class World:
         self,
         rng: random.Random,
         *,
+        faults: SensorFaults = PERFECT,
         jump: bool = True,
         record_poses: bool = False,
         observer: Callable[[int, dict[str, SampleValue]], None] | None = None,
@@ -50,6 +56,7 @@ class World:
         self.arm = Arm(self.scene, rng, self._wake)
         self.gripper = Gripper(self.scene, self._wake)
         self.human = Human(self.scene, self._wake, self._after)
+        self.sensors = Sensors(self.scene, self.human, faults, rng)
         self._stepped = 0
         self._step = 0
         self._planned_until = 0
@@ -68,19 +75,22 @@ class World:
         self._advance(horizon_ns)
         self.recorder.finish()
 
-    def sense(self) -> sensing.Reading:
-        """Read the sensors as the robot does; the reading is published, nothing as false."""
-        reading = sensing.read(self.scene, self.human)
+    def sense(self) -> Reading:
+        """Read the sensors as the robot does, and publish what was read.
+
+        A sensor that has nothing to say is published as false, a dead one as unknown.
+        """
         now = self.schedule.now_ns
-        self.recorder.signal(now, "gaze_ok", bool(reading.gaze))
-        self.recorder.signal(now, "pressure_ok", bool(reading.pressure))
-        self.recorder.signal(now, "location_ok", bool(reading.location))
+        reading = self.sensors.read(now)
+        for sensor in ("gaze", "pressure", "location"):
+            dead = self.sensors.is_dead(sensor)
+            value = None if dead else bool(getattr(reading, sensor))
+            self.recorder.signal(now, f"{sensor}_ok", value)
         return reading
 
     def piece(self) -> tuple[float, float]:
         """Where the robot's camera sees the piece, (x, z) in metres."""
-        x, z = self.scene.piece.position
-        return x, z
+        return scenes.seen_piece(self.scene)
 
     @property
     def stepped_s(self) -> float:
@@ -103,6 +113,7 @@ class World:
             if self._step % p.CONTROL_STEPS == 0:
                 self.arm.control()
                 self.human.control()
+                self.sensors.remember(self._step * p.STEP_NS)
             self.scene.space.step(p.STEP_NS / p.NS)
             self._step += 1
             self._stepped += 1
@@ -132,8 +143,8 @@ class World:
     def _watch(self) -> None:
         """Publish distance and speed, and keep a frame."""
         t_ns = self._step * p.STEP_NS
-        self.recorder.refresh(t_ns, "hand_distance", round(sensing.hand_distance(self.scene), 4))
-        speed = 0.0 if self._at_rest else round(sensing.tool_speed(self.scene), 3)
+        self._measure_hand(t_ns)
+        speed = 0.0 if self._at_rest else round(tool_speed(self.scene), 3)
         self.recorder.signal(t_ns, "tool_speed", speed)
         if self._frames is not None:
             frame = [
@@ -147,11 +158,16 @@ class World:
             ]
             self._frames.append((t_ns, tuple(frame)))
 
+    def _measure_hand(self, t_ns: int) -> None:
+        distance = self.sensors.distance()
+        value = None if distance is None else round(distance, 4)
+        self.recorder.refresh(t_ns, "hand_distance", value)
+
     def _record(self, topic: str, value: Value) -> None:
         now = self.schedule.now_ns
         if topic in CLOSINGS and value is not False:
-            x, z = sensing.hand_offset(self.scene)
-            self.recorder.refresh(now, "hand_distance", round(sensing.hand_distance(self.scene), 4))
+            self._measure_hand(now)
+            x, z = hand_offset(self.scene)
             self.recorder.signal(now, "hand_offset_x", round(x, 4))
             self.recorder.signal(now, "hand_offset_z", round(z, 4))
         if value is None:
