@@ -31,6 +31,7 @@ from rvmon.timed.scope import (
     Scope,
     VariableSymbol,
 )
+from rvmon.timed.zones import MAX_TIME
 
 
 def location_names(template: syntax.Template, findings: Findings) -> dict[str, int]:
@@ -163,7 +164,7 @@ def _update(written: syntax.UpdateText, scope: Scope, resolver: Resolver) -> Upd
         mend = "set variables by numbers and variables only"
         raise model_error("TA009", "a clock's state is written to a variable", written.span, mend)
     if clock is not None:
-        if isinstance(value, Constant) and not 0 <= value.value < 1 << 31:
+        if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
         return Reset(clock, value, written.span)
     match resolver.symbol(written.target, scope):

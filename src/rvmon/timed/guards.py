@@ -54,7 +54,7 @@ def is_discrete(expression: Expression) -> bool:
             assert_never(expression)
 
 
-def normalise(expression: Expression, positive: bool = True) -> Expression:
+def normal_form(expression: Expression, positive: bool = True) -> Expression:
     """The expression, or its negation, with `and` and `or` over discrete parts and atoms."""
     if is_discrete(expression):
         return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
@@ -65,34 +65,37 @@ def normalise(expression: Expression, positive: bool = True) -> Expression:
             return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
         case PathFormula(op, body, bound):
             if positive:
-                return PathFormula(op, normalise(body), bound)
-            return PathFormula(_NEGATED_PATH[op], normalise(body, not positive), bound)
+                return PathFormula(op, normal_form(body), bound)
+            return PathFormula(_NEGATED_PATH[op], normal_form(body, not positive), bound)
         case UnaryOperation(UnaryOp.NOT, operand):
-            return normalise(operand, not positive)
+            return normal_form(operand, not positive)
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):
             if not positive:
                 op = BinaryOp.OR if op is BinaryOp.AND else BinaryOp.AND
-            return BinaryOperation(op, normalise(left, positive), normalise(right, positive))
+            parts = normal_form(left, positive), normal_form(right, positive)
+            return BinaryOperation(op, *parts)
         case BinaryOperation(BinaryOp.IMPLY, left, right):
             op = BinaryOp.OR if positive else BinaryOp.AND
-            return BinaryOperation(op, normalise(left, not positive), normalise(right, positive))
+            return BinaryOperation(
+                op, normal_form(left, not positive), normal_form(right, positive)
+            )
         case BinaryOperation(BinaryOp.EQ | BinaryOp.NE as op, left, right):
             same = (op is BinaryOp.EQ) == positive
             return BinaryOperation(
                 BinaryOp.OR,
-                BinaryOperation(BinaryOp.AND, normalise(left), normalise(right, same)),
+                BinaryOperation(BinaryOp.AND, normal_form(left), normal_form(right, same)),
                 BinaryOperation(
-                    BinaryOp.AND, normalise(left, positive=False), normalise(right, not same)
+                    BinaryOp.AND, normal_form(left, positive=False), normal_form(right, not same)
                 ),
             )
         case Choice(condition, then, otherwise):
             return BinaryOperation(
                 BinaryOp.OR,
-                BinaryOperation(BinaryOp.AND, normalise(condition), normalise(then, positive)),
+                BinaryOperation(BinaryOp.AND, normal_form(condition), normal_form(then, positive)),
                 BinaryOperation(
                     BinaryOp.AND,
-                    normalise(condition, positive=False),
-                    normalise(otherwise, positive),
+                    normal_form(condition, positive=False),
+                    normal_form(otherwise, positive),
                 ),
             )
         case _:  # arithmetic, and what is discrete
@@ -107,7 +110,7 @@ def split_guard(expression: Expression, span: Span) -> Guard:
     """
     data: Expression = Constant(1)
     clocks: list[ClockCompare] = []
-    for part in _conjuncts(normalise(expression)):
+    for part in _conjuncts(normal_form(expression)):
         if isinstance(part, ClockCompare):
             clocks.append(part)
         elif is_discrete(part):

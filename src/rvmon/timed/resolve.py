@@ -36,6 +36,7 @@ from rvmon.timed.scope import (
 )
 from rvmon.timed.symbols import clock_of, element_of, value_of
 from rvmon.timed.syntax import BaseType, BinaryOp, UnaryOp
+from rvmon.timed.zones import MAX_TIME
 
 MAX_VALUES = 10_000
 """The most values that a quantifier, a `select`, a parameter or an array may range over."""
@@ -270,7 +271,7 @@ def compare_clock(clock: int, op: BinaryOp, bound: Expression, span: Span) -> Ex
     """
     if not is_discrete(bound):
         raise model_error("TA008", "a clock compared with clocks", span)
-    if isinstance(bound, Constant) and not 0 <= bound.value < 1 << 31:
+    if isinstance(bound, Constant) and not 0 <= bound.value < MAX_TIME:
         raise model_error("TA007", f"a clock compared with {bound.value}", span)
     match op:
         case BinaryOp.EQ:

@@ -1,0 +1,140 @@
+"""Search through symbolic states, with those dropped that another one makes needless."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from heapq import heappop, heappush
+from itertools import count
+
+from rvmon.timed.meter import Meter, paused_collector
+from rvmon.timed.pieces import Piece
+from rvmon.timed.search import (
+    UNLIMITED,
+    Budget,
+    Found,
+    LinkT,
+    Node,
+    Problem,
+    SiteT,
+    Statistics,
+    Watch,
+)
+from rvmon.timed.zones import Zone, is_simulated, is_within
+
+
+def explore(
+    problem: Problem[SiteT, LinkT], budget: Budget = UNLIMITED, watch: Watch | None = None
+) -> Found[SiteT, LinkT]:
+    """Search breadth first, so that what is found is reached in the fewest steps.
+
+    Args:
+        problem: what to search for.
+        budget: when to give up.
+        watch: called now and then.
+
+    Source: Behrmann, Bengtsson, David, Larsen, Pettersson, Yi, UPPAAL Implementation Secrets, 2002
+    (one list of passed and waiting states).
+    """
+    meter = Meter(budget, watch)
+    passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
+    waiting: deque[Node[SiteT, LinkT]] = deque()
+    covers = _cover_test(problem)
+    found: tuple[Node[SiteT, LinkT], Piece] | None = None
+
+    def meet(node: Node[SiteT, LinkT]) -> bool:
+        """Keep a new node unless it is covered; False ends the search."""
+        nonlocal found
+        site, zone = node.site, node.zone
+        nodes = passed.get(site)
+        if nodes is None:
+            passed[site] = [node]
+        else:
+            for old in nodes:
+                if covers(site, zone, old.zone):
+                    return True
+            for old in nodes:
+                old.covered = covers(site, old.zone, zone)
+            nodes[:] = [old for old in nodes if not old.covered]
+            nodes.append(node)
+        piece = problem.goal(site, zone)
+        if piece is not None:
+            found = node, piece
+        waiting.append(node)
+        return meter.count(len(waiting)) and found is None
+
+    with paused_collector():
+        going = all(meet(Node(site, zone, None, None)) for site, zone in problem.start())
+        while going and waiting:
+            node = waiting.popleft()
+            if node.covered:
+                continue
+            for link, site, zone in problem.successors(node.site, node.zone):
+                if not meet(Node(site, zone, node, link)):
+                    going = False
+                    break
+    stored = sum(map(len, passed.values()))
+    statistics = Statistics(meter.visited, stored, meter.seconds)
+    last, piece = found or (None, None)
+    return Found(last, piece, statistics, "" if found else meter.stopped)
+
+
+def explore_best(
+    problem: Problem[SiteT, LinkT],
+    cost: Callable[[float, LinkT | None, Zone], float],
+    goal_cost: Callable[[float, Zone, Piece], float],
+    budget: Budget = UNLIMITED,
+    watch: Watch | None = None,
+) -> Found[SiteT, LinkT]:
+    """Search by increasing cost, so that what is found costs least.
+
+    Args:
+        problem: what to search for; a state may only cover those that cost no less.
+        cost: of a node, from its parent's cost, the step to it and its zone; never below the
+            parent's.
+        goal_cost: of the part of a node that is sought, from the node's cost; never below it.
+        budget: when to give up.
+        watch: called now and then.
+    """
+    meter = Meter(budget, watch)
+    passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
+    covers = _cover_test(problem)
+    order = count()
+    heap: list[tuple[float, int, Node[SiteT, LinkT], Piece | None]] = []
+    found: tuple[Node[SiteT, LinkT], Piece] | None = None
+    with paused_collector():
+        for site, zone in problem.start():
+            heappush(heap, (cost(0.0, None, zone), next(order), Node(site, zone, None, None), None))
+        while heap:
+            price, _, node, piece = heappop(heap)
+            if piece is not None:
+                found = node, piece
+                break
+            nodes = passed.setdefault(node.site, [])
+            if any(covers(node.site, node.zone, old.zone) for old in nodes):
+                continue
+            nodes.append(node)
+            if not meter.count(len(heap)):
+                break
+            piece = problem.goal(node.site, node.zone)
+            if piece is not None:
+                entry = goal_cost(price, node.zone, piece), next(order), node, piece
+                heappush(heap, entry)
+            for link, site, zone in problem.successors(node.site, node.zone):
+                after = Node(site, zone, node, link)
+                heappush(heap, (cost(price, link, zone), next(order), after, None))
+    stored = sum(map(len, passed.values()))
+    statistics = Statistics(meter.visited, stored, meter.seconds)
+    last, piece = found or (None, None)
+    return Found(last, piece, statistics, "" if found else meter.stopped)
+
+
+def _cover_test(problem: Problem[SiteT, LinkT]) -> Callable[[SiteT, Zone, Zone], bool]:
+    if not problem.simulates:
+        return lambda _site, zone, other: is_within(zone, other)
+    dim = problem.dim
+
+    def covers(site: SiteT, zone: Zone, other: Zone) -> bool:
+        return is_simulated(zone, other, dim, site.uppers, site.lowers)
+
+    return covers

@@ -1,0 +1,72 @@
+"""Keeping a search within its budget, and quick."""
+
+from __future__ import annotations
+
+import gc
+import resource
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rvmon.timed.search import Budget, Progress, Watch
+
+CHECK_EVERY = 512
+"""States between two looks at the clock and at the memory."""
+
+
+@contextmanager
+def paused_collector() -> Iterator[None]:
+    """Keep the garbage collector still: a search makes many objects, and none in cycles."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+class Meter:
+    """Counts states against a budget and tells a watcher how far the search is.
+
+    Attributes:
+        visited: states so far.
+        stopped: which limit was met; empty while none was.
+    """
+
+    def __init__(self, budget: Budget, watch: Watch | None) -> None:
+        self._budget = budget
+        self._watch = watch
+        self._start = time.perf_counter()
+        self.visited = 0
+        self.stopped = ""
+
+    @property
+    def seconds(self) -> float:
+        """Since the meter was made."""
+        return time.perf_counter() - self._start
+
+    def count(self, waiting: int) -> bool:
+        """Count one state; False if the search must stop."""
+        self.visited += 1
+        budget = self._budget
+        if budget.states is not None and self.visited > budget.states:
+            self.stopped = f"{budget.states:,} states were visited"
+        elif self.visited % CHECK_EVERY == 0:
+            self._look(waiting)
+        return not self.stopped
+
+    def _look(self, waiting: int) -> None:
+        budget, seconds = self._budget, self.seconds
+        if budget.seconds is not None and seconds > budget.seconds:
+            self.stopped = f"{budget.seconds:g} s went by"
+        elif budget.megabytes is not None and _megabytes() > budget.megabytes:
+            self.stopped = f"{budget.megabytes:,} MB of memory were in use"
+        elif self._watch is not None:
+            self._watch(Progress(self.visited, waiting, seconds))
+
+
+def _megabytes() -> float:
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)
