@@ -1,0 +1,52 @@
+"""A notation for what the oracle says of a trace drawn as rows of characters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import pytest
+
+from rvmon.spec.checked import Formula, Requirement, TimeModel
+from rvmon.testing.build import requirement, spec_of, timeline
+from rvmon.testing.oracle import evaluate
+from rvmon.trace.sample import Sample
+from rvmon.verdict.attempt import Attempt, Decision
+
+Judge = Callable[..., list[str]]
+
+_MARK = {
+    Decision.PREFIX: "",
+    Decision.OPEN: "",
+    Decision.HELD_TO_END: " held",
+    Decision.POLICY: " policy",
+}
+
+
+def brief(attempt: Attempt) -> str:
+    """Trigger instant, verdict, decision instant, and what settled it if not the prefix."""
+    decided = "" if attempt.decided is None else f" {attempt.decided}"
+    return f"{attempt.triggered} {attempt.verdict.value}{decided}{_MARK[attempt.decision]}"
+
+
+def judge(
+    what: Formula | Requirement,
+    *,
+    samples: Sequence[Sample] = (),
+    time: TimeModel = TimeModel.HELD,
+    period: int | None = None,
+    stale: Mapping[str, int] | None = None,
+    end: int | None = None,
+    advances: Sequence[int] = (),
+    names: frozenset[str] | None = None,
+    **rows: str,
+) -> list[str]:
+    """All attempts in the order of the report; a formula stands for `upon start then` it."""
+    judged = what if isinstance(what, Requirement) else requirement(what)
+    spec = spec_of(judged, time=time, period=period, stale=stale)
+    report = evaluate(spec, samples or timeline(**rows), end=end, advances=advances, names=names)
+    return [brief(attempt) for attempt in report.attempts]
+
+
+@pytest.fixture(name="judge")
+def _judge() -> Judge:
+    return judge

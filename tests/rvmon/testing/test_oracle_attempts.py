@@ -1,0 +1,363 @@
+"""Triggers, episodes, captured values, instances: worked out by hand from SEMANTICS 3."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from rvmon.errors import RvmonError
+from rvmon.spec.checked import Capture, Captured, ForEach, Formula, TimeModel
+from rvmon.testing.build import (
+    always,
+    compared,
+    e,
+    end,
+    eventually,
+    f,
+    false,
+    g,
+    k,
+    no,
+    once,
+    p,
+    probe,
+    q,
+    requirement,
+    rise,
+    spec_of,
+    start,
+    timeline,
+    true,
+    two,
+    x,
+)
+from rvmon.testing.oracle import evaluate
+from rvmon.testing.pulse import is_pulse
+from rvmon.trace.sample import Sample
+from rvmon.verdict.verdict import Verdict
+
+
+def starts(judge: Any, trigger: Formula, **told: Any) -> list[int]:
+    """The instants at which attempts start."""
+    attempts = judge(requirement(true, upon=trigger), **told)
+    return [int(attempt.split()[0]) for attempt in attempts]
+
+
+@pytest.mark.parametrize(
+    ("row", "expected"),
+    [
+        ("0.1.0.1", [2, 6]),
+        ("1.0.1", [0, 4]),
+        # Never known before counts as an edge, unknown after known does not.
+        ("u.1", [2]),
+        ("0u1", []),
+        ("1u1", [0]),
+        ("u01", [2]),
+        ("u1u1", [1]),
+        ("0u01", [3]),
+        # A repeated value is no edge.
+        ("0.1.1", [2]),
+    ],
+)
+def test_levels_start_at_edges(judge: Any, row: str, expected: list[int]) -> None:
+    """`upon` a level starts where it becomes true, not at a recovery of the input."""
+    for time in (TimeModel.HELD, TimeModel.SAMPLED):
+        assert starts(judge, p, p=row, time=time) == expected
+
+
+def test_never_known_before(judge: Any) -> None:
+    """A trigger that is unknown until it is first true starts there."""
+    assert starts(judge, p, q="1", p="..1") == [2]
+
+
+def test_recovery_from_staleness(judge: Any) -> None:
+    """A signal that comes back true after being stale starts nothing."""
+    assert starts(judge, p, p="1....1", stale={"p": 2}) == [0]
+    assert starts(judge, p, p="1.0..1", stale={"p": 2}) == [0, 5]
+    assert starts(judge, p, p="1.0...1", stale={"p": 2}) == [0]
+
+
+@pytest.mark.parametrize(
+    ("trigger", "rows", "expected"),
+    [
+        # A pulse starts an attempt wherever it holds.
+        (e, {"e": ".11.1"}, [1, 2, 4]),
+        (e, {"e": "u"}, []),
+        (two(e, "and", p), {"e": ".1111", "p": "01.0"}, [1, 2]),
+        (two(e, "or", f), {"e": ".1", "f": "..1"}, [1, 2]),
+        (compared(k, ">", 3), {"g": ".4532"}, [1, 2]),
+        (probe("updated", "x"), {"x": "55.5"}, [0, 1, 3]),
+        (probe("changed", "x"), {"x": "567"}, [1, 2]),
+        (rise(p), {"p": "1010"}, [0, 2]),
+        # A disjunction with a level is a level.
+        (two(e, "or", p), {"e": ".11.1", "p": "0"}, [1, 4]),
+        (once(e, 0, 1), {"e": ".11..1"}, [1, 5]),
+        (no(e), {"e": ".1.1"}, [2, 4]),
+        (start, {"p": "1.1"}, [0]),
+        (true, {"p": "1.1"}, [0]),
+        (false, {"p": "1.1"}, []),
+    ],
+)
+def test_pulses_and_levels(judge: Any, trigger: Formula, rows: Any, expected: Any) -> None:
+    """Pulses start at every occurrence, all else at edges."""
+    assert starts(judge, trigger, **rows, end=5) == expected
+
+
+@pytest.mark.parametrize(
+    ("trigger", "expected"),
+    [
+        (e, True),
+        (no(e), False),
+        (no(no(e)), True),
+        (p, False),
+        (false, True),
+        (true, False),
+        (no(true), True),
+        (start, False),
+        (compared(k, ">", 3), True),
+        (compared(x, ">", 3), False),
+        (no(compared(k, ">", 3)), False),
+        (compared(x, ">", k), True),
+        (two(e, "and", p), True),
+        (two(e, "or", p), False),
+        (two(e, "or", f), True),
+        (no(two(no(e), "or", p)), True),
+        (no(two(no(e), "and", no(f))), True),
+        (two(e, "->", p), False),
+        (no(two(p, "->", no(e))), True),
+        (two(no(e), "->", f), True),
+        (two(e, "<->", p), False),
+        (two(e, "<->", f), False),
+        (two(e, "xor", f), True),
+        # Its negation normal form is (!e | !f) & (e | f).
+        (no(two(e, "<->", f)), True),
+        (two(e, "xor", p), False),
+        (rise(p), True),
+        (no(rise(p)), False),
+        (once(e), False),
+        (probe("changed", "x"), True),
+        (probe("updated", "x"), True),
+        (probe("known", "x"), False),
+        (no(probe("updated", "x")), False),
+    ],
+)
+def test_pulse_by_syntax(trigger: Formula, expected: bool) -> None:
+    """The class of a trigger is that of its negation normal form."""
+    assert is_pulse(trigger) is expected
+
+
+def test_pulse_is_cross_checked() -> None:
+    """A requirement that says otherwise than its syntax is refused."""
+    wrong = replace(requirement(p, upon=e), pulse=False)
+    with pytest.raises(RvmonError, match="R: its trigger's class"):
+        evaluate(spec_of(wrong), timeline(p="1"))
+
+
+def test_overlap(judge: Any) -> None:
+    """Attempts overlap freely and are judged each by its own window."""
+    owed = requirement(eventually(p, 0, 3), upon=e)
+    assert judge(owed, p="0...1", e="1.1") == ["0 F 4", "2 P 4"]
+    assert judge(owed, p="0.....1", e="11") == ["0 F 4", "1 F 5"]
+
+
+def test_order_of_the_report(judge: Any) -> None:
+    """Decided attempts come by instant, then by number; the undecided last."""
+    owed = requirement(two(q, "or", eventually(p, 0, 3)), upon=e)
+    # Triggered at 0, q false: waits until 4. At 1 q is true at once. At 5 it is false again.
+    assert judge(owed, p="0", q="010", e="11...1", end=7) == ["1 P 1", "0 F 4", "5 I"]
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        # From 1 to 2 q is owed and given; at 3 the episode ends.
+        ({"p": "01.0", "q": "01"}, ["1 P 3"]),
+        ({"p": "01.0", "q": "010"}, ["1 F 2"]),
+        ({"p": "01.0", "q": "01.0"}, ["1 P 3"]),
+        # Further samples make no further attempts.
+        ({"p": "01.0", "q": "01", "x": "123456"}, ["1 P 3"]),
+        ({"p": "01110", "q": "01"}, ["1 P 4"]),
+        ({"p": "1.01.0", "q": "1"}, ["0 P 2", "3 P 5"]),
+        # An unknown trigger neither ends nor restarts the episode; q is owed there if it held.
+        ({"p": "1u10", "q": "1"}, ["0 P 3"]),
+        ({"p": "1u10", "q": "101"}, ["0 I"]),
+        ({"p": "1u10", "q": "100"}, ["0 F 2"]),
+        ({"p": "1u0", "q": "1"}, ["0 P 2"]),
+        ({"p": "0u1", "q": "0"}, []),
+        ({"p": "u1.0", "q": "1"}, ["1 P 3"]),
+        ({"p": "1.u", "q": "1"}, ["0 P 2 held"]),
+        # What is owed but not known leaves the episode open, unless something else fails.
+        ({"p": "1..0", "q": "1u1"}, ["0 I"]),
+        ({"p": "1..0", "q": "1u0"}, ["0 F 2"]),
+        # Running at the end: held to it.
+        ({"p": "1", "q": "1", "end": 4}, ["0 P 4 held"]),
+        ({"p": "1", "q": "1u1", "end": 4}, ["0 I"]),
+        # A failed episode still has to end before another starts.
+        ({"p": "1..01", "q": "0"}, ["0 F 0", "4 F 4"]),
+        ({"p": "1.1.1", "q": "01"}, ["0 F 0"]),
+    ],
+)
+def test_whenever(judge: Any, rows: Any, expected: list[str]) -> None:
+    """`whenever p then q`: one attempt per episode of p, q owed throughout."""
+    assert judge(requirement(q, whenever=p), **rows) == expected
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ({"e": ".11.1", "q": "1", "end": 5}, ["1 P 3", "4 P 5"]),
+        ({"e": ".11", "q": "1.0", "end": 5}, ["1 F 2"]),
+        ({"e": ".1u1", "q": "1", "end": 5}, ["1 P 4"]),
+        ({"e": ".1", "q": "1"}, ["1 P 1 held"]),
+    ],
+)
+def test_whenever_a_pulse(judge: Any, rows: Any, expected: list[str]) -> None:
+    """An episode of a pulse starts where it holds and none is running."""
+    assert judge(requirement(q, whenever=e), **rows) == expected
+
+
+def test_whenever_sampled(judge: Any) -> None:
+    """In `sampled` time the next sample ends the episode of an event."""
+    owed = requirement(q, whenever=e)
+    assert judge(owed, e="1", q="1....1", time=TimeModel.SAMPLED) == ["0 P 5"]
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        # Owed at 0 only; the episode is over at 1, q comes in time.
+        ({"p": "10", "q": "0..1"}, ["0 P 3"]),
+        ({"p": "10", "q": "0...1"}, ["0 F 4"]),
+        # Owed at 0 to 2, q at 3 answers all; at 4 only those from 1 on.
+        ({"p": "1..0", "q": "0..1"}, ["0 P 3"]),
+        ({"p": "1..0", "q": "0...1"}, ["0 F 4"]),
+        # A second episode while the first still owes.
+        ({"p": "1010", "q": "0...1"}, ["0 F 4", "2 P 4"]),
+        ({"p": "1010", "q": "0...0", "end": 5}, ["0 F 4", "2 I"]),
+        ({"p": "1", "q": "1", "end": 9}, ["0 P 9 held"]),
+        ({"p": "1", "q": "1....0", "end": 7}, ["0 I"]),
+    ],
+)
+def test_whenever_with_deadlines(judge: Any, rows: Any, expected: list[str]) -> None:
+    """`whenever p then F[0,3] q` is settled when p has ended and nothing is owed."""
+    assert judge(requirement(eventually(q, 0, 3), whenever=p), **rows) == expected
+
+
+def test_whenever_true_is_always(judge: Any) -> None:
+    """A bare `always` is one episode that the end of the trace closes."""
+    assert judge(requirement(q, whenever=true), q="1..", end=4) == ["0 P 4 held"]
+    assert judge(requirement(q, whenever=true), q="1..0") == ["0 F 3"]
+
+
+CAPTURED = (Capture("v", x),)
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ({"x": "5.6", "e": "1"}, ["0 P 2"]),
+        # Each attempt has its own value: 5 and 6.
+        ({"x": "5.67", "e": "1.1"}, ["0 P 2", "2 P 3"]),
+        ({"x": "5.6", "e": "1.1", "end": 9}, ["0 P 2", "2 F 6"]),
+        ({"x": "u5", "e": "1", "end": 9}, ["0 I"]),
+    ],
+)
+def test_let(judge: Any, rows: Any, expected: list[str]) -> None:
+    """`let v = x` keeps the value of x at the trigger for the life of the attempt."""
+    owed = requirement(eventually(compared(x, ">", Captured("v")), 0, 3), upon=e, captures=CAPTURED)
+    assert judge(owed, **rows) == expected
+
+
+def test_let_is_recorded() -> None:
+    """The report holds what was captured; `None` if it was not known."""
+    owed = requirement(true, upon=e, captures=(*CAPTURED, Capture("w", k)))
+    report = evaluate(spec_of(owed), timeline(x="5.6", e="1.1", g="..7"))
+    captured = [attempt.captured for attempt in report.attempts]
+    assert captured == [{"v": 5, "w": None}, {"v": 6, "w": 7}]
+
+
+def test_let_in_an_episode(judge: Any) -> None:
+    """An episode captures where it starts."""
+    owed = requirement(compared(x, "<=", Captured("v")), whenever=p, captures=CAPTURED)
+    assert judge(owed, x="535", p="1..0") == ["0 P 3"]
+    assert judge(owed, x="5362", p="01.0") == ["1 F 2"]
+
+
+EACH = ForEach("id", k)
+
+
+@pytest.mark.parametrize(
+    ("consequent", "rows", "expected"),
+    [
+        # Instance 1 waits for x = 1 from 0 on, instance 2 for x = 2 from 2 on.
+        (eventually(compared(x, "==", Captured("id")), 0, 2), {"g": "1.2", "x": "0.2"}, None),
+        # In the instance of 1 only g with 1 occurs.
+        (always(no(g), 1, 4), {"g": "1.2"}, ["0 P 5", "2 P 7"]),
+        (always(no(g), 1, 4), {"g": "1.1"}, ["0 F 2", "2 P 7"]),
+        # A g whose field is not known may be anybody's.
+        (always(no(g), 1, 4), {"g": "1.v"}, ["0 I"]),
+    ],
+)
+def test_for_each(judge: Any, consequent: Formula, rows: Any, expected: Any) -> None:
+    """`for each id in g.k` judges the requirement once per value."""
+    owed = requirement(consequent, upon=g, for_each=EACH)
+    assert judge(owed, **rows, end=9) == (expected or ["2 P 2", "0 F 3"])
+
+
+def test_for_each_sees_both() -> None:
+    """Two payloads at one instant start an attempt each, in their order."""
+    owed = requirement(true, upon=g, for_each=EACH)
+    report = evaluate(spec_of(owed), [Sample(0, {"g": ({"k": 2}, {"k": 1})})])
+    assert [(a.number, a.captured) for a in report.attempts] == [(1, {"id": 2}), (2, {"id": 1})]
+
+
+def test_instances_begin_with_their_value(judge: Any) -> None:
+    """No attempt of an instance starts before its value has occurred."""
+    owed = requirement(true, upon=p, for_each=EACH)
+    assert judge(owed, p="01.0.1.0", g="...7") == ["5 P 5"]
+
+
+def test_upon_end(judge: Any) -> None:
+    """`upon end` is judged at the last instant, when the trace is finished."""
+    assert judge(requirement(p, upon=end), p="0.1", end=4) == ["4 P 4"]
+    assert judge(requirement(p, upon=end), p="1.0") == ["2 F 2"]
+    assert judge(requirement(p, upon=end), p="0", advances=[7]) == ["6 F 6"]
+    assert judge(requirement(always(p), upon=end), p="0.1", end=4) == ["4 P 4 held"]
+    assert judge(requirement(eventually(q, 0, 2), upon=end), q="0", end=4) == ["4 I"]
+    assert judge(requirement(once(p), upon=end), p="010", end=9) == ["9 P 9"]
+    assert judge(requirement(p, upon=end)) == []
+    clocked: Any = {"time": TimeModel.CLOCKED, "period": 3}
+    assert judge(requirement(p, upon=end), p="1......0", end=8, **clocked) == ["8 P 8"]
+    sampled: Any = {"time": TimeModel.SAMPLED}
+    assert judge(requirement(p, upon=end), p="0.1", end=8, **sampled) == ["8 P 8"]
+
+
+def test_empty_trace(judge: Any) -> None:
+    """Without a sample there is no position, whatever time passes."""
+    assert judge(requirement(p), advances=[5], end=9) == []
+
+
+def test_advance_before_the_first_sample(judge: Any) -> None:
+    """An `advance` before the first sample makes no position."""
+    assert judge(requirement(eventually(p, 0, 2)), p="...1", advances=[2]) == ["3 P 3"]
+
+
+def test_fold() -> None:
+    """F if any attempt failed, else I if any is, else P if any passed, else NT."""
+    owed = [
+        requirement(eventually(p, 0, 2), upon=e, name="failed"),
+        requirement(eventually(p, 0, 9), upon=e, name="open"),
+        requirement(true, upon=e, name="passed"),
+        requirement(true, upon=f, name="idle"),
+    ]
+    report = evaluate(spec_of(*owed), timeline(p="1.0", e="1..1..1", r="......1"))
+    assert report.verdicts == {
+        "failed": Verdict.FAIL,
+        "open": Verdict.INCONCLUSIVE,
+        "passed": Verdict.PASS,
+        "idle": Verdict.NOT_TRIGGERED,
+    }
+    assert report.counts["failed"] == {"P": 1, "F": 1, "I": 1}
+    assert report.end == 6

@@ -1,0 +1,254 @@
+"""Future operators, each expected value worked out by hand from SEMANTICS 2.
+
+A row draws one name, a character per tick from 0. `0 P 3`: triggered at 0, passed at 3.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from rvmon.spec.checked import Formula, TimeModel
+from rvmon.testing.build import always, eventually, following, no, p, q, two
+
+SAMPLED = {"time": TimeModel.SAMPLED}
+EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
+
+
+@pytest.mark.parametrize(
+    ("formula", "told", "expected"),
+    [
+        # The last instant of the window still counts; the tick after it decides.
+        (eventually(p, 0, 3), {"p": "0..1"}, "0 P 3"),
+        (eventually(p, 0, 3), {"p": "0...1"}, "0 F 4"),
+        # A trace that ends exactly at the deadline leaves it open; one tick more does not.
+        (eventually(p, 0, 3), {"p": "0", "end": 3}, "0 I"),
+        (eventually(p, 0, 3), {"p": "0", "end": 4}, "0 F 4"),
+        # A timer decides as well as a message, and at the same instant.
+        (eventually(p, 0, 3), {"p": "0", "advances": [3]}, "0 I"),
+        (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
+        (eventually(p, 0, 3), {"p": "0", "advances": [2, 4, 9]}, "0 F 4"),
+        (eventually(p, 0, 3), {"p": "0", "q": "0........1"}, "0 F 4"),
+        # What is held counts between samples, from the opening of the window on.
+        (eventually(p, 2, 3), {"p": "1", "end": 9}, "0 P 2"),
+        (eventually(p, 2, 3), {"p": "1", "advances": [2]}, "0 I"),
+        (eventually(p, 2, 3), {"p": "1", "advances": [3]}, "0 P 2"),
+        (eventually(p, 2, 3), {"p": "1.0..1"}, "0 F 4"),
+        (eventually(p, 2, 3), {"p": "10.1"}, "0 P 3"),
+        # A window of one point.
+        (eventually(p, 0, 0), {"p": "1"}, "0 P 0"),
+        (eventually(p, 0, 0), {"p": "0", "end": 0}, "0 I"),
+        (eventually(p, 0, 0), {"p": "01"}, "0 F 1"),
+        (eventually(p, 3, 3), {"p": "0.1.0"}, "0 P 3"),
+        (eventually(p, 3, 3), {"p": "0.10", "end": 4}, "0 F 4"),
+        # Without an upper bound nothing is ever missed.
+        (eventually(p), {"p": "0", "end": 50}, "0 I"),
+        (eventually(p), {"p": "0...1"}, "0 P 4"),
+        (eventually(p, 2), {"p": "1.0..1"}, "0 P 5"),
+        (eventually(p, 2), {"p": "1", "end": 1}, "0 I"),
+        # An unknown value is neither: the window may still be met, else it stays open.
+        (eventually(p, 0, 3), {"p": "u.1"}, "0 P 2"),
+        (eventually(p, 0, 3), {"p": "0u0", "end": 9}, "0 I"),
+    ],
+)
+def test_eventually(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
+    """`F[a,b]` is met in its window, missed at b + 1, open until then."""
+    assert judge(formula, **told) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("formula", "told", "expected"),
+    [
+        (always(p, 0, 3), {"p": "1", "end": 3}, "0 I"),
+        (always(p, 0, 3), {"p": "1", "end": 4}, "0 P 4"),
+        (always(p, 0, 3), {"p": "1", "advances": [4]}, "0 P 4"),
+        (always(p, 0, 3), {"p": "1..0"}, "0 F 3"),
+        (always(p, 0, 3), {"p": "1...0"}, "0 P 4"),
+        (always(p, 2, 3), {"p": "0.1", "end": 4}, "0 P 4"),
+        (always(p, 2, 3), {"p": "0..1"}, "0 F 2"),
+        (always(p, 0, 0), {"p": "1"}, "0 I"),
+        (always(p, 0, 0), {"p": "10"}, "0 P 1"),
+        (always(p, 0, 3), {"p": "1u1", "end": 9}, "0 I"),
+        (always(p, 0, 3), {"p": "1u0", "end": 9}, "0 F 2"),
+        (always(p), {"p": "1..0"}, "0 F 3"),
+    ],
+)
+def test_always(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
+    """`G[a,b]` fails where its operand does, and holds at b + 1."""
+    assert judge(formula, **told) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("told", "expected"),
+    [
+        ({"p": "1", "q": "0..1"}, "0 P 3"),
+        # The left operand is owed from the start on, also before the window opens.
+        ({"p": "01", "q": "0..1"}, "0 F 0"),
+        ({"p": "10", "q": "0.1"}, "0 F 1"),
+        # It is not owed where the right one is met.
+        ({"p": "1.0", "q": "0.1"}, "0 P 2"),
+        # Met before the window is not met.
+        ({"p": "1", "q": "010", "end": 9}, "0 F 5"),
+        # The bound itself, the tick after it, the end at the bound.
+        ({"p": "1", "q": "0...1"}, "0 P 4"),
+        ({"p": "1", "q": "0....1"}, "0 F 5"),
+        ({"p": "1", "q": "0", "end": 4}, "0 I"),
+        # An unknown left operand leaves it open, a false one behind it does not.
+        ({"p": "1u1", "q": "0..1", "end": 9}, "0 I"),
+        ({"p": "1u0", "q": "0"}, "0 F 2"),
+        # An unknown right operand may have been it, but a later sure one is.
+        ({"p": "1", "q": "0.u1"}, "0 P 3"),
+        ({"p": "1", "q": "0.u0", "end": 9}, "0 I"),
+    ],
+)
+def test_until(judge: Any, told: dict[str, Any], expected: str) -> None:
+    """`p U[2,4] q` needs q in the window and p at every instant before it."""
+    assert judge(two(p, "U", q, 2, 4), **told) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("told", "expected"),
+    [
+        ({"p": "0", "q": "1"}, "0 P 0"),
+        ({"p": "1..0", "q": "0"}, "0 F 3"),
+        ({"p": "1..0", "q": "0..1"}, "0 P 3"),
+        ({"p": "1", "q": "0", "end": 50}, "0 I"),
+    ],
+)
+def test_until_without_bound(judge: Any, told: dict[str, Any], expected: str) -> None:
+    """`p U q` is met at once by q, fails as p ends before, and is open for ever else."""
+    assert judge(two(p, "U", q), **told) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("low", "told", "expected"),
+    [
+        (0, {"p": "0", "q": "1", "end": 4}, "0 P 4"),
+        (0, {"p": "0", "q": "1", "end": 3}, "0 I"),
+        # p releases q behind itself, not where it stands.
+        (0, {"p": "0.1", "q": "1..0"}, "0 P 2"),
+        (0, {"p": "0..1", "q": "1..0"}, "0 F 3"),
+        (0, {"p": "0", "q": "1.0"}, "0 F 2"),
+        (0, {"p": "0", "q": "1...0"}, "0 P 4"),
+        # Before the window opens, q is not owed, and p releases it for good.
+        (2, {"p": "10", "q": "0"}, "0 P 0"),
+        (2, {"p": "0", "q": "0.1", "end": 4}, "0 P 4"),
+        (2, {"p": "0", "q": "0..1"}, "0 F 2"),
+    ],
+)
+def test_release(judge: Any, low: int, told: dict[str, Any], expected: str) -> None:
+    """`p R[a,3] q` is `!(!p U[a,3] !q)`."""
+    assert judge(two(p, "R", q, low, 3), **told) == [expected]
+    dual = no(two(no(p), "U", no(q), low, 3))
+    assert judge(dual, **told) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("told", "expected"),
+    [
+        ({"p": "1", "q": "0", "end": 4}, "0 P 4"),
+        ({"p": "1", "q": "0", "end": 3}, "0 I"),
+        ({"p": "1.0", "q": "0.1"}, "0 P 2"),
+        ({"p": "1.0", "q": "0"}, "0 F 2"),
+        ({"p": "10", "q": "0.1"}, "0 F 1"),
+        ({"p": "0", "q": "1"}, "0 P 0"),
+        ({"p": "1...0", "q": "0"}, "0 P 4"),
+    ],
+)
+def test_weak_until(judge: Any, told: dict[str, Any], expected: str) -> None:
+    """`p W[0,3] q` is `q R[0,3] (p | q)`: p, for 3 ticks or until q."""
+    assert judge(two(p, "W", q, 0, 3), **told) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("told", "expected"),
+    [
+        ({"p": "0.1", "q": "1"}, "0 P 2"),
+        ({"p": "0.1", "q": "1.0"}, "0 F 2"),
+        ({"p": "0", "q": "1", "end": 4}, "0 F 4"),
+        ({"p": "0", "q": "1", "end": 3}, "0 I"),
+        ({"p": "0..1", "q": "1"}, "0 P 3"),
+        ({"p": "1", "q": "0"}, "0 F 0"),
+    ],
+)
+def test_strong_release(judge: Any, told: dict[str, Any], expected: str) -> None:
+    """`p M[0,3] q` is `q U[0,3] (p & q)`: q up to p, with it, and p within 3 ticks."""
+    assert judge(two(p, "M", q, 0, 3), **told) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("formula", "told", "expected"),
+    [
+        # Bounds measure stamps; a missed deadline is decided at b + 1 though no sample is there.
+        (eventually(p, 0, 3), {"p": "0..1"}, "0 P 3"),
+        (eventually(p, 0, 3), {"p": "0....1"}, "0 F 4"),
+        (eventually(p, 0, 3), {"p": "0", "end": 3}, "0 I"),
+        (eventually(p, 0, 3), {"p": "0", "end": 4}, "0 F 4"),
+        (eventually(p, 0, 3), {"p": "0", "advances": [3]}, "0 I"),
+        (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
+        # Between samples there is no position: over an empty window F is false and G true.
+        (eventually(p, 1, 2), {"p": "1..1"}, "0 F 3"),
+        (always(p, 1, 2), {"p": "0..0"}, "0 P 3"),
+        (always(p, 0, 3), {"p": "1", "end": 4}, "0 P 4"),
+        # A sample may still come at the very instant that `advance` names.
+        (eventually(p, 0, 2), {"p": "0.1", "advances": [2]}, "0 P 2"),
+        (two(p, "U", q, 0, 9), {"p": "1..0", "q": "0....1"}, "0 F 3"),
+        # X is the next sample, whenever it comes; `finish` makes none.
+        (following(p), {"p": "0.1"}, "0 P 2"),
+        (following(p), {"p": "1...0"}, "0 F 4"),
+        (following(p), {"p": "1", "end": 9}, "0 I"),
+        (following(following(p)), {"p": "0.0.1"}, "0 P 4"),
+        (always(two(p, "->", following(q)), 0, 3), {"p": "1.0", "q": "0.1", "end": 9}, "0 P 4"),
+    ],
+)
+def test_sampled(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
+    """In `sampled` time the samples alone are positions."""
+    assert judge(formula, **told, **SAMPLED) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("formula", "told", "expected"),
+    [
+        # Positions are 3, 6, 9 ... from the first multiple at or after the first sample.
+        (p, {"p": ".1"}, None),
+        (p, {"p": ".1", "end": 2}, None),
+        (p, {"p": ".1", "end": 3}, "3 P 3"),
+        (p, {"p": ".1", "advances": [3]}, None),
+        (p, {"p": ".1", "advances": [4]}, "3 P 3"),
+        (p, {"p": "1"}, "0 P 0"),
+        # Signals by hold: only what holds at a multiple is seen.
+        (p, {"p": ".1.0"}, "3 F 3"),
+        (eventually(p, 0, 3), {"p": ".0..10", "end": 7}, "3 F 7"),
+        (eventually(p, 0, 3), {"p": ".0...1", "end": 6}, "3 P 6"),
+        # The window [3,7] holds 3 and 6, and is over at 8, between two ticks of the clock.
+        (eventually(p, 0, 4), {"p": ".0", "end": 7}, "3 I"),
+        (eventually(p, 0, 4), {"p": ".0", "end": 8}, "3 F 8"),
+        (eventually(p, 1, 2), {"p": "1", "end": 9}, "0 F 3"),
+        (following(p), {"p": "0.1", "end": 2}, "0 I"),
+        (following(p), {"p": "0.1", "end": 3}, "0 P 3"),
+    ],
+)
+def test_clocked(judge: Any, formula: Formula, told: dict[str, Any], expected: str | None) -> None:
+    """In `sampled every 3` the multiples of 3 are positions, up to the end."""
+    assert judge(formula, **told, **EVERY_3) == ([] if expected is None else [expected])
+
+
+@pytest.mark.parametrize(
+    ("formula", "told", "expected"),
+    [
+        # F[0,2] G[0,2] p: p from 1 to 3 makes G true at 1, known at 4.
+        (eventually(always(p, 0, 2), 0, 2), {"p": "01..0"}, "0 P 4"),
+        # p only on 1 and 2, then on 4 ...: G fails at 0 (0), 1 (3), 2 (3), the last at 3.
+        (eventually(always(p, 0, 2), 0, 2), {"p": "01.01", "end": 9}, "0 F 3"),
+        # G[0,2] F[0,1] p: at 0 by 1, at 1 by 1, at 2 it needs 2 or 3.
+        (always(eventually(p, 0, 1), 0, 2), {"p": "010.", "end": 9}, "0 F 4"),
+        (always(eventually(p, 0, 1), 0, 2), {"p": "0101", "end": 9}, "0 P 3"),
+        # (p U[0,2] q) at 0 or 3 ticks later.
+        (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0....1"}, "0 P 5"),
+        (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0.....1"}, "0 F 6"),
+    ],
+)
+def test_nested(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
+    """Nested operators are decided as soon as their operands leave one value."""
+    assert judge(formula, **told) == [expected]

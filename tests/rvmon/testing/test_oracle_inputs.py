@@ -1,0 +1,349 @@
+"""Signals, events, payloads, probes and numbers, worked out by hand from SEMANTICS 1 and 2."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.spec.checked import (
+    Arithmetic,
+    Formula,
+    Literal,
+    Numeric,
+    NumericOp,
+    SignalValue,
+    TimeModel,
+    UpdateFunction,
+    UpdateValue,
+)
+from rvmon.testing.build import (
+    always,
+    compared,
+    e,
+    eventually,
+    f,
+    g,
+    k,
+    no,
+    p,
+    probe,
+    q,
+    requirement,
+    spec_of,
+    two,
+    x,
+    y,
+)
+from rvmon.testing.oracle import evaluate
+from rvmon.testing.wording import MOST_TICKS
+from rvmon.trace.sample import Sample, Trace
+
+ALL = frozenset({"p", "q", "r", "x", "y", "mode", "e", "f", "g"})
+
+
+def at(judge: Any, formula: Formula, instant: int, **told: Any) -> str:
+    """The verdict of a formula at one instant, where the event f is made to occur."""
+    row = "." * instant + "1"
+    [attempt] = judge(requirement(formula, upon=f), f=row, **told)
+    return attempt.split()[1]
+
+
+@pytest.mark.parametrize(
+    ("formula", "instant", "told", "expected"),
+    [
+        # A signal holds its last value.
+        (p, 4, {"p": "1"}, "P"),
+        (p, 4, {"p": "1..0"}, "F"),
+        # Before its first value it is unknown, and after None.
+        (p, 1, {"q": "1", "p": "..1"}, "I"),
+        (p, 2, {"q": "1", "p": "..1"}, "P"),
+        (p, 3, {"p": "1.u"}, "I"),
+        (p, 4, {"p": "1.u.0"}, "F"),
+        (compared(x, ">", 3), 2, {"x": "5.n"}, "I"),
+        (compared(x, ">", 3), 3, {"x": "5.n9"}, "P"),
+        (compared(x, ">", 3), 1, {"x": "..5", "p": "1"}, "I"),
+        # An event is true at its tick only.
+        (e, 1, {"e": ".1"}, "P"),
+        (e, 2, {"e": ".1"}, "F"),
+        (e, 1, {"e": ".u"}, "I"),
+        (e, 2, {"e": ".u"}, "F"),
+        (e, 1, {"e": ".0"}, "F"),
+        # Labels.
+        (compared(SignalValue("mode"), "==", "red"), 1, {"mode": "r"}, "P"),
+        (compared(SignalValue("mode"), "!=", "red"), 1, {"mode": "r"}, "F"),
+        (compared(SignalValue("mode"), "!=", "red"), 1, {"mode": "u"}, "I"),
+        # A bool as a number.
+        (compared(SignalValue("p"), "==", 1), 1, {"p": "1"}, "P"),
+        (compared(SignalValue("p"), "<", 1), 1, {"p": "1"}, "F"),
+    ],
+)
+def test_values(judge: Any, formula: Formula, instant: int, told: Any, expected: str) -> None:
+    """Signals hold, events do not, and what was never told is unknown."""
+    assert at(judge, formula, instant, **told) == expected
+
+
+@pytest.mark.parametrize(
+    ("instant", "row", "expected"),
+    [
+        (2, "1", "P"),
+        (3, "1", "I"),
+        (4, "1.1", "P"),
+        (5, "1.1", "I"),
+        (6, "1.....0", "F"),
+    ],
+)
+def test_stale(judge: Any, instant: int, row: str, expected: str) -> None:
+    """With `stale after 2` an update at t is good up to t + 2 and unknown from t + 3."""
+    for time in (TimeModel.HELD, TimeModel.SAMPLED):
+        assert at(judge, p, instant, p=row, stale={"p": 2}, time=time) == expected
+    known = "F" if expected == "I" else "P"
+    assert at(judge, probe("known", "p"), instant, p=row, stale={"p": 2}) == known
+
+
+def test_staleness_needs_no_sample(judge: Any) -> None:
+    """A signal becomes stale by time alone, and that is seen at once."""
+    stale = eventually(no(probe("known", "p")), 0, 9)
+    assert judge(stale, p="1", stale={"p": 2}, end=5) == ["0 P 3"]
+    assert judge(stale, p="1", stale={"p": 2}, end=2) == ["0 I"]
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        (p, "I"),
+        (e, "I"),
+        (no(e), "I"),
+        (compared(k, ">", 3), "I"),
+        (compared(x, ">", 3), "I"),
+        (probe("known", "p"), "F"),
+        (probe("updated", "p"), "F"),
+        (probe("updated", "e"), "F"),
+        (probe("changed", "p"), "I"),
+        (two(e, "or", q), "P"),
+        (two(e, "and", no(q)), "F"),
+    ],
+)
+def test_absent(judge: Any, formula: Formula, expected: str) -> None:
+    """What has no source is unknown throughout, an event as well, and never false."""
+    names = ALL - {"p", "x", "e", "g"}
+    assert at(judge, formula, 2, q="1", names=names) == expected
+
+
+def test_absent_trigger(judge: Any) -> None:
+    """A trigger that is unknown throughout starts nothing."""
+    assert judge(requirement(p, upon=e), p="1..0", names=ALL - {"e"}) == []
+
+
+@pytest.mark.parametrize(
+    ("formula", "row", "expected"),
+    [
+        # No occurrence: false, and its negation true.
+        (compared(k, ">", 3), ".", "F"),
+        (no(compared(k, ">", 3)), ".", "P"),
+        (compared(k, ">", 3), "5", "P"),
+        (compared(k, ">", 3), "2", "F"),
+        (no(compared(k, ">", 3)), "2", "P"),
+        # It occurs without the field, or with None: unknown.
+        (compared(k, ">", 3), "t", "I"),
+        (compared(k, ">", 3), "v", "I"),
+        (g, "v", "P"),
+        # Whether it occurs is not known: neither is the comparison.
+        (compared(k, ">", 3), "u", "I"),
+        # With an unknown other side: false without an occurrence, else unknown.
+        (compared(k, ">", x), ".", "F"),
+        (compared(k, ">", x), "5", "I"),
+    ],
+)
+def test_payloads(judge: Any, formula: Formula, row: str, expected: str) -> None:
+    """A comparison of a payload field is false, not unknown, where the event does not occur."""
+    assert at(judge, formula, 1, p="1", g="." + row) == expected
+
+
+def test_payloads_are_not_held(judge: Any) -> None:
+    """The comparison is false again at the next instant, and where the event is said not to be."""
+    assert at(judge, compared(k, "==", 5), 2, g=".5") == "F"
+    assert judge(compared(k, "==", 5), samples=[Sample(0, {"g": False})]) == ["0 F 0"]
+
+
+def test_payload_with_signal(judge: Any) -> None:
+    """A comparison may mix a payload field with a signal's held value."""
+    formula = compared(Arithmetic(NumericOp.ADD, (k, x)), "==", 7)
+    assert at(judge, formula, 1, x="2", g=".5") == "P"
+    assert at(judge, formula, 1, x="2", g=".4") == "F"
+    assert at(judge, formula, 1, x="2", g="5") == "F"
+
+
+@pytest.mark.parametrize(
+    ("formula", "instant", "told", "expected"),
+    [
+        (probe("updated", "x"), 1, {"x": ".5"}, "P"),
+        (probe("updated", "x"), 2, {"x": ".5"}, "F"),
+        (probe("updated", "x"), 1, {"x": ".u"}, "P"),
+        (probe("updated", "x"), 1, {"x": ".n"}, "P"),
+        (probe("updated", "e"), 1, {"e": ".1"}, "P"),
+        (probe("updated", "e"), 2, {"e": ".1"}, "F"),
+        (probe("known", "x"), 0, {"x": "u5n"}, "F"),
+        (probe("known", "x"), 1, {"x": "u5n"}, "P"),
+        (probe("known", "x"), 2, {"x": "u5n"}, "F"),
+        # The first update changes nothing; the same value neither; then only at its tick.
+        (probe("changed", "x"), 0, {"x": "5"}, "F"),
+        (probe("changed", "x"), 2, {"x": "5.5"}, "F"),
+        (probe("changed", "x"), 2, {"x": "5.6"}, "P"),
+        (probe("changed", "x"), 3, {"x": "5.6"}, "F"),
+        (probe("changed", "x"), 1, {"x": "5u7"}, "I"),
+        (probe("changed", "x"), 2, {"x": "5u7"}, "I"),
+        (probe("changed", "x"), 0, {"x": "u"}, "F"),
+        (probe("changed", "mode"), 1, {"mode": "rg"}, "P"),
+        # A stale value is still the value of the last update.
+        (probe("changed", "x"), 9, {"x": "5........6", "stale": {"x": 2}}, "P"),
+    ],
+)
+def test_probes(judge: Any, formula: Formula, instant: int, told: Any, expected: str) -> None:
+    """An update is any entry in a sample; `changed` compares the last two."""
+    assert at(judge, formula, instant, **told) == expected
+
+
+def of_updates(function: str, name: str = "x") -> Numeric:
+    return UpdateValue(UpdateFunction(function), name)
+
+
+@pytest.mark.parametrize(
+    ("formula", "instant", "told", "expected"),
+    [
+        # The last two updates of x, however many ticks and other samples lie between.
+        (compared(of_updates("prev"), "==", 5), 7, {"x": "5..7", "p": "1.0.1"}, "P"),
+        (compared(of_updates("delta"), "==", 2), 3, {"x": "5..7"}, "P"),
+        (compared(of_updates("delta"), "==", 0), 4, {"x": "5..77"}, "P"),
+        # 2 in 4 ns is 5e8 per second.
+        (compared(of_updates("rate"), "==", 500_000_000), 4, {"x": "5...7"}, "P"),
+        # Unknown before the second update, if either value is, or x itself is stale.
+        (compared(of_updates("prev"), "==", 5), 2, {"x": "5..7"}, "I"),
+        (compared(of_updates("prev"), "==", 5), 2, {"x": "5u7"}, "I"),
+        (compared(of_updates("prev"), "==", 5), 2, {"x": "57u"}, "I"),
+        (compared(of_updates("delta"), "==", 2), 2, {"x": "5u7"}, "I"),
+        (compared(of_updates("prev"), "==", 5), 3, {"x": "57", "stale": {"x": 2}}, "P"),
+        (compared(of_updates("prev"), "==", 5), 4, {"x": "57", "stale": {"x": 2}}, "I"),
+    ],
+)
+def test_updates(judge: Any, formula: Formula, instant: int, told: Any, expected: str) -> None:
+    """`prev`, `delta` and `rate` speak of the last two updates."""
+    assert at(judge, formula, instant, **told) == expected
+
+
+@pytest.mark.parametrize(
+    ("op", "args", "equals"),
+    [
+        ("+", (x, y), 11),
+        ("-", (x, y), 5),
+        ("*", (x, y), 24),
+        ("/", (x, Literal(5)), 1.6),
+        ("neg", (x,), -8),
+        ("abs", (Literal(-3),), 3),
+        ("min", (x, y), 3),
+        ("max", (x, y), 8),
+        ("sqrt", (Literal(9),), 3),
+        ("hypot", (y, Literal(4)), 5),
+        ("/", (x, Literal(0)), None),
+        ("sqrt", (Literal(-1),), None),
+        ("*", (Literal(1e308), Literal(10)), None),
+        ("hypot", (Literal(1e308), Literal(1.7e308)), None),
+        ("+", (x, SignalValue("mode")), None),
+    ],
+)
+def test_arithmetic(judge: Any, op: str, args: tuple[Numeric, ...], equals: float | None) -> None:
+    """A result that is no finite number is unknown."""
+    value = Arithmetic(NumericOp(op), args)
+    if equals is None:
+        assert at(judge, compared(value, "<", 0), 1, x="8", y="3") == "I"
+        assert at(judge, compared(value, ">=", 0), 1, x="8", y="3") == "I"
+    else:
+        assert at(judge, compared(value, "==", equals), 1, x="8", y="3") == "P"
+        assert at(judge, compared(value, "!=", equals), 1, x="8", y="3") == "F"
+
+
+@pytest.mark.parametrize(
+    ("op", "verdicts"),
+    [("<", "PFF"), ("<=", "PPF"), ("==", "FPF"), ("!=", "PFP"), (">=", "FPP"), (">", "FFP")],
+)
+def test_comparisons(judge: Any, op: str, verdicts: str) -> None:
+    """Each comparison below, at and above its threshold."""
+    got = [judge(compared(x, op, 5), x=value)[0].split()[1] for value in "456"]
+    assert "".join(got) == verdicts
+
+
+def test_infinite_value(judge: Any) -> None:
+    """An infinite value compares as a number; what is computed from it is unknown."""
+    samples = [Sample(0, {"x": float("inf")})]
+    assert judge(compared(x, ">", 5), samples=samples) == ["0 P 0"]
+    difference = Arithmetic(NumericOp.SUB, (x, Literal(1)))
+    assert judge(compared(difference, ">", 5), samples=samples) == ["0 I"]
+
+
+def test_clock_gathers(judge: Any) -> None:
+    """To a tick of the clock falls all that came after the tick before."""
+
+    def attempts(formula: Formula, **rows: str) -> list[str]:
+        told = {**rows, "time": TimeModel.CLOCKED, "period": 3, "end": 9}
+        return judge(requirement(p, upon=formula), p="1", **told)
+
+    assert attempts(e, e="....1") == ["6 P 6"]
+    assert attempts(e, e="...11") == ["3 P 3", "6 P 6"]
+    assert attempts(e, e="....11") == ["6 P 6"]
+    assert attempts(e, e="....u0") == []
+    assert attempts(e, e="....u1") == ["6 P 6"]
+    assert attempts(compared(k, "==", 4), g="....45") == ["6 P 6"]
+    assert attempts(compared(k, "==", 4), g="....54") == ["6 P 6"]
+    assert attempts(probe("changed", "x"), x="5...75") == ["6 P 6"]
+    assert attempts(probe("updated", "x"), x="5..5") == ["0 P 0", "3 P 3"]
+
+
+def test_events_before_the_first_tick(judge: Any) -> None:
+    """What came before the first tick of the clock belongs to it."""
+    told = {"time": TimeModel.CLOCKED, "period": 5, "end": 5}
+    assert judge(requirement(p, upon=e), p=".1", e="..1", **told) == ["5 P 5"]
+
+
+def test_negative_times(judge: Any) -> None:
+    """Multiples of the period are counted from zero, below it as well."""
+    samples = [Sample(-4, {"p": True}), Sample(-1, {"p": False})]
+    told = {"time": TimeModel.CLOCKED, "period": 3}
+    assert judge(always(p, 0, 3), samples=samples, end=0, **told) == ["-3 F 0"]
+
+
+def test_several_payloads_need_for_each() -> None:
+    """Two payloads of one event at one instant are refused without a `for each`."""
+    spec = spec_of(requirement(p, upon=g))
+    with pytest.raises(TraceError, match="2 payloads of `g`"):
+        evaluate(spec, [Sample(0, {"g": ({"k": 1}, {"k": 2})})])
+
+
+def test_wrong_traces() -> None:
+    """Times that do not increase, endless traces and values from nowhere are refused."""
+    spec = spec_of(requirement(p))
+    with pytest.raises(TimeOrderError, match="3 ns after one at 3 ns"):
+        evaluate(spec, [(3, {}), (3, {})])
+    with pytest.raises(TraceError, match="scale durations"):
+        evaluate(spec, [(0, {}), (MOST_TICKS + 1, {})])
+    with pytest.raises(TraceError, match="`p`, which has no source"):
+        evaluate(spec, [(0, {"p": True})], names=frozenset({"q"}))
+
+
+def test_trace_brings_end_and_names() -> None:
+    """A `Trace` says itself when it ended and what has a source."""
+    spec = spec_of(requirement(two(eventually(p, 0, 3), "and", no(e))))
+    samples = (Sample(0, {"p": False}),)
+    assert evaluate(spec, Trace(samples, end=4)).verdicts["R"] == "F"
+    names = ALL - {"e"}
+    assert evaluate(spec, Trace(samples, names, 3)).verdicts["R"] == "I"
+    assert evaluate(spec, Trace(samples, end=4), end=9).attempts[0].decided == 4
+
+
+def test_accepts_a_public_spec() -> None:
+    """Whatever carries a checked spec may be given."""
+
+    class Loaded:
+        checked = spec_of(requirement(p))
+
+    assert evaluate(Loaded(), [(0, {"p": True})]).verdicts["R"] == "P"

@@ -1,0 +1,199 @@
+"""Past operators and connectives, each expected value worked out by hand from SEMANTICS 2."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from rvmon.spec.checked import Formula, TimeModel
+from rvmon.testing.build import (
+    always,
+    e,
+    eventually,
+    fall,
+    false,
+    held,
+    historically,
+    no,
+    once,
+    p,
+    previous,
+    q,
+    requirement,
+    rise,
+    start,
+    true,
+    two,
+)
+
+
+@pytest.mark.parametrize(
+    ("formula", "rows", "expected"),
+    [
+        # p at 0 only, judged at 3.
+        (once(p, 0, 2), {"p": "10", "e": "...1"}, "F"),
+        (once(p, 0, 3), {"p": "10", "e": "...1"}, "P"),
+        (once(p, 3, 3), {"p": "10", "e": "...1"}, "P"),
+        (once(p, 2, 2), {"p": "10", "e": "...1"}, "F"),
+        (once(p), {"p": "10", "e": "...1"}, "P"),
+        (once(p, 1), {"p": "0..1", "e": "...1"}, "F"),
+        # Over nothing once is false and historically true.
+        (once(p, 4, 9), {"p": "1", "e": "...1"}, "F"),
+        (historically(p, 4, 9), {"p": "0", "e": "...1"}, "P"),
+        (historically(p, 0, 2), {"p": "01", "e": "...1"}, "P"),
+        (historically(p, 0, 3), {"p": "01", "e": "...1"}, "F"),
+        (historically(p, 1, 2), {"p": "01.0", "e": "...1"}, "P"),
+        (historically(p), {"p": "1..0", "e": "...1"}, "F"),
+        (historically(p, 0, 2), {"p": "1u1", "e": "...1"}, "I"),
+        (historically(p, 0, 1), {"p": "1u1", "e": "...1"}, "P"),
+    ],
+)
+def test_once_and_historically(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
+    """`O` and `H` look back over the held trace, also before the trigger."""
+    instant = "" if expected == "I" else " 3"
+    assert judge(requirement(formula, upon=e), **rows) == [f"3 {expected}{instant}"]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "p_row", "q_row", "expected"),
+    [
+        # q at 0 only, p from 1 on: the left operand is owed behind q, up to now.
+        (0, None, "01", "10", "P"),
+        (0, 2, "01", "10", "F"),
+        (0, 3, "01", "10", "P"),
+        (3, 3, "01", "10", "P"),
+        (0, None, "01.0", "10", "F"),
+        (0, None, "010", "10", "F"),
+        # q now needs no p.
+        (0, None, "0", "1", "P"),
+        # q at 1 and 2: with a = 2 only 1 counts, and p is owed at 2 and 3.
+        (2, None, "0.1", "01.0", "P"),
+        (2, None, "0..1", "01.0", "F"),
+        (0, None, "0.u1", "010", "I"),
+    ],
+)
+def test_since(
+    judge: Any, low: int, high: int | None, p_row: str, q_row: str, expected: str
+) -> None:
+    """`p S[a,b] q` is `U` mirrored: q back in the window, and p at every instant after it."""
+    instant = "" if expected == "I" else " 3"
+    formula = two(p, "S", q, low, high)
+    got = judge(requirement(formula, upon=e), p=p_row, q=q_row, e="...1")
+    assert got == [f"3 {expected}{instant}"]
+
+
+@pytest.mark.parametrize(
+    ("formula", "rows", "expected"),
+    [
+        # At the first position Y is false, rise(φ) is φ, fall(φ) is false.
+        (previous(p), {"p": "1", "e": "1"}, "0 F 0"),
+        (no(previous(p)), {"p": "1", "e": "1"}, "0 P 0"),
+        (rise(p), {"p": "1", "e": "1"}, "0 P 0"),
+        (rise(p), {"p": "0", "e": "1"}, "0 F 0"),
+        (fall(p), {"p": "0", "e": "1"}, "0 F 0"),
+        (fall(p), {"p": "1", "e": "1"}, "0 F 0"),
+        # In held time "before" is the tick before.
+        (rise(p), {"p": "0.1", "e": "..1"}, "2 P 2"),
+        (rise(p), {"p": "0.1", "e": "...1"}, "3 F 3"),
+        (fall(p), {"p": "1.0", "e": "..1"}, "2 P 2"),
+        (fall(p), {"p": "1.0", "e": "...1"}, "3 F 3"),
+        (rise(p), {"p": "u.1", "e": "..1"}, "2 I"),
+        (rise(p), {"p": "u.0", "e": "..1"}, "2 F 2"),
+        (fall(p), {"p": "1.u", "e": "..1"}, "2 I"),
+    ],
+)
+def test_rise_and_fall(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
+    """`rise` and `fall` compare with the position before."""
+    assert judge(requirement(formula, upon=e), **rows) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("formula", "rows", "expected"),
+    [
+        # The sample before, however long ago.
+        (previous(p), {"p": "1...0", "e": "....1"}, "4 P 4"),
+        (rise(p), {"p": "0...1", "e": "....1"}, "4 P 4"),
+        (rise(p), {"p": "0.1.1", "e": "....1"}, "4 F 4"),
+        (once(p, 0, 2), {"p": "1.0.0", "e": "....1"}, "4 F 4"),
+        (once(p, 1, 3), {"p": "1...0", "e": "....1"}, "4 F 4"),
+        (historically(p, 1, 3), {"p": "0...1", "e": "....1"}, "4 P 4"),
+    ],
+)
+def test_sampled_past(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
+    """In `sampled` time past operators see samples only."""
+    got = judge(requirement(formula, upon=e), **rows, time=TimeModel.SAMPLED)
+    assert got == [expected]
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ({"p": "1", "e": "..1"}, "2 P 2"),
+        # Not yet two ticks since the start, though p was never false.
+        ({"p": "1", "e": ".1"}, "1 F 1"),
+        ({"p": "01", "e": "...1"}, "3 P 3"),
+        ({"p": "01", "e": "..1"}, "2 F 2"),
+        # The start is the first sample, not zero.
+        ({"p": ".1", "e": "...1"}, "3 P 3"),
+        ({"p": ".1", "e": "..1"}, "2 F 2"),
+        ({"p": "1u1", "e": "...1"}, "3 I"),
+        ({"p": "1u1", "e": ".1"}, "1 F 1"),
+    ],
+)
+def test_held(judge: Any, rows: Any, expected: str) -> None:
+    """`held(p, 2)`: p now and for two ticks back, and at least two since the start."""
+    assert judge(requirement(held(p, 2), upon=e), **rows) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("formula", "rows", "expected"),
+    [
+        # G[0,2] O[0,1] p: at 2 it needs p at 1 or 2.
+        (always(once(p, 0, 1), 0, 2), {"p": "10.", "end": 3}, "0 F 2"),
+        (always(once(p, 0, 1), 0, 2), {"p": "1010", "end": 3}, "0 P 3"),
+        # O[2,2] F[0,1] p at 3 looks at 1 and 2.
+        (eventually(once(eventually(p, 0, 1), 2, 2), 3, 3), {"p": "0.1"}, None),
+        (eventually(once(eventually(p, 0, 1), 2, 2), 3, 3), {"p": "0.1", "end": 4}, "0 P 3"),
+        # H[0,1] F[0,2] p at 0: one position; p by 2.
+        (historically(eventually(p, 0, 2), 0, 1), {"p": "0.1"}, "0 P 2"),
+        (historically(eventually(p, 0, 2), 0, 1), {"p": "0..1"}, "0 F 3"),
+    ],
+)
+def test_past_and_future(judge: Any, formula: Formula, rows: Any, expected: str | None) -> None:
+    """Past and future operators nest either way."""
+    assert judge(formula, **rows) == [expected or "0 I"]
+
+
+@pytest.mark.parametrize(
+    ("op", "table"),
+    [
+        # Rows: p = 0, u, 1; columns: q = 0, u, 1.
+        ("and", ["FFF", "FII", "FIP"]),
+        ("or", ["FIP", "IIP", "PPP"]),
+        ("->", ["PPP", "IIP", "FIP"]),
+        ("<->", ["PIF", "III", "FIP"]),
+        ("xor", ["FIP", "III", "PIF"]),
+    ],
+)
+def test_connectives(judge: Any, op: str, table: list[str]) -> None:
+    """The connectives are Kleene's."""
+    for p_value, row in zip("0u1", table, strict=True):
+        for q_value, expected in zip("0u1", row, strict=True):
+            instant = "" if expected == "I" else " 0"
+            got = judge(two(p, op, q), p=p_value, q=q_value)
+            assert got == [f"0 {expected}{instant}"], (p_value, q_value)
+
+
+def test_no_rule_of_the_excluded_middle(judge: Any) -> None:
+    """An unknown `p or not p` is unknown: no operator looks at two operands at once."""
+    assert judge(two(p, "or", no(p)), p="u") == ["0 I"]
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [(true, "0 P 0"), (false, "0 F 0"), (start, "0 P 0"), (always(start, 0, 1), "0 F 1")],
+)
+def test_constants(judge: Any, formula: Formula, expected: str) -> None:
+    """`start` is true at the first position only."""
+    assert judge(formula, p="01") == [expected]
