@@ -78,13 +78,13 @@ TABLE_THICKNESS: Final = 0.03
 FLOOR_Z: Final = -0.70
 
 # --- planner --------------------------------------------------------------------------------
-PLAN_LATENCY_S: Final = (1.8, 2.3)
+PLAN_LATENCY_S: Final = (1.8, 2.2)
 """Uniform. With three plans before it, the gripper closes 9 to 13 s after the activation (paper's
 robot: 14.3 to 18.3 s after the start), and the correct robot's whole move takes at most 18 s from
 any start pose, so that its 30 s for a decision hold."""
 
-TOOL_SPEED_LIMIT: Final = 0.24
-"""m/s at a path's fastest point: just below the 0.25 m/s of collaborative operation."""
+TOOL_SPEED_LIMIT: Final = 0.23
+"""m/s at a path's fastest point: below the 0.25 m/s of collaborative operation."""
 
 SHORTEST_MOTION_S: Final = 0.5
 START_POSE_RANGE: Final = 0.5

@@ -122,8 +122,9 @@ def hand_offset(scene: Scene) -> tuple[float, float]:
 
 
 def tool_speed(scene: Scene) -> float:
-    """Metres per second of the palm."""
-    return float(scene.links[2].velocity.length)
+    """Metres per second of the point between the pads."""
+    between_pads = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
+    return float(scene.links[2].velocity_at_local_point(between_pads).length)
 
 
 def gripper_centre(scene: Scene) -> tuple[float, float]:
