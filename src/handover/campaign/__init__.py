@@ -1,0 +1,1 @@
+"""Campaigns: many tests on all cores, their table, their files and pages."""

@@ -1,0 +1,120 @@
+"""Play a plan on all cores; whatever ends it early, the finished tests are kept."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
+from itertools import groupby
+
+from handover.campaign.outcome import Outcome, Results
+from handover.campaign.plan import Job, Plan
+from handover.campaign.play import Chunk, Played, play
+
+CHUNK = 25
+"""Tests per chunk at most: the start of a chunk costs about as much as one test."""
+
+CHUNKS_PER_WORKER = 4
+"""At least so many chunks for each worker, so that all end at about the same time."""
+
+INTERRUPTED = "interrupted"
+WORKER_DIED = "a worker process died"
+
+Progress = Callable[[int], None]
+"""Called with the number of tests that have been finished since the last call."""
+
+
+def execute(
+    plan: Plan, *, jobs: int | None = None, unfitted: bool = True, progress: Progress | None = None
+) -> Results:
+    """Play all tests of a plan.
+
+    The results do not depend on the number of workers.
+
+    Args:
+        plan: what to play.
+        jobs: worker processes; default: one per core; 1 plays in this process.
+        unfitted: also play the tests whose signals got lost once more without that loss.
+        progress: told as tests are finished.
+    """
+    started = time.perf_counter()
+    workers = jobs or os.cpu_count() or 1
+    outcomes, cut_short = _execute(plan, plan.jobs(), workers, progress)
+    repeated: list[Outcome] = []
+    if unfitted and not cut_short:
+        lost = [replace(one.job, startup_loss=False) for one in outcomes if not one.connected]
+        repeated, cut_short = _execute(plan, lost, workers, None)
+    seconds = time.perf_counter() - started
+    return Results(plan, tuple(outcomes), tuple(repeated), seconds, cut_short)
+
+
+def _execute(
+    plan: Plan, jobs: Sequence[Job], workers: int, progress: Progress | None
+) -> tuple[list[Outcome], str]:
+    played: list[Played] = []
+
+    def keep(one: Played) -> None:
+        played.append(one)
+        if progress is not None:
+            progress(len(one.outcomes))
+
+    chunks = _chunks(plan, jobs, workers)
+    run = _here if workers == 1 or len(chunks) < 2 else _in_workers
+    cut_short = run(chunks, workers, keep)
+    played.sort(key=lambda one: one.chunk.start)
+    return [outcome for one in played for outcome in one.outcomes], cut_short
+
+
+def _chunks(plan: Plan, jobs: Sequence[Job], workers: int) -> list[Chunk]:
+    size = max(1, min(CHUNK, len(jobs) // (workers * CHUNKS_PER_WORKER)))
+    chunks: list[Chunk] = []
+    start = 0
+    for robot, group in groupby(jobs, key=lambda job: job.robot):
+        of_robot = list(group)
+        for first in range(0, len(of_robot), size):
+            some = tuple(of_robot[first : first + size])
+            chunks.append(Chunk(start, some, plan.specs[robot] if plan.monitors else None))
+            start += len(some)
+    return chunks
+
+
+def _here(chunks: Sequence[Chunk], _workers: int, keep: Callable[[Played], None]) -> str:
+    for chunk in chunks:
+        one = play(chunk)
+        keep(one)
+        if len(one.outcomes) < len(chunk.jobs):
+            return INTERRUPTED
+    return ""
+
+
+def _in_workers(chunks: Sequence[Chunk], workers: int, keep: Callable[[Played], None]) -> str:
+    # Workers that are spawned inherit no threads and no state, on every platform.
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(
+        min(workers, len(chunks)), mp_context=context, initializer=_leave_interrupts_to_parent
+    )
+    waiting: set[Future[Played]] = {pool.submit(play, chunk) for chunk in chunks}
+    try:
+        for future in as_completed(tuple(waiting)):
+            waiting.remove(future)
+            keep(future.result())
+    except KeyboardInterrupt:
+        for future in waiting:
+            if not future.cancel():  # a worker has it already: it takes less than a second
+                keep(future.result())
+        return INTERRUPTED
+    except BrokenProcessPool:
+        return WORKER_DIED
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return ""
+
+
+def _leave_interrupts_to_parent() -> None:
+    """Ctrl-C reaches all processes of a terminal; the workers finish what they have."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,25 @@
+"""The test generation strategies by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from handover.generator.abstract_test import AbstractTest
+from handover.generator.files import directed
+from handover.generator.pseudorandom import constrained, pseudorandom
+
+Strategy = Callable[[int, int], Sequence[AbstractTest]]
+"""Makes tests from `(count, seed)`."""
+
+
+def _directed(_count: int, _seed: int) -> Sequence[AbstractTest]:
+    """The directed tests are files: all of them, always the same."""
+    return directed()
+
+
+STRATEGIES: Mapping[str, Strategy] = {
+    "pseudorandom": pseudorandom,
+    "constrained": constrained,
+    "directed": _directed,
+}
+"""In the order of the columns of a table."""

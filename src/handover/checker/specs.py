@@ -1,0 +1,19 @@
+"""Where the requirements of the two robots stand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+SPECS = {"correct": "specs/handover.rv", "legacy": "specs/handover_legacy.rv"}
+"""The specification that judges each robot: the paper's words, and its testbench's triggers."""
+
+
+def spec_path(robot: str) -> Path:
+    """The file of a robot's requirements, in an installed package or in the source tree.
+
+    >>> spec_path("correct").name
+    'handover.rv'
+    """
+    package = Path(__file__).parents[1]
+    packaged = package / SPECS[robot]
+    return packaged if packaged.exists() else package.parents[1] / SPECS[robot]
