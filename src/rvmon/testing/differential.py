@@ -134,7 +134,7 @@ def campaign(
     for index, seed in enumerate(seeds):
         case = case_of(seed, profile, traces)
         online = online_every > 0 and index % online_every == 0
-        _count(tally, case)
+        count(tally, case)
         found = disagreements(case, make, online=online)
         if found:
             lines = [f"seed {seed}", *found]
@@ -152,7 +152,8 @@ def _shrunk(case: Case, make: MakeMonitor, online: bool) -> str:
     return "\n".join(["shrunk:", *disagreements(small, make, online=online), show_case(small)])
 
 
-def _count(tally: Tally, case: Case) -> None:
+def count(tally: Tally, case: Case) -> None:
+    """Add the oracle's figures for a case."""
     tally.pairs += 1
     for attempt in judge(case).attempts:
         tally.attempts[attempt.verdict.value] += 1

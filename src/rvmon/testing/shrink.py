@@ -28,7 +28,8 @@ from rvmon.trace.sample import Sample
 def shrink(case: Case, shows: Callable[[Case], bool], *, most: int = 5_000) -> Case:
     """Take away from a case as long as it still shows what is looked for.
 
-    Greedy: the first smaller case that shows it is taken, until none does.
+    Greedy: the first smaller case that shows it is taken, until none does. Every step takes
+    something away for good, so it ends.
 
     Args:
         case: shows it.
@@ -56,8 +57,8 @@ def _smaller(case: Case) -> Iterator[Case]:
             kept = {key: value for key, value in requirements.items() if key != name}
             yield replace(case, spec=replace(case.spec, requirements=kept))
     actions = case.actions
-    for size in (len(actions) // 2, 1):
-        for start in range(0, len(actions), size or 1):
+    for size in sorted({max(len(actions) // 2, 1), 1}, reverse=True):
+        for start in range(0, len(actions), size):
             yield replace(case, actions=actions[:start] + actions[start + size :])
     if case.end is not None:
         yield replace(case, end=None)
@@ -87,13 +88,25 @@ def _fewer_values(case: Case) -> Iterator[Case]:
 
 
 def _less_time(case: Case) -> Iterator[Case]:
-    """All from some action on one tick earlier, down to zero, where there is room for it."""
-    for index in range(len(case.actions)):
-        moved = (*case.actions[:index], *(_earlier(action) for action in case.actions[index:]))
-        if _in_order(moved):
-            yield replace(case, actions=moved, end=None if case.end is None else case.end - 1)
+    """All from some action on earlier, down to zero, where there is room for it; then the end."""
+    before = 0
+    for index, action in enumerate(case.actions):
+        instant = action.t if isinstance(action, Sample) else action
+        for step in _steps(instant - before):
+            later = (_earlier(action, step) for action in case.actions[index:])
+            moved = (*case.actions[:index], *later)
+            if _in_order(moved):
+                end = None if case.end is None else case.end - step
+                yield replace(case, actions=moved, end=end)
+        before = instant
     if case.end is not None:
-        yield replace(case, end=case.end - 1)
+        for step in _steps(case.end - before):
+            yield replace(case, end=case.end - step)
+
+
+def _steps(room: int) -> list[int]:
+    """All the room, half of it, one tick."""
+    return sorted({room, room // 2, 1}, reverse=True) if room > 0 else []
 
 
 def _in_order(actions: Sequence[Sample | int]) -> bool:
@@ -111,8 +124,8 @@ def _in_order(actions: Sequence[Sample | int]) -> bool:
     return True
 
 
-def _earlier(action: Sample | int) -> Sample | int:
-    return Sample(action.t - 1, action.values) if isinstance(action, Sample) else action - 1
+def _earlier(action: Sample | int, step: int) -> Sample | int:
+    return Sample(action.t - step, action.values) if isinstance(action, Sample) else action - step
 
 
 def _smaller_requirement(requirement: Requirement) -> Iterator[Requirement]:
@@ -155,7 +168,7 @@ def _smaller_formulas(formula: Formula) -> Iterator[Formula]:
             yield from (replace(formula, right=smaller) for smaller in _smaller_formulas(right))
             for window in _smaller_intervals(interval):
                 yield replace(formula, interval=window)
-        case Constant():
+        case Constant() | BoundAtom():
             return
         case _:
             yield Constant(True)

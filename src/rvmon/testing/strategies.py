@@ -1,0 +1,82 @@
+"""Hypothesis strategies: the random specs and traces of this package, drawn so that they shrink.
+
+Needs `hypothesis`, which rvmon itself does not install.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from hypothesis import strategies as st
+
+from rvmon.spec.checked import CheckedSpec, Formula
+from rvmon.testing.case import Case
+from rvmon.testing.generate_formula import Shape, formula
+from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate_trace import TraceProfile, random_trace
+
+_ANY_SPEC = Profile()
+_ANY_TRACE = TraceProfile()
+_ANY_FORMULA = Shape()
+
+
+class _Drawn:
+    """Dice that Hypothesis throws."""
+
+    def __init__(self, draw: Callable[[st.SearchStrategy[int]], int]) -> None:
+        self._draw = draw
+
+    def randint(self, a: int, b: int, /) -> int:
+        """An integer from `a` to `b`."""
+        return self._draw(st.integers(a, b))
+
+
+@st.composite
+def formulas(draw: st.DrawFn, shape: Shape = _ANY_FORMULA, *, depth: int = 3) -> Formula:
+    """Formulas over the test vocabulary.
+
+    Args:
+        draw: given by Hypothesis.
+        shape: what they may hold.
+        depth: how deep their operators nest at most.
+    """
+    return formula(_Drawn(draw), shape, draw(st.integers(0, depth)))
+
+
+@st.composite
+def specs(draw: st.DrawFn, profile: Profile = _ANY_SPEC) -> CheckedSpec:
+    """Specifications over the test vocabulary, with bounds of a few ticks.
+
+    Args:
+        draw: given by Hypothesis.
+        profile: what they may hold.
+    """
+    return random_spec(_Drawn(draw), profile)
+
+
+@st.composite
+def traces(draw: st.DrawFn, spec: CheckedSpec, profile: TraceProfile = _ANY_TRACE) -> Case:
+    """Traces for a specification of yours, biased to its bounds and thresholds.
+
+    Args:
+        draw: given by Hypothesis.
+        spec: the checked specification (`Spec.checked`); its bounds should be a few ticks if the
+            oracle is to judge.
+        profile: what they may hold.
+    """
+    return random_trace(_Drawn(draw), spec, profile)
+
+
+@st.composite
+def cases(
+    draw: st.DrawFn, profile: Profile = _ANY_SPEC, trace_profile: TraceProfile = _ANY_TRACE
+) -> Case:
+    """Specifications with a trace each.
+
+    Args:
+        draw: given by Hypothesis.
+        profile: of the specs.
+        trace_profile: of the traces.
+    """
+    dice = _Drawn(draw)
+    return random_trace(dice, random_spec(dice, profile), trace_profile)
