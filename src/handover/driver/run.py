@@ -31,7 +31,7 @@ class Run:
         mutation: the change made to the robot, if any.
         samples: `(t_ns, values)`, strictly increasing, only what changed or occurred; events are
             `True`, a signal that is unknown is `None`; distances in m, speeds in m/s.
-        states: `(t_ns, state)` at each entry of a robot state.
+        states: `(t_ns, state)` at each entry of a robot state, also from itself (a poll).
         end_ns: the horizon.
         stepped_s: simulated seconds for which the physics was stepped.
         error: the exception of the robot's code as one text, if it crashed.

@@ -6,6 +6,7 @@ import math
 import traceback
 from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
 
 from handover.world.bus import Node
 from handover.world.parameters import NS
@@ -68,5 +69,8 @@ class Process:
 def describe(error: Exception) -> str:
     """An exception as one line: type, text, and the innermost place."""
     frames = traceback.extract_tb(error.__traceback__)
-    place = f" ({frames[-1].name}, line {frames[-1].lineno})" if frames else ""
+    place = ""
+    if frames:
+        last = frames[-1]
+        place = f" ({Path(last.filename).name}, line {last.lineno}, in {last.name})"
     return f"{type(error).__name__}: {error}{place}"
