@@ -1,0 +1,318 @@
+"""The robot's code against hand-made surroundings: no world, no physics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from handover.robot.behaviour import CORRECT, LEGACY, Behaviour
+from handover.robot.handover import STATES, HandoverRobot
+from handover.robot.mutants import MUTATIONS
+
+
+@dataclass
+class Message:
+    value: bool | float | str | None
+    stamp: float
+
+
+@dataclass
+class Path:
+    duration: float
+
+
+@dataclass
+class Reading:
+    gaze: bool | None
+    pressure: bool | None
+    location: bool | None
+
+
+ALL_OK = Reading(gaze=True, pressure=True, location=True)
+
+
+@dataclass
+class Bench:
+    """Bus, arm, gripper and sensors in one, with a clock that the waits of the robot drive."""
+
+    signals: list[Message] = field(default_factory=list)
+    reading: Callable[[float], Reading] = lambda _: ALL_OK
+    piece_seen: Callable[[float], tuple[float, float] | None] = lambda _: (0.2, 0.2)
+    reachable: bool = True
+    timeout_time: int = 50
+    time: float = 0.0
+    log: list[tuple[float, str, object]] = field(default_factory=list)
+    subscriptions: int = 0
+    commands: list[str] = field(default_factory=list)
+
+    @property
+    def params(self) -> dict[str, Any]:
+        pose = (1.0, -2.0, -0.5)
+        return {"zero_pose": pose, "start_pose": pose, "timeout_time": self.timeout_time}
+
+    def now(self) -> float:
+        return self.time
+
+    def publish(self, topic: str, value: Any = None, **_latched: bool) -> None:
+        self.log.append((self.time, topic, value))
+
+    def subscribe(self, _topic: str) -> None:
+        self.subscriptions += 1
+
+    def receive(self, _topic: str) -> Message | None:
+        heard = [message for message in self.signals if message.stamp <= self.time]
+        return heard[-1] if heard else None
+
+    def plan(self, _x: float, _z: float) -> Generator[float, None, Path | None]:
+        yield 2.0
+        return Path(1.0) if self.reachable else None
+
+    def interpolate(self, _joints: tuple[float, float, float], duration: float) -> Path:
+        return Path(duration)
+
+    def follow(self, path: Path) -> Generator[float, None, None]:
+        yield path.duration
+
+    def open(self) -> None:
+        self.commands.append("open")
+
+    def close(self) -> None:
+        self.commands.append("close")
+
+    def piece(self) -> tuple[float, float] | None:
+        return self.piece_seen(self.time)
+
+    def sense(self) -> Reading:
+        return self.reading(self.time)
+
+    def play(
+        self,
+        behaviour: Behaviour = CORRECT,
+        *,
+        robot: type[HandoverRobot] = HandoverRobot,
+        until: float = 300.0,
+    ) -> HandoverRobot:
+        """Run the robot until it ends or the clock passes `until`."""
+        machine = robot(self, self, self, self, behaviour)
+        for wait in machine.run():
+            self.time += wait
+            if self.time > until:
+                break
+        return machine
+
+    def states(self) -> list[str]:
+        names = [str(value) for _, topic, value in self.log if topic == "robot_state"]
+        return [name for i, name in enumerate(names) if i == 0 or names[i - 1] != name]
+
+    def times(self, topic: str) -> list[float]:
+        return [time for time, name, _ in self.log if name == topic]
+
+
+def protocol(ready_after: float = 25.0) -> list[Message]:
+    """The signals of a human who follows the protocol."""
+    return [Message("activateRobot", 3.0), Message("humanIsReady", ready_after)]
+
+
+def test_handover_goes_through_all_states() -> None:
+    """A human who follows the protocol gets the piece after all nine states in order."""
+    bench = Bench(protocol())
+    machine = bench.play()
+    assert bench.states() == list(STATES)
+    assert bench.times("released")
+    assert machine.outcome == "released"
+    assert bench.commands == ["open", "close", "open"]
+
+
+@pytest.mark.parametrize(
+    ("reading", "word"),
+    [
+        (Reading(gaze=False, pressure=True, location=True), "look"),
+        (Reading(gaze=True, pressure=False, location=True), "hold"),
+        (Reading(gaze=True, pressure=True, location=False), "near"),
+    ],
+)
+def test_one_bad_reading_withholds(reading: Reading, word: str) -> None:
+    """One bad reading is enough not to release, and the outcome says which."""
+    bench = Bench(protocol(), reading=lambda _: reading)
+    machine = bench.play()
+    assert bench.times("withheld")
+    assert not bench.times("released")
+    assert bench.commands == ["open", "close"]
+    assert word in machine.outcome
+
+
+def test_correct_waits_for_all_readings() -> None:
+    """A sensor without a reading keeps the correct robot in `sense` until it has one."""
+    missing = Reading(gaze=True, pressure=None, location=True)
+    bench = Bench(protocol(), reading=lambda now: missing if now < 27.0 else ALL_OK)
+    bench.play()
+    assert bench.times("released")
+    assert bench.times("sensed")[0] >= 27.0
+
+
+def test_correct_sensing_times_out_after_five_seconds() -> None:
+    """Without a full reading the correct robot gives up 5 s after the human was ready."""
+    nothing = Reading(gaze=None, pressure=None, location=None)
+    bench = Bench(protocol(), reading=lambda _: nothing)
+    bench.play()
+    assert not bench.times("sensed")
+    assert bench.times("timed_out")[0] - 25.0 == pytest.approx(5.0, abs=0.11)
+
+
+def test_legacy_reads_missing_as_bad() -> None:
+    """The legacy robot takes a sensor without a reading for a bad one, at once."""
+    nothing = Reading(gaze=None, pressure=None, location=None)
+    bench = Bench(protocol(), reading=lambda _: nothing)
+    bench.play(LEGACY)
+    assert ("gpl_is_ok", False) in [(topic, value) for _, topic, value in bench.log]
+
+
+@pytest.mark.parametrize("signal", ["activateRobot", "humanIsReady"])
+def test_legacy_takes_any_signal_twice(signal: str) -> None:
+    """One latched signal, right or wrong, carries the legacy robot through both waits."""
+    bench = Bench([Message(signal, 3.0)])
+    bench.play(LEGACY)
+    assert bench.states()[-2:] == ["release", "done"]
+
+
+def test_correct_refuses_the_wrong_signal() -> None:
+    """The correct robot is not activated by the signal of the other state."""
+    bench = Bench([Message("humanIsReady", 3.0)])
+    bench.play()
+    assert bench.states() == ["reset", "receive_activation", "done"]
+
+
+def test_correct_refuses_old_readiness() -> None:
+    """Readiness from before the human was informed does not count."""
+    bench = Bench([Message("activateRobot", 3.0), Message("humanIsReady", 6.0)])
+    machine = bench.play()
+    assert "sense" not in bench.states()
+    assert machine.outcome == "the human never was ready"
+
+
+def test_correct_gives_up_after_twenty_seconds_in_each_wait() -> None:
+    """Each wait of the correct robot has its own 20 s."""
+    alone = Bench()
+    alone.play()
+    assert alone.times("timed_out")[0] == pytest.approx(0.9 + 20.0)
+    activated = Bench([Message("activateRobot", 15.0)])
+    activated.play()
+    informed = activated.times("informed")[0]
+    assert activated.times("timed_out")[0] - informed == pytest.approx(20.0)
+
+
+def test_legacy_shares_its_polls() -> None:
+    """The legacy robot has 500 polls for both waits together, and subscribes in each."""
+    bench = Bench([Message("activateRobot", 21.0)])
+    no_readiness = replace(LEGACY, readiness=frozenset())
+    bench.play(no_readiness)
+    assert bench.subscriptions == 500
+    moving = bench.times("informed")[0] + 0.5 - 21.0
+    assert bench.times("timed_out")[0] == pytest.approx(1.0 + 100.0 + moving, abs=0.21)
+
+
+def test_legacy_sensing_timeout_is_a_parameter() -> None:
+    """The legacy robot times out when its parameter has passed since it informed the human."""
+    in_time = Bench(protocol(), timeout_time=100)
+    in_time.play(LEGACY)
+    assert in_time.times("decide")
+    late = Bench(protocol(), timeout_time=3)
+    late.play(LEGACY)
+    assert not late.times("decide")
+    assert late.times("timed_out")
+
+
+def test_unreachable_piece_ends_the_task() -> None:
+    """Where no path is found the robot tries three times and gives up."""
+    bench = Bench(protocol(), reachable=False)
+    machine = bench.play()
+    assert bench.states()[-2:] == ["move", "done"]
+    assert bench.commands == ["open"]
+    assert machine.outcome == "no path to the piece"
+
+
+@pytest.mark.parametrize("seen", [None, (0.9, -0.6)])
+def test_lost_piece_ends_the_task(seen: tuple[float, float] | None) -> None:
+    """If the piece did not come along the correct robot tells nobody to take it."""
+    bench = Bench(protocol(), piece_seen=lambda now: (0.0, 0.05) if now < 10 else seen)
+    bench.play()
+    assert not bench.times("informed")
+    assert bench.times("timed_out")
+
+
+def test_invisible_piece_ends_the_task() -> None:
+    """Without a piece in sight the arm does not move."""
+    bench = Bench(protocol(), piece_seen=lambda _: None)
+    machine = bench.play()
+    assert machine.outcome == "no piece in sight"
+    assert bench.commands == ["open"]
+
+
+def test_transitions_are_those_of_the_protocol() -> None:
+    """Only the protocol's 15 transitions occur, whatever the human does."""
+    allowed = {
+        ("reset", "receive_activation"),
+        ("receive_activation", "receive_activation"),
+        ("receive_activation", "move"),
+        ("receive_activation", "done"),
+        ("move", "send_signal"),
+        ("send_signal", "receive_readiness"),
+        ("receive_readiness", "receive_readiness"),
+        ("receive_readiness", "sense"),
+        ("receive_readiness", "done"),
+        ("sense", "sense"),
+        ("sense", "decide"),
+        ("sense", "done"),
+        ("decide", "release"),
+        ("decide", "done"),
+        ("release", "done"),
+    }
+    nothing = Reading(gaze=None, pressure=None, location=None)
+    bad = Reading(gaze=False, pressure=True, location=True)
+    benches = [
+        Bench(protocol()),
+        Bench(protocol(), reading=lambda _: bad),
+        Bench(protocol(), reading=lambda _: nothing),
+        Bench([Message("activateRobot", 3.0)]),
+        Bench(),
+    ]
+    seen: set[tuple[str, str]] = set()
+    for bench in benches:
+        bench.play()
+        names = [str(value) for _, topic, value in bench.log if topic == "robot_state"]
+        seen |= set(pairwise(names))
+    assert seen == allowed
+
+
+@pytest.mark.parametrize("name", sorted(set(MUTATIONS) - {"crashes"}))
+def test_mutants_differ_from_the_robot(name: str) -> None:
+    """Each mutated robot does something else than the original in one of four situations."""
+    bad = [
+        Reading(gaze=False, pressure=True, location=True),
+        Reading(gaze=True, pressure=False, location=True),
+    ]
+    situations: list[Callable[[], Bench]] = [
+        lambda: Bench(protocol()),
+        lambda: Bench(protocol(), reading=lambda _: bad[0]),
+        lambda: Bench(protocol(), reading=lambda _: bad[1]),
+        Bench,
+    ]
+    differs = False
+    for situation in situations:
+        original, mutated = situation(), situation()
+        original.play()
+        mutated.play(robot=MUTATIONS[name], until=100.0)
+        differs |= original.log != mutated.log
+    assert differs
+
+
+def test_crashing_mutant_crashes() -> None:
+    """The mutant made to crash does so in `sense`."""
+    bench = Bench(protocol())
+    with pytest.raises(ZeroDivisionError):
+        bench.play(robot=MUTATIONS["crashes"])
+    assert bench.states()[-1] == "sense"
