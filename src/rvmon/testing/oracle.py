@@ -75,13 +75,15 @@ def evaluate(
     requirements = checked.requirements
     _refuse_double_payloads(requirements.values(), listed)
     attempts = [
-        attempt for requirement in requirements.values() for attempt in judge(requirement, word)
+        attempt
+        for requirement in requirements.values()
+        for attempt in judge_requirement(requirement, word)
     ]
     origin = listed[0].t if listed else 0
     return report_of(tuple(requirements), attempts, origin=origin, end=word.end)
 
 
-def judge(requirement: Requirement, word: Word) -> list[Attempt]:
+def judge_requirement(requirement: Requirement, word: Word) -> list[Attempt]:
     """The attempts of one requirement on a word, in order of trigger."""
     begun = starts(requirement, word)
     decisions = _decisions(requirement, word, begun)

@@ -1,0 +1,125 @@
+"""Operators are what SEMANTICS 2 defines them to be, on random operands and traces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rvmon.spec.checked import CheckedSpec, EndPolicy, Formula, Interval, TimeModel
+from rvmon.testing.build import (
+    always,
+    eventually,
+    fall,
+    false,
+    following,
+    held,
+    historically,
+    no,
+    once,
+    previous,
+    requirement,
+    rise,
+    spec_of,
+    start,
+    true,
+    two,
+)
+from rvmon.testing.case import Case
+from rvmon.testing.compare import differences
+from rvmon.testing.generate_formula import Shape, interval
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.strategies import formulas, specs, traces
+from rvmon.verdict.report import Report
+
+Judge = Callable[[Case], Report]
+Pair = tuple[Formula, Formula]
+
+
+def anywhere(a: Formula, b: Formula, low: int, high: int | None) -> Iterator[Pair]:
+    """Formulas that mean the same in every time model."""
+    window = (low, high)
+    yield no(no(a)), a
+    yield no(two(a, "U", b, *window)), two(no(a), "R", no(b), *window)
+    yield no(two(a, "R", b, *window)), two(no(a), "U", no(b), *window)
+    yield no(eventually(a, *window)), always(no(a), *window)
+    yield eventually(a, *window), two(true, "U", a, *window)
+    yield always(a, *window), two(false, "R", a, *window)
+    yield two(a, "W", b, 0, high), two(b, "R", two(a, "or", b), 0, high)
+    yield two(a, "M", b, 0, high), two(b, "U", two(a, "and", b), 0, high)
+    yield no(once(a, *window)), historically(no(a), *window)
+    yield once(a, *window), two(true, "S", a, *window)
+    yield held(a, low), two(historically(a, 0, low), "and", once(start, low))
+    yield two(a, "->", b), two(no(a), "or", b)
+    yield two(a, "<->", b), two(two(a, "and", b), "or", two(no(a), "and", no(b)))
+    yield two(a, "xor", b), two(two(a, "and", no(b)), "or", two(no(a), "and", b))
+    yield no(two(a, "and", b)), two(no(a), "or", no(b))
+
+
+def in_steps(a: Formula) -> Iterator[Pair]:
+    """The same with `X` and `Y`, outside held time."""
+    yield no(following(a)), following(no(a))
+    yield rise(a), two(a, "and", no(previous(a)))
+    yield fall(a), two(no(a), "and", previous(a))
+    yield no(previous(a)), two(previous(no(a)), "or", start)
+
+
+def in_ticks(a: Formula) -> Iterator[Pair]:
+    """The same in held time, where the tick before is one tick before."""
+    yield rise(a), two(a, "and", no(once(a, 1, 1)))
+    yield fall(a), two(no(a), "and", once(a, 1, 1))
+
+
+def with_consequent(spec: CheckedSpec, consequent: Formula) -> CheckedSpec:
+    [first, *_] = spec.requirements.values()
+    changed = replace(first, consequent=consequent, captures=(), for_each=None)
+    return replace(spec, requirements={first.id: changed})
+
+
+@pytest.mark.parametrize("time", TimeModel)
+@settings(max_examples=60, deadline=None)
+@given(data=st.data())
+def test_equivalent_formulas(judge: Judge, time: TimeModel, data: st.DataObject) -> None:
+    """Formulas that are defined by each other have the same attempts, verdicts and instants."""
+    profile = Profile(time=time, requirements=1, captures=False, for_each=False)
+    spec = data.draw(specs(profile))
+    shape = Shape(step=time is not TimeModel.HELD)
+    a, b = (data.draw(formulas(shape, depth=2)) for _ in range(2))
+    window: Interval = data.draw(st.builds(interval, st.randoms(), st.just(shape)))
+    pairs = [*anywhere(a, b, window.low, window.high)]
+    pairs += in_ticks(a) if time is TimeModel.HELD else in_steps(a)
+    case = data.draw(traces(spec))
+    left, right = data.draw(st.sampled_from(pairs))
+    reports = [
+        judge(replace(case, spec=with_consequent(spec, formula))) for formula in (left, right)
+    ]
+    assert differences(*reports) == []
+
+
+@settings(max_examples=30, deadline=None)
+@given(data=st.data())
+def test_negation_exchanges_verdicts(judge: Judge, data: st.DataObject) -> None:
+    """`not φ` fails where φ passes, as far as the prefix decides; `weak` and `strong` swap."""
+    spec = data.draw(specs(Profile(requirements=1, captures=False, for_each=False)))
+    step = spec.time is not TimeModel.HELD
+    formula = data.draw(formulas(Shape(step=step)))
+    case = data.draw(traces(spec))
+    swap = {EndPolicy.WEAK: EndPolicy.STRONG, EndPolicy.STRONG: EndPolicy.WEAK}
+    for policy, other in swap.items():
+        reports = []
+        for consequent, at_end in ((formula, policy), (no(formula), other)):
+            changed = with_consequent(spec, consequent)
+            [owed] = changed.requirements.values()
+            upon = requirement(consequent, upon=owed.trigger, at_end=at_end)
+            one = spec_of(upon, time=spec.time, period=spec.period)
+            reports.append(judge(replace(case, spec=replace(one, signals=spec.signals))))
+        exchange = {"P": "F", "F": "P", "I": "I"}
+        wanted = [
+            (a.number, a.decided, exchange[a.verdict.value], a.decision)
+            for a in reports[0].attempts
+        ]
+        got = [(a.number, a.decided, a.verdict.value, a.decision) for a in reports[1].attempts]
+        assert got == wanted

@@ -1,0 +1,61 @@
+"""`whenever θ then ψ` with a known θ is `upon θ then ψ W !θ`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from rvmon.spec.checked import Mode
+from rvmon.testing.build import always, end, no, p, requirement, two
+from rvmon.testing.case import Case
+from rvmon.testing.compare import differences
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.pulse import is_pulse
+from rvmon.testing.strategies import specs, traces
+from rvmon.testing.vocabulary import signals
+from rvmon.trace.sample import Sample
+from rvmon.verdict.report import Report
+
+Judge = Callable[[Case], Report]
+ALL_KNOWN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=st.data())
+def test_whenever_is_weak_until(judge: Judge, data: st.DataObject) -> None:
+    """A level that is always known starts and settles the same attempts either way."""
+    spec = data.draw(specs(Profile(requirements=1, captures=False, for_each=False)))
+    [first] = spec.requirements.values()
+    level = p if is_pulse(first.trigger) or data.draw(st.booleans()) else first.trigger
+    assume(level != end)
+    whenever = replace(first, trigger=level, pulse=False, mode=Mode.WHENEVER)
+    weak = two(first.consequent, "W", no(level))
+    upon = replace(whenever, mode=Mode.UPON, consequent=weak)
+    # Every signal has a value from the first sample on and none is ever lost.
+    spec = replace(spec, signals=signals())
+    case = data.draw(traces(spec, TraceProfile(unknowns=False)))
+    actions = tuple(
+        Sample(action.t, {**ALL_KNOWN, **action.values})
+        if isinstance(action, Sample) and action is case.samples[0]
+        else action
+        for action in case.actions
+    )
+    # A trigger over payloads, `prev` and the like may be unknown all the same.
+    told = [
+        replace(case, spec=replace(spec, requirements={r.id: r}), actions=actions)
+        for r in (whenever, upon)
+    ]
+    assume(_known(judge, told[0]))
+    assert differences(judge(told[0]), judge(told[1])) == []
+
+
+def _known(judge: Judge, case: Case) -> bool:
+    """Whether the trigger has a value at every position: then `θ or not θ` holds throughout."""
+    [owed] = case.spec.requirements.values()
+    asked = requirement(always(two(owed.trigger, "or", no(owed.trigger))))
+    spec = replace(case.spec, requirements={asked.id: asked})
+    return all(a.decided is not None for a in judge(replace(case, spec=spec)).attempts)

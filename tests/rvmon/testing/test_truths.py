@@ -1,0 +1,45 @@
+"""What the oracle remembers from instant to instant changes none of its answers."""
+
+from __future__ import annotations
+
+import pytest
+
+from rvmon.spec.checked import TimeModel
+from rvmon.testing.attempts import obligation, starts
+from rvmon.testing.differential import case_of
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.kleene import Truth
+from rvmon.testing.oracle import judge_requirement
+from rvmon.testing.truths import Truths
+from rvmon.testing.wording import word_of
+from rvmon.verdict.attempt import Decision
+
+
+@pytest.mark.parametrize("time", TimeModel)
+def test_memory_changes_nothing(time: TimeModel) -> None:
+    """Each decision is the first instant at which a fresh evaluation gives a value."""
+    compared = 0
+    for seed in range(40):
+        case = case_of(f"memory {seed}", Profile(time=time), TraceProfile(span=25))
+        word = word_of(
+            case.spec, case.samples, end=case.end, advances=case.advances, names=case.names
+        )
+        for requirement in case.spec.requirements.values():
+            begun = starts(requirement, word)
+            attempts = judge_requirement(requirement, word)
+            for start, attempt in zip(begun, attempts, strict=True):
+                first = word.letters[start.position].instant
+                decided = None
+                for reached in range(first, word.reached + 1):
+                    fresh = Truths(start.word, start.captured)
+                    fresh.reach(reached)
+                    if obligation(requirement, start, fresh) is not Truth.UNKNOWN:
+                        decided = reached
+                        break
+                by_prefix = attempt.decision is Decision.PREFIX
+                at_end = attempt.triggered == attempt.decided == word.end
+                assert by_prefix is (decided is not None)
+                assert not by_prefix or at_end or attempt.decided == decided
+                compared += 1
+    assert compared > 30
