@@ -32,7 +32,7 @@ class Trajectory:
 
 
 class Arm:
-    """Plans and follows paths, the gripper's speed limited; its motors are written only when their command changes.
+    """Plans and follows paths; its motors are written only when their command changes.
 
     Args:
         scene: where the motors are.

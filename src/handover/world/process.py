@@ -17,6 +17,8 @@ Program = Generator[float, None, None]
 STALL_LIMIT = 10_000
 """Steps at one instant after which a program is taken to hang."""
 
+_ENDED = object()
+
 
 class Process:
     """Runs one program on one node, from now until it returns, crashes or the time is over.
@@ -43,11 +45,11 @@ class Process:
     def _step(self) -> None:
         try:
             with self._around():
-                wait_s = next(self._program)
+                wait_s = next(self._program, _ENDED)
+            if wait_s is _ENDED:
+                self._node.end()
+                return
             wait_ns = self._checked_ns(wait_s)
-        except StopIteration:
-            self._node.end()
-            return
         except Exception as error:  # noqa: BLE001  # whatever the code under test does is a result
             self.error = describe(error)
             self._program.close()
@@ -55,9 +57,13 @@ class Process:
             return
         self._schedule.at(self._schedule.now_ns + wait_ns, self._step)
 
-    def _checked_ns(self, wait_s: float) -> int:
-        is_number = isinstance(wait_s, int | float) and not isinstance(wait_s, bool)
-        if not (is_number and math.isfinite(wait_s) and wait_s >= 0):
+    def _checked_ns(self, wait_s: object) -> int:
+        if (
+            not isinstance(wait_s, int | float)
+            or isinstance(wait_s, bool)
+            or not math.isfinite(wait_s)
+            or wait_s < 0
+        ):
             raise ValueError(f"a program waits by yielding seconds ≥ 0, not {wait_s!r}")
         wait_ns = round((wait_s + self._node.take_owed_s()) * NS)
         self._steps_now = 0 if wait_ns else self._steps_now + 1

@@ -1,0 +1,79 @@
+"""Latched messages, publishers that end, and reads that become slow."""
+
+from __future__ import annotations
+
+import pytest
+
+from handover.world.bus import Bus, Node, Value
+from handover.world.parameters import LATCH_LINGER_S, NS
+from handover.world.schedule import Schedule
+
+
+def at(schedule: Schedule, seconds: float) -> None:
+    """Let time pass."""
+    schedule.at(round(seconds * NS), lambda: None)
+    schedule.run_next()
+
+
+def test_latched_message_is_read_later() -> None:
+    """Who subscribes late still gets the latched message, with the time of its publication."""
+    schedule = Schedule()
+    bus = Bus(schedule)
+    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+    human.publish("signal", "ready", latched=True)
+    at(schedule, 5.0)
+    robot.subscribe("signal")
+    message = robot.receive("signal")
+    assert message is not None
+    assert (message.value, message.stamp) == ("ready", 0.0)
+
+
+def test_latched_message_vanishes_after_its_publisher() -> None:
+    """A latched message outlives its publisher by the linger time and no longer."""
+    schedule = Schedule()
+    bus = Bus(schedule)
+    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+    robot.subscribe("signal")
+    human.publish("signal", "ready", latched=True)
+    at(schedule, 1.0)
+    human.end()
+    at(schedule, 1.0 + LATCH_LINGER_S)
+    assert robot.receive("signal") is not None
+    at(schedule, 1.0 + LATCH_LINGER_S + 0.01)
+    assert robot.receive("signal") is None
+
+
+def test_unlatched_message_cannot_be_read_later() -> None:
+    """A message that is not latched passes the taps and is gone."""
+    schedule = Schedule()
+    bus = Bus(schedule)
+    passed: list[tuple[str, Value]] = []
+    bus.tap(lambda topic, value: passed.append((topic, value)))
+    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+    robot.subscribe("signal")
+    human.publish("signal", True)
+    assert robot.receive("signal") is None
+    assert passed == [("signal", True)]
+
+
+def test_reading_needs_a_subscription() -> None:
+    """A node without a subscription receives nothing."""
+    bus = Bus(Schedule())
+    human, robot = Node(bus, {}, 0.0), Node(bus, {}, 0.0)
+    human.publish("signal", "ready", latched=True)
+    assert robot.receive("signal") is None
+
+
+def test_reads_slow_down_with_leaked_subscriptions() -> None:
+    """Each subscription beyond the first adds the growth to every read; it is owed once."""
+    bus = Bus(Schedule())
+    node = Node(bus, {}, 0.001)
+    node.subscribe("signal")
+    node.receive("signal")
+    assert node.take_owed_s() == 0.0
+    for _ in range(4):
+        node.subscribe("signal")
+    node.receive("signal")
+    node.receive("signal")
+    assert node.take_owed_s() == pytest.approx(0.008)
+    assert node.take_owed_s() == 0.0

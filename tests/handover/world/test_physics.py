@@ -1,0 +1,292 @@
+"""What the robot senses and the human achieves comes from bodies and forces, not from flags."""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import pymunk
+import pytest
+
+from handover.world import parameters as p
+from handover.world.bus import Node
+from handover.world.process import Process, Program
+from handover.world.reading import Reading
+from handover.world.world import World
+
+Point = tuple[float, float]
+HANDOVER = (0.20, 0.22)
+
+
+@dataclass
+class Stage:
+    """A world with one program that acts in it."""
+
+    world: World = field(default_factory=lambda: World(random.Random(1)))
+    notes: list[Point] = field(default_factory=list)
+    readings: list[Reading] = field(default_factory=list)
+
+    def play(self, program: Callable[[Stage], Program], seconds: float) -> None:
+        process = Process(self.world.schedule, Node(self.world.bus, {}, 0.0), program(self))
+        self.world.run(round(seconds * p.NS))
+        assert process.error is None
+
+    def go(self, x: float, z: float) -> Program:
+        path = yield from self.world.arm.plan(x, z)
+        assert path is not None
+        yield from self.world.arm.follow(path)
+
+    def fetch(self) -> Program:
+        """Grip the piece and hold it out."""
+        x, z = self.world.piece()
+        for height in (0.20, 0.08, 0.02):
+            yield from self.go(x, z + height)
+        self.world.gripper.close()
+        yield 0.5
+        Node(self.world.bus, {}, 0.0).publish("grip_closed")
+        yield from self.go(*HANDOVER)
+        yield 0.5
+
+    def offer(self) -> None:
+        """The human does all that it takes to get the piece."""
+        human = self.world.human
+        human.look(0.15, 0.55, 20.0)
+        human.grasp(closed=True)
+        human.reach(*p.LOCATION_OK, near=True)
+
+    def sense(self) -> None:
+        self.readings.append(self.world.sense())
+
+    @property
+    def piece(self) -> Point:
+        x, z = self.world.scene.piece.position
+        return x, z
+
+    @property
+    def hand(self) -> Point:
+        x, z = self.world.scene.hand.position
+        return x, z
+
+
+def strap(stage: Stage, newtons: float) -> None:
+    """Hold the hand back where it rests, with at most this force."""
+    scene = stage.world.scene
+    band = pymunk.PivotJoint(scene.space.static_body, scene.hand, p.HAND_REST)
+    band.max_force = newtons
+    scene.space.add(band)
+
+
+def fetch_offer_sense(stage: Stage) -> Program:
+    yield from stage.fetch()
+    stage.offer()
+    yield 2.0
+    stage.sense()
+
+
+def test_all_is_ok_when_the_human_takes_hold() -> None:
+    """Looking, reaching and holding make all three readings true."""
+    stage = Stage()
+    stage.play(fetch_offer_sense, 25)
+    assert stage.readings == [Reading(gaze=True, pressure=True, location=True)]
+
+
+def test_hand_held_back_gives_no_pressure() -> None:
+    """A hand that is told to hold but is held back presses on nothing."""
+    stage = Stage()
+    strap(stage, 60.0)
+    stage.play(fetch_offer_sense, 25)
+    assert stage.readings == [Reading(gaze=True, pressure=False, location=False)]
+
+
+def test_hand_overcomes_a_weak_strap() -> None:
+    """The hand's force is limited, not absent: it gets past a weaker strap."""
+    stage = Stage()
+    strap(stage, 10.0)
+    stage.play(fetch_offer_sense, 25)
+    assert stage.readings[0].location is True
+
+
+def test_empty_gripper_gives_no_pressure() -> None:
+    """The human alone holding the piece is no pressure: the robot must hold it, too."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield 0.5
+        stage.offer()
+        yield 2.0
+        stage.sense()
+
+    stage.play(program, 5)
+    assert stage.readings == [Reading(gaze=True, pressure=False, location=True)]
+
+
+def test_gripper_that_missed_gives_no_pressure() -> None:
+    """A gripper that closed beside the piece and a human hand in place are no pressure."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield from stage.go(-0.15, 0.12)
+        stage.world.gripper.close()
+        yield 0.5
+        stage.offer()
+        yield 2.0
+        stage.sense()
+
+    stage.play(program, 12)
+    assert stage.readings[0].pressure is False
+
+
+def test_readings_follow_the_bodies() -> None:
+    """When a body is moved by hand the reading changes, though the human intends as before."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield from fetch_offer_sense(stage)
+        head = stage.world.scene.head
+        head.position += (0.0, 0.3)
+        stage.sense()
+        head.position -= (0.0, 0.3)
+        head.angle -= 1.0
+        stage.sense()
+
+    stage.play(program, 25)
+    assert [reading.gaze for reading in stage.readings] == [True, False, False]
+
+
+def test_no_reading_before_and_during_a_motion() -> None:
+    """A human who takes no part, or whose hand and head still move, gives no reading."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        stage.sense()
+        stage.offer()
+        yield p.REACTION_S + 0.2
+        stage.sense()
+
+    stage.play(program, 2)
+    assert stage.readings == [Reading(gaze=None, pressure=None, location=None)] * 2
+
+
+def test_released_piece_stays_in_the_human_hand() -> None:
+    """A piece that both held stays up when the robot lets go."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield from fetch_offer_sense(stage)
+        stage.notes.append(stage.piece)
+        stage.world.gripper.open()
+
+    stage.play(program, 30)
+    assert stage.piece == pytest.approx(stage.notes[0], abs=0.02)
+
+
+def test_unheld_piece_falls() -> None:
+    """A piece that nobody holds falls past the table's edge to the floor."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield from stage.fetch()
+        stage.notes.append(stage.piece)
+        stage.world.gripper.open()
+
+    stage.play(program, 25)
+    assert stage.notes[0][1] == pytest.approx(HANDOVER[1] - 0.02, abs=0.01)
+    assert stage.piece[1] < p.FLOOR_Z + p.PIECE_SIZE[1]
+
+
+def test_gripped_piece_stays_where_it_is() -> None:
+    """A held piece does not creep: within 0.1 mm over 20 s, stepped throughout."""
+    stage = Stage(World(random.Random(1), jump=False))
+
+    def program(stage: Stage) -> Program:
+        yield from stage.fetch()
+        stage.notes.append(stage.piece)
+        yield 20.0
+        stage.notes.append(stage.piece)
+
+    stage.play(program, 45)
+    assert stage.notes[1] == pytest.approx(stage.notes[0], abs=1e-4)
+
+
+def test_hand_reacts_late_and_moves_smoothly() -> None:
+    """The hand rests for the reaction time, never jumps, and is fastest in mid-way."""
+    stage = Stage()
+    tick = 0.02
+
+    def program(stage: Stage) -> Program:
+        stage.world.human.reach(*p.LOCATION_OK, near=True)
+        for _ in range(75):
+            stage.notes.append(stage.hand)
+            yield tick
+
+    stage.play(program, 2)
+    xs = [x for x, _ in stage.notes]
+    reaction = round(p.REACTION_S / tick)
+    assert xs[: reaction + 1] == pytest.approx([p.HAND_REST[0]] * (reaction + 1), abs=1e-3)
+    speeds = [abs(b - a) / tick for a, b in itertools.pairwise(xs)]
+    assert max(speeds) <= p.REACH_SPEED * 1.1
+    moving = [i for i, speed in enumerate(speeds) if speed > 0.01]
+    fastest = speeds.index(max(speeds))
+    assert fastest - moving[0] == pytest.approx(moving[-1] - fastest, abs=4)
+    goal = (p.PIECE_X + p.LOCATION_OK[0], p.HAND_RADIUS)
+    assert stage.hand == pytest.approx(goal, abs=0.01)
+
+
+def test_redirected_hand_does_not_jump() -> None:
+    """A hand that is sent elsewhere in mid-way turns without a jump of its place or speed."""
+    stage = Stage()
+    tick = 0.02
+
+    def program(stage: Stage) -> Program:
+        stage.world.human.reach(*p.LOCATION_OK, near=True)
+        yield 0.25
+        stage.world.human.reach(0.8, 0.8, near=False)
+        for _ in range(90):
+            stage.notes.append(stage.hand)
+            yield tick
+
+    stage.play(program, 3)
+    xs = [x for x, _ in stage.notes]
+    speeds = [(b - a) / tick for a, b in itertools.pairwise(xs)]
+    jumps = [abs(b - a) for a, b in itertools.pairwise(speeds)]
+    assert min(xs) < p.HAND_REST[0] - 0.05
+    assert max(jumps) < 0.5
+    assert stage.hand == pytest.approx((p.PIECE_X + 0.8, p.PIECE_SIZE[1] / 2 + 0.8), abs=0.01)
+
+
+def test_arm_follows_paths_below_the_speed_limit() -> None:
+    """The tool arrives where it was sent, and is never faster than collaborative operation."""
+    stage = Stage()
+    stage.play(Stage.fetch, 25)
+    speeds = [
+        values["tool_speed"] for _, values in stage.world.recorder.samples if "tool_speed" in values
+    ]
+    assert 0.2 < max(speeds) <= 0.25
+    assert speeds[-1] == 0.0
+    assert stage.world.arm.joints() == pytest.approx(joints_at(*HANDOVER), abs=1e-3)
+
+
+def joints_at(x: float, z: float) -> tuple[float, float, float]:
+    from handover.world.kinematics import joints_for
+
+    joints = joints_for(x, z)
+    assert joints is not None
+    return joints
+
+
+def test_reaching_into_the_grip_is_closer_than_five_centimetres() -> None:
+    """A hand that takes the piece from the table is inside the closing gripper."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        stage.offer()
+        yield 1.5
+        yield from stage.fetch()
+
+    stage.play(program, 25)
+    distances = [v["hand_distance"] for _, v in stage.world.recorder.samples if "grip_closed" in v]
+    assert len(distances) == 1
+    assert distances[0] is not None
+    assert distances[0] < 0.05
