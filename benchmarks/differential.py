@@ -1,6 +1,6 @@
 """Engines against the oracle on random specs and traces: verdicts and decision instants.
 
-    python benchmarks/differential.py --pairs 10000 --seed 1 --workers 2
+    python -m benchmarks.differential --pairs 10000 --seed 1 --workers 2
 
 Prints how the attempts were decided and every disagreement, shrunk; exits 1 if there is one.
 """
@@ -8,8 +8,10 @@ Prints how the attempts were decided and every disagreement, shrunk; exits 1 if 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
 import time
+from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -32,10 +34,17 @@ def make_monitor(engine: str, case: Case) -> Monitored:
 
 
 def run_part(
-    engine: str, profile: Profile, traces: TraceProfile, every: int, seeds: list[str]
+    options: argparse.Namespace, profile: Profile, traces: TraceProfile, seeds: list[str]
 ) -> Tally:
     """Judge the cases of some seeds; runs in a worker."""
-    return campaign(partial(make_monitor, engine), seeds, profile, traces, online_every=every)
+    return campaign(
+        partial(make_monitor, options.engine),
+        seeds,
+        profile,
+        traces,
+        online_every=options.online_every,
+        shrunk=0 if options.fail_fast else options.show,
+    )
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
@@ -51,6 +60,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
+    parser.add_argument("--fail-fast", action="store_true", help="stop soon, shrink nothing")
     return parser.parse_args(argv)
 
 
@@ -61,18 +71,19 @@ def main(argv: list[str]) -> int:
     profile = replace(profile, **dict.fromkeys(options.without, False))
     traces = TraceProfile(unknowns=not options.known)
     seeds = [f"{options.seed}/{number}" for number in range(options.pairs)]
-    size = 250
+    size = 20 if options.fail_fast else 250
     parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]
-    work = partial(run_part, options.engine, profile, traces, options.online_every)
+    work = partial(run_part, options, profile, traces)
     began = time.perf_counter()
     total = Tally()
-    if options.workers > 1:
-        with ProcessPoolExecutor(options.workers) as pool:
-            for part in pool.map(work, parts):
-                total.add(part)
-    else:
-        for seeds_of_part in parts:
-            total.add(work(seeds_of_part))
+    with contextlib.ExitStack() as stack:
+        each: Iterable[Tally] = map(work, parts)
+        if options.workers > 1:
+            each = stack.enter_context(ProcessPoolExecutor(options.workers)).map(work, parts)
+        for tally in each:
+            total.add(tally)
+            if options.fail_fast and total.disagreements:
+                break
     show(total, options, time.perf_counter() - began)
     return 1 if total.disagreements else 0
 
