@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rvmon.report.style import MARKS
@@ -20,36 +21,29 @@ WIDTH = 4
 """Characters of a column of counts."""
 
 
-def table_text(
-    table: VerdictTable, *, beside: VerdictTable | None = None, beside_label: str = ""
-) -> Group:
+def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None = None) -> Group:
     """A table as a renderable of rich.
 
     Args:
         table: the counts.
-        beside: a published table whose counts stand in a second line of each row; matched by
+        beside: by label, tables whose counts stand in further lines of each row; matched by
             requirement and by name of the group.
-        beside_label: what that second line is called.
     """
     from rich.console import Group
     from rich.text import Text
 
-    parts: list[Text | Table] = [
-        Text(table.title, style="bold"),
-        _grid(table, beside, beside_label),
-    ]
-    parts.extend(Text(note, style="dim") for note in table.notes)
-    return Group(*parts)
+    notes = (Text(note, style="dim") for note in table.notes)
+    return Group(Text(table.title, style="bold"), _grid(table, beside or {}), *notes)
 
 
-def _grid(table: VerdictTable, beside: VerdictTable | None, label: str) -> Table:
+def _grid(table: VerdictTable, beside: Mapping[str, VerdictTable]) -> Table:
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
     grid = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
     grid.add_column("", no_wrap=True)
-    has_checked = bool(table.checked or (beside is not None and beside.checked))
+    has_checked = any(one.checked for one in (table, *beside.values()))
     if has_checked:
         grid.add_column(Text("model\nchecking"), justify="center")
     letters = "".join(f"{verdict.value:>{WIDTH}}" for verdict in Verdict)
@@ -57,10 +51,11 @@ def _grid(table: VerdictTable, beside: VerdictTable | None, label: str) -> Table
         runs = f"{group.name} ({group.runs})"
         grid.add_column(Text(f"{runs:^{len(letters)}}\n{letters}"), no_wrap=True)
     for name in table.requirements:
-        shown: list[tuple[str, VerdictTable, bool]] = [(name, table, False)]
-        if beside is not None:
-            shown.append((f"  {label}", beside, True))
-        for heading, source, dim in shown:
+        lines = [
+            (name, table, False),
+            *((f"  {label}", one, True) for label, one in beside.items()),
+        ]
+        for heading, source, dim in lines:
             cells = [Text(heading, style="dim" if dim else "bold")]
             if has_checked:
                 cells.append(_checked_cell(source, name, dim=dim))

@@ -1,0 +1,129 @@
+"""`handover run` and `handover demo`: plan, play, show, write."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from handover.campaign.documents import table_document, to_json
+from handover.campaign.execute import INTERRUPTED, execute
+from handover.campaign.files import write_tables, write_tests
+from handover.campaign.outcome import Results
+from handover.campaign.plan import Plan, plan
+from handover.campaign.strategies import STRATEGIES
+from handover.campaign.summarise import summarise
+from handover.campaign.summary import CampaignSummary
+from handover.campaign.text import print_summary
+from rvmon.errors import UnknownNameError
+from rvmon.session import Spec, load
+from rvmon.verdict.verdict import Verdict
+
+DEMO_STRATEGIES = ("pseudorandom", "constrained", "directed")
+DEMO_ROBOTS = ("legacy", "correct")
+
+
+def run_campaign(arguments: argparse.Namespace) -> int:
+    """Run `handover run` and return its exit code."""
+    chosen = plan(
+        ("legacy" if arguments.legacy else "correct",),
+        _strategies(arguments.strategy),
+        tests=arguments.tests,
+        seed=arguments.seed,
+        spec=None if arguments.spec is None else Path(arguments.spec),
+        monitors=not arguments.no_monitors,
+    )
+    summary, results = _campaign(chosen, arguments)
+    if arguments.format == "json":
+        print(to_json(table_document(summary)).decode(), end="")
+    else:
+        _show(summary, results)
+    if summary.cut_short:
+        return 130 if summary.cut_short == INTERRUPTED else 3
+    return int(arguments.strict and not _all_well(summary))
+
+
+def run_demo(arguments: argparse.Namespace) -> int:
+    """Run `handover demo` and return its exit code."""
+    chosen = plan(DEMO_ROBOTS, DEMO_STRATEGIES, tests=arguments.tests, seed=arguments.seed)
+    summary, results = _campaign(chosen, arguments)
+    _show(summary, results)
+    if arguments.out:
+        print(f"Look at {Path(arguments.out) / 'report.html'}")
+    if summary.cut_short:
+        return 130 if summary.cut_short == INTERRUPTED else 3
+    return 0
+
+
+def _campaign(chosen: Plan, arguments: argparse.Namespace) -> tuple[CampaignSummary, Results]:
+    # Wrong requirements are told before anything is played.
+    specs = {robot: load(path) for robot, path in chosen.specs.items()} if chosen.monitors else {}
+    results = _execute(chosen, arguments.jobs)
+    summary = summarise(results, {robot: _texts(specs.get(robot)) for robot in chosen.specs})
+    if arguments.out:
+        folder = Path(arguments.out)
+        write_tables(folder, summary)
+        write_tests(folder, results)
+    return summary, results
+
+
+def _texts(spec: Spec | None) -> Mapping[str, str]:
+    if spec is None:
+        return {}
+    return {name: requirement.text for name, requirement in spec.requirements.items()}
+
+
+def _execute(chosen: Plan, jobs: int | None) -> Results:
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress
+
+    console = Console(stderr=True)
+    columns = (*Progress.get_default_columns(), MofNCompleteColumn())
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
+        task = bar.add_task("tests", total=len(chosen.jobs()))
+        return execute(chosen, jobs=jobs, progress=lambda count: bar.advance(task, count))
+
+
+def _show(summary: CampaignSummary, results: Results) -> None:
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    if not sys.stdout.isatty():
+        console = Console(highlight=False, width=100)
+    print_summary(summary, console)
+    stepped = sum(one.stepped_s for one in results.outcomes)
+    simulated = sum(one.simulated_s for one in results.outcomes)
+    console.print(
+        f"{summary.finished} tests in {summary.seconds:.1f} s: {simulated:,.0f} s simulated, "
+        f"{stepped:,.0f} s of them with physics, the rest at rest and jumped over."
+    )
+    if summary.cut_short:
+        console.print(
+            f"{summary.cut_short}: {summary.finished} of {summary.planned} tests were finished; "
+            "the tables are partial",
+            style="yellow",
+        )
+
+
+def _all_well(summary: CampaignSummary) -> bool:
+    """No requirement failed or is open in any test, and each was triggered by one."""
+    for figures in summary.robots.values():
+        for name in figures.requirements:
+            rows = [strategy.counts[name] for strategy in figures.strategies.values()]
+            bad = sum(row[Verdict.FAIL] + row[Verdict.INCONCLUSIVE] for row in rows)
+            if bad or not sum(row[Verdict.PASS] for row in rows):
+                return False
+    return all(one.as_expected for robot in summary.robots.values() for one in robot.known)
+
+
+def _strategies(listed: str) -> tuple[str, ...]:
+    names = tuple(name.strip() for name in listed.split(",") if name.strip())
+    for name in names:
+        if name not in STRATEGIES:
+            raise UnknownNameError(f"no strategy `{name}`: there are {', '.join(STRATEGIES)}")
+    if not names:
+        raise UnknownNameError(f"--strategy names none: there are {', '.join(STRATEGIES)}")
+    return tuple(dict.fromkeys(names))

@@ -1,0 +1,47 @@
+"""A campaign's files: tables in four forms, coverage, every test, the pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from handover.campaign.documents import coverage_document, table_document, to_json
+from handover.campaign.outcome import Results
+from handover.campaign.summary import CampaignSummary
+from handover.campaign.tables import all_tables
+from handover.campaign.text import print_summary
+from handover.generator.files import save
+from rvmon.report.table_csv import tables_csv
+from rvmon.report.table_latex import table_latex
+
+TEXT_COLUMNS = 100
+"""Width of `table.txt`."""
+
+
+def write_tables(folder: Path, summary: CampaignSummary) -> None:
+    """Write `table.txt`, `table.csv`, `table.tex`, `table.json` and `coverage.json`."""
+    tables = all_tables(summary)
+    latex = "\n".join(table_latex(table) for table in tables.values())
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "table.txt").write_text(_plain_text(summary), encoding="utf-8")
+    (folder / "table.csv").write_text(tables_csv(tables, key="robot"), encoding="utf-8")
+    (folder / "table.tex").write_text(latex, encoding="utf-8")
+    (folder / "table.json").write_bytes(to_json(table_document(summary)))
+    (folder / "coverage.json").write_bytes(to_json(coverage_document(summary)))
+
+
+def write_tests(folder: Path, results: Results) -> None:
+    """Write every test that was played to `tests/`, each to be replayed alone."""
+    tests = folder / "tests"
+    tests.mkdir(parents=True, exist_ok=True)
+    for test in {one.job.test.name: one.job.test for one in results.outcomes}.values():
+        save(test, tests)
+
+
+def _plain_text(summary: CampaignSummary) -> str:
+    import io
+
+    from rich.console import Console
+
+    text = io.StringIO()
+    print_summary(summary, Console(file=text, width=TEXT_COLUMNS, color_system=None))
+    return text.getvalue()
