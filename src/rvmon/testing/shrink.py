@@ -146,17 +146,18 @@ def _smaller_requirement(requirement: Requirement) -> Iterator[Requirement]:
     start = BoundAtom(Bound.START)
     if not isinstance(requirement.trigger, BoundAtom):
         yield replace(requirement, trigger=start, pulse=False)
-    for trigger in _smaller_formulas(requirement.trigger):
+    for trigger in smaller_formulas(requirement.trigger):
         yield replace(requirement, trigger=trigger, pulse=is_pulse(trigger))
-    for consequent in _smaller_formulas(requirement.consequent):
+    for consequent in smaller_formulas(requirement.consequent):
         yield replace(requirement, consequent=consequent)
 
 
-def _smaller_formulas(formula: Formula) -> Iterator[Formula]:
+def smaller_formulas(formula: Formula) -> Iterator[Formula]:
+    """Formulas one step smaller: a part of it, or a part replaced by a smaller one."""
     match formula:
         case Unary(operand=operand, interval=interval):
             yield operand
-            yield from (replace(formula, operand=smaller) for smaller in _smaller_formulas(operand))
+            yield from (replace(formula, operand=smaller) for smaller in smaller_formulas(operand))
             for window in _smaller_intervals(interval):
                 yield replace(formula, interval=window)
         case Binary(left=left, right=right, interval=interval):
@@ -164,8 +165,8 @@ def _smaller_formulas(formula: Formula) -> Iterator[Formula]:
             yield right
             if formula.op not in (BinaryOp.AND, BinaryOp.OR) and interval is None:
                 yield replace(formula, op=BinaryOp.AND)
-            yield from (replace(formula, left=smaller) for smaller in _smaller_formulas(left))
-            yield from (replace(formula, right=smaller) for smaller in _smaller_formulas(right))
+            yield from (replace(formula, left=smaller) for smaller in smaller_formulas(left))
+            yield from (replace(formula, right=smaller) for smaller in smaller_formulas(right))
             for window in _smaller_intervals(interval):
                 yield replace(formula, interval=window)
         case Constant() | BoundAtom():
