@@ -75,7 +75,7 @@ class AbstractTest(
 
     name: str
     strategy: Literal["pseudorandom", "constrained", "model-based", "directed"]
-    seed: int
+    seed: Annotated[int, msgspec.Meta(ge=0)]
     actions: tuple[Action, ...]
     text: str = ""
     robot: Literal["correct", "legacy"] | None = None

@@ -1,0 +1,279 @@
+"""Whole runs: repeatable, equal with and without jumps, within the protocol's bounds."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from handover.driver import Run, run_test
+from handover.driver.draws import draw
+from handover.driver.run import SampleValues
+from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
+from handover.generator.files import AbstractTestError
+from handover.generator.pseudorandom import constrained, pseudorandom
+
+NUMBERS = {"hand_distance", "hand_offset_x", "hand_offset_z", "tool_speed"}
+
+
+def protocol_test(seed: int, **settings: object) -> AbstractTest:
+    """A test in which the human follows the protocol and takes the piece."""
+    actions = (
+        SendSignal("activateRobot"),
+        SetParam("time", 40),
+        ReceiveSignal("informHumanOfHandoverStart"),
+        SendSignal("humanIsReady"),
+        SetParam("time", 10),
+        SetParam("hgazeOk", 1),
+        SetParam("hpressureOk", 1),
+        SetParam("hlocationOk", 1),
+    )
+    return AbstractTest(
+        name="protocol",
+        strategy="directed",
+        seed=seed,
+        actions=actions,
+        startup_loss=False,
+        **settings,  # type: ignore[arg-type]
+    )
+
+
+def instants(run: Run, name: str) -> list[float]:
+    """When an event occurred, seconds."""
+    return [t / 1e9 for t, values in run.samples if values.get(name) is True]
+
+
+def facts(run: Run) -> list[tuple[int, dict[str, object]]]:
+    """All that a run says in two-valued terms, with its instants."""
+    kept = (
+        (t, {name: value for name, value in values.items() if name not in NUMBERS})
+        for t, values in run.samples
+    )
+    return [(t, values) for t, values in kept if values]
+
+
+@pytest.mark.parametrize("robot", ["correct", "legacy"])
+def test_jumps_change_no_event(robot: str) -> None:
+    """Fifty tests give the same events at the same nanosecond whether rest is stepped or not."""
+    gripped = 0
+    for test in pseudorandom(10, seed=5) + constrained(15, seed=5):
+        jumped = run_test(test, robot=robot)
+        stepped = run_test(test, robot=robot, jump=False)
+        assert facts(jumped) == facts(stepped)
+        assert stepped.stepped_s == pytest.approx(200.0)
+        assert jumped.stepped_s < 40.0
+        closings = [
+            (a["hand_distance"], b["hand_distance"])
+            for (_, a), (_, b) in zip(jumped.samples, stepped.samples, strict=False)
+            if "grip_closed" in a and "grip_closed" in b
+        ]
+        gripped += len(closings)
+        for one, other in closings:
+            assert one == pytest.approx(other, abs=1e-3)
+    assert gripped >= 10
+
+
+def digest(run: Run) -> str:
+    """A fingerprint of everything published."""
+    return hashlib.sha256(repr((run.samples, run.states)).encode()).hexdigest()
+
+
+def test_same_seed_same_run_in_every_process() -> None:
+    """A run depends on its test alone: not on the process, its hash seed, or earlier runs."""
+    test = constrained(3, seed=9)[2]
+    first = run_test(test)
+    run_test(protocol_test(1))
+    assert digest(run_test(test)) == digest(first)
+    code = (
+        "import hashlib; from handover.driver import run_test;"
+        "from handover.generator.pseudorandom import constrained;"
+        "run = run_test(constrained(3, seed=9)[2]);"
+        "print(hashlib.sha256(repr((run.samples, run.states)).encode()).hexdigest())"
+    )
+    for hash_seed in ("1", "2"):
+        other = subprocess.run(  # noqa: S603
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": hash_seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert other.stdout.strip() == digest(first)
+
+
+def test_other_seed_other_run() -> None:
+    """The seed matters: timing and postures are drawn from it."""
+    assert instants(run_test(protocol_test(1)), "informed") != instants(
+        run_test(protocol_test(2)), "informed"
+    )
+
+
+def test_samples_are_in_order_and_say_something() -> None:
+    """Stamps increase strictly, no sample is empty, none is after the horizon."""
+    run = run_test(protocol_test(3))
+    stamps = [t for t, _ in run.samples]
+    assert stamps == sorted(set(stamps))
+    assert all(values for _, values in run.samples)
+    assert stamps[0] == 0
+    assert stamps[-1] <= run.end_ns == 200_000_000_000
+    assert run.simulated_s == 200.0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_correct_robot_keeps_its_bounds(seed: int) -> None:
+    """Each state of the correct robot lasts no longer than the protocol allows."""
+    longest = {
+        "reset": 1.0,
+        "receive_activation": 20.0,
+        "move": 18.0,
+        "send_signal": 0.0,
+        "receive_readiness": 20.0,
+        "sense": 5.0,
+        "decide": 0.5,
+        "release": 2.5,
+        "done": 0.0,
+    }
+    for test in (protocol_test(seed), pseudorandom(seed + 1, seed=2)[seed]):
+        spent = dict.fromkeys(longest, 0.0)
+        run = run_test(test)
+        for (since, state), (until, _) in zip(run.states, run.states[1:], strict=False):
+            spent[state] += (until - since) / 1e9
+        assert {s: t for s, t in spent.items() if t > longest[s] + 1e-6} == {}
+
+
+def test_handover_succeeds_for_both_robots() -> None:
+    """A human who follows the protocol gets the piece from either robot, in the usual time."""
+    for robot in ("correct", "legacy"):
+        run = run_test(protocol_test(7), robot=robot)
+        assert instants(run, "released")
+        assert 10.0 < instants(run, "grip_closed")[0] < 18.5
+        assert 19.0 < instants(run, "done")[0] < 29.5
+
+
+def test_arm_is_slow_and_distance_is_fresh_while_anything_moves() -> None:
+    """Near the hand the tool keeps below 250 mm/s, and the distance is never old in motion."""
+    run = run_test(protocol_test(4))
+    distance, speed, measured = 9.0, 0.0, 0
+    for t, values in run.samples:
+        if speed > 0.001:
+            assert t - measured <= 200_000_000
+        if values.get("hand_distance") is not None:
+            distance, measured = float(values["hand_distance"] or 0.0), t
+        speed = float(values.get("tool_speed", speed) or 0.0)
+        assert distance >= 0.5 or speed <= 0.25
+
+
+def test_crash_is_a_result() -> None:
+    """A robot whose code crashes leaves a whole run with the exception in it."""
+    run = run_test(protocol_test(1, mutation="crashes"))
+    assert run.error is not None
+    assert run.error.startswith("ZeroDivisionError")
+    assert instants(run, "informed")
+    assert not instants(run, "done")
+    assert run.mutation == "crashes"
+
+
+def test_observer_gets_each_sample_as_it_happens() -> None:
+    """What the observer saw is what the run keeps."""
+    seen: list[tuple[int, SampleValues]] = []
+    run = run_test(protocol_test(1), observer=lambda t, values: seen.append((t, dict(values))))
+    assert tuple(seen) == run.samples
+
+
+def test_context_is_entered_for_steps_of_the_robot_alone() -> None:
+    """The hook surrounds the robot's code: as often as it is resumed, and it changes nothing."""
+    entered = 0
+
+    @contextmanager
+    def around() -> Iterator[None]:
+        nonlocal entered
+        entered += 1
+        yield
+
+    run = run_test(protocol_test(1), around_robot_step=around)
+    assert digest(run) == digest(run_test(protocol_test(1)))
+    assert entered >= len(run.states)
+
+
+def test_poses_are_kept_on_demand() -> None:
+    """Frames come only when asked for, at most ten a second, and show the piece moving."""
+    assert run_test(protocol_test(1)).poses is None
+    poses = run_test(protocol_test(1), record_poses=True).poses
+    assert poses is not None
+    stamps = [t for t, _ in poses.frames]
+    assert min(b - a for a, b in itertools.pairwise(stamps)) >= 100_000_000
+    assert {len(frame) for _, frame in poses.frames} == {3 * len(poses.bodies)}
+    assert {outline.body for outline in poses.outlines} == {*poses.bodies, "ground"}
+    column = 3 * poses.bodies.index("piece")
+    xs = [frame[column] for _, frame in poses.frames]
+    assert xs[0] == 0.0
+    assert xs[-1] == pytest.approx(0.2, abs=0.02)
+
+
+def test_arguments_win_over_the_file() -> None:
+    """Robot and mutation of the call replace those that the test names."""
+    test = protocol_test(1, robot="legacy", mutation="crashes")
+    assert run_test(test).robot == "legacy"
+    other = run_test(test, robot="correct", mutation="releases-late")
+    assert (other.robot, other.mutation, other.error) == ("correct", "releases-late", None)
+
+
+@pytest.mark.parametrize(
+    ("settings", "names"),
+    [({"robot": "modern"}, "correct, legacy"), ({"mutation": "no-such"}, "never-decides")],
+)
+def test_unknown_names_are_told(settings: dict[str, str], names: str) -> None:
+    """A robot or mutation that does not exist is an error that lists those that do."""
+    with pytest.raises(AbstractTestError, match=names):
+        run_test(protocol_test(1), **settings)  # type: ignore[arg-type]
+
+
+def test_loss_switched_off_changes_nothing_else() -> None:
+    """Without the fitted loss all other conditions of a seed stay as they were."""
+    lost = 0
+    for seed in range(2000):
+        fitted, plain = draw(seed, startup_loss=True), draw(seed, startup_loss=False)
+        assert plain.connected
+        lost += not fitted.connected
+        assert (fitted.human_start_s, fitted.timeout_time_s, fitted.start_pose) == (
+            plain.human_start_s,
+            plain.timeout_time_s,
+            plain.start_pose,
+        )
+    assert 100 < lost < 180
+
+
+def test_dead_sensors_are_unknown() -> None:
+    """A dead sensor's signal is unknown, and the robot gives up for want of its reading."""
+    test = protocol_test(1, faults={"dropout": ("gaze",)})
+    import msgspec
+
+    run = run_test(msgspec.convert(msgspec.to_builtins(test), AbstractTest))
+    values = [values["gaze_ok"] for _, values in run.samples if "gaze_ok" in values]
+    assert values == [None]
+    assert instants(run, "timed_out")
+
+
+def test_slow_sensors_delay_the_decision() -> None:
+    """A robot with sensors that are 1 s late decides later, on what was then."""
+    from handover.world.faults import SensorFaults
+
+    quick = run_test(protocol_test(1))
+    slow = run_test(protocol_test(1, faults=SensorFaults(delay_s=1.0)))
+    assert instants(slow, "released")
+    assert instants(slow, "sensed")[0] >= instants(quick, "sensed")[0] + 0.5
+
+
+def test_noise_is_seeded() -> None:
+    """Noisy sensors give other numbers, and the same ones again for the same seed."""
+    from handover.world.faults import SensorFaults
+
+    noisy = protocol_test(1, faults=SensorFaults(noise_m=0.05))
+    assert digest(run_test(noisy)) == digest(run_test(noisy))
+    assert digest(run_test(noisy)) != digest(run_test(protocol_test(1)))

@@ -1,0 +1,154 @@
+"""An abstract test's actions as signals, waits and postures in time."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, field
+
+import pytest
+
+from handover.driver.script import INFORMED, Script
+from handover.generator import Action, ReceiveSignal, SendSignal, SetParam
+from handover.world import parameters as p
+from handover.world.bus import Bus, Node
+from handover.world.process import Process
+from handover.world.schedule import Schedule
+from handover.world.world import HUMAN_SIGNALS
+
+
+@dataclass
+class Body:
+    """Notes what the script makes the human do."""
+
+    schedule: Schedule
+    done: list[tuple[float, str, tuple[float | bool, ...]]] = field(default_factory=list)
+
+    def look(self, offset: float, distance: float, angle: float) -> None:
+        self.note("look", offset, distance, angle)
+
+    def reach(self, dx: float, dz: float, *, near: bool) -> None:
+        self.note("reach", dx, dz, near)
+
+    def grasp(self, *, closed: bool) -> None:
+        self.note("grasp", closed)
+
+    def note(self, what: str, *how: float | bool) -> None:
+        self.done.append((self.schedule.now_ns / p.NS, what, how))
+
+
+@dataclass
+class Played:
+    body: Body
+    signals: list[tuple[float, str]]
+    ended: float
+
+
+def play(*actions: Action, informed_at: float | None = None, connected: bool = True) -> Played:
+    """Play actions against a robot that does nothing but inform."""
+    schedule = Schedule()
+    bus = Bus(schedule)
+    signals: list[tuple[float, str]] = []
+
+    def tap(topic: str, value: object) -> None:
+        if topic == HUMAN_SIGNALS:
+            signals.append((schedule.now_ns / p.NS, str(value)))
+
+    bus.tap(tap)
+    robot = Node(bus, {}, 0.0)
+    if informed_at is not None:
+        schedule.at(round(informed_at * p.NS), lambda: robot.publish(INFORMED, latched=True))
+    body = Body(schedule)
+    script = Script(
+        actions,
+        Node(bus, {}, 0.0),
+        body,  # type: ignore[arg-type]
+        random.Random(1),
+        start_s=1.0,
+        connected=connected,
+    )
+    process = Process(schedule, Node(bus, {}, 0.0), script.run())
+    while schedule.next_ns() is not None:
+        schedule.run_next()
+    assert process.error is None
+    return Played(body, signals, schedule.now_ns / p.NS)
+
+
+def test_sending_takes_time() -> None:
+    """A signal is published 2 s after its action begins, and 0.2 s later the next begins."""
+    played = play(SendSignal("activateRobot"), SendSignal("humanIsReady"))
+    assert played.signals == [(3.0, "activateRobot"), (5.2, "humanIsReady")]
+    assert played.ended == 5.4
+
+
+def test_wait_is_in_units_of_fifty_milliseconds() -> None:
+    """`time = 40` waits 2 s."""
+    assert play(SetParam("time", 40)).ended == 3.0
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        SendSignal("setv"),
+        ReceiveSignal("setv"),
+        SetParam("honTask", 1),
+        SetParam("setg", 1),
+        SetParam("setp", 0),
+        SetParam("setl", 1),
+        SetParam("h_undefGaze", 1),
+        SetParam("h_undefPress", 1),
+        SetParam("h_undefLoc", 0),
+    ],
+)
+def test_actions_without_effect(action: Action) -> None:
+    """Some actions of the alphabet do nothing and take no time."""
+    played = play(action)
+    assert (played.signals, played.body.done, played.ended) == ([], [], 1.0)
+
+
+def test_receiving_waits_for_the_robot() -> None:
+    """The script goes on at the first poll after the robot has informed the human."""
+    played = play(
+        ReceiveSignal("informHumanOfHandoverStart"), SetParam("hpressureOk", 1), informed_at=7.3
+    )
+    assert [(t, what) for t, what, _ in played.body.done] == [(7.4, "grasp")]
+
+
+def test_receiving_in_vain_ends_the_script() -> None:
+    """After 500 polls the script ends; what comes after is not played."""
+    played = play(ReceiveSignal("informHumanOfHandoverStart"), SetParam("hpressureOk", 1))
+    assert played.body.done == []
+    assert played.ended == pytest.approx(101.0)
+
+
+def test_leaving_the_task_makes_all_postures_bad() -> None:
+    """`honTask = 0` turns head, hand and grip away at once."""
+    played = play(SetParam("honTask", 0))
+    assert [what for _, what, _ in played.body.done] == ["look", "reach", "grasp"]
+    reach, grasp = played.body.done[1][2], played.body.done[2][2]
+    assert reach[2] is False
+    assert grasp == (False,)
+
+
+@pytest.mark.parametrize(("ok", "ranges"), [(1, p.GAZE_OK), (0, p.GAZE_BAD)])
+def test_gaze_is_drawn_from_its_ranges(ok: int, ranges: tuple[tuple[float, float], ...]) -> None:
+    """Offset, distance and angle lie in the paper's ranges, and are not always the same."""
+    played = play(*[SetParam("hgazeOk", ok)] * 50)
+    looks = [how for _, _, how in played.body.done]
+    assert len(set(looks)) == 50
+    for look in looks:
+        assert all(low <= x <= high for x, (low, high) in zip(look, ranges, strict=True))
+
+
+def test_bad_location_is_off_on_both_axes_alike() -> None:
+    """A bad location is 0.5 to 1 m off, the same on both axes; a good one is fixed."""
+    played = play(*[SetParam("hlocationOk", 0)] * 20, SetParam("hlocationOk", 1))
+    *bad, good = [how for _, _, how in played.body.done]
+    assert all(dx == dz and 0.5 <= dx <= 1.0 and not near for dx, dz, near in bad)
+    assert good == (*p.LOCATION_OK, True)
+
+
+def test_unconnected_human_publishes_nothing() -> None:
+    """A human whose process found no robot plays the script, but no signal goes out."""
+    played = play(SendSignal("activateRobot"), SetParam("hpressureOk", 1), connected=False)
+    assert played.signals == []
+    assert [what for _, what, _ in played.body.done] == ["grasp"]

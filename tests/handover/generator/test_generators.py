@@ -1,0 +1,62 @@
+"""Random tests: their alphabet, their shape, their repeatability."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from handover.generator import ReceiveSignal, SendSignal, SetParam
+from handover.generator.pseudorandom import PREFIX, constrained, pseudorandom
+
+
+def test_pseudorandom_actions_are_uniform() -> None:
+    """Kinds, signals and parameters come about equally often, and all of them come."""
+    actions = [action for test in pseudorandom(1000, seed=3) for action in test.actions]
+    kinds = Counter(type(action) for action in actions)
+    assert {kind: pytest.approx(1 / 3, abs=0.02) for kind in kinds} == {
+        kind: count / len(actions) for kind, count in kinds.items()
+    }
+    sent = Counter(action.signal for action in actions if isinstance(action, SendSignal))
+    assert all(share == pytest.approx(1 / 3, abs=0.03) for share in shares(sent))
+    received = Counter(a.signal for a in actions if isinstance(a, ReceiveSignal))
+    assert all(share == pytest.approx(1 / 2, abs=0.03) for share in shares(received))
+    params = Counter(action.param for action in actions if isinstance(action, SetParam))
+    assert len(params) == 11
+    assert all(share == pytest.approx(1 / 11, abs=0.02) for share in shares(params))
+
+
+def shares(counts: Counter[str]) -> list[float]:
+    """Each count as a share of all."""
+    return [count / counts.total() for count in counts.values()]
+
+
+def test_pseudorandom_lengths() -> None:
+    """Lengths are 4 to 15, and every one of them comes."""
+    lengths = {len(test.actions) for test in pseudorandom(500, seed=1)}
+    assert lengths == set(range(4, 16))
+
+
+def test_values_are_in_range() -> None:
+    """Switches are 0 or 1, waits 1 to 100 units."""
+    for test in pseudorandom(300, seed=2):
+        for action in test.actions:
+            if isinstance(action, SetParam):
+                assert action.value in (range(1, 101) if action.param == "time" else range(2))
+
+
+def test_constrained_begin_with_the_protocol() -> None:
+    """Each begins with activation, wait, informing and readiness, and goes on at random."""
+    tests = constrained(300, seed=1)
+    assert all(test.actions[: len(PREFIX)] == PREFIX for test in tests)
+    assert {len(test.actions) - len(PREFIX) for test in tests} == set(range(1, 11))
+
+
+@pytest.mark.parametrize("make", [pseudorandom, constrained])
+def test_tests_depend_on_seed_and_index_alone(make: type) -> None:
+    """A longer campaign begins with the tests of a shorter one; another seed gives others."""
+    assert make(20, seed=4)[:5] == make(5, seed=4)
+    assert make(5, seed=4) != make(5, seed=5)
+    tests = make(200, seed=4)
+    assert len({test.name for test in tests}) == 200
+    assert len({test.seed for test in tests}) == 200
