@@ -9,34 +9,20 @@ from itertools import count
 
 from rvmon.timed.meter import Meter, paused_collector
 from rvmon.timed.pieces import Piece
-from rvmon.timed.search import (
-    UNLIMITED,
-    Budget,
-    Found,
-    LinkT,
-    Node,
-    Problem,
-    SiteT,
-    Statistics,
-    Watch,
-)
+from rvmon.timed.search import Found, LinkT, Node, Problem, SiteT
 from rvmon.timed.zones import Zone, is_simulated, is_within
 
 
-def explore(
-    problem: Problem[SiteT, LinkT], budget: Budget = UNLIMITED, watch: Watch | None = None
-) -> Found[SiteT, LinkT]:
+def explore(problem: Problem[SiteT, LinkT], meter: Meter) -> Found[SiteT, LinkT]:
     """Search breadth first, so that what is found is reached in the fewest steps.
 
     Args:
         problem: what to search for.
-        budget: when to give up.
-        watch: called now and then.
+        meter: counts the states that are kept.
 
     Source: Behrmann, Bengtsson, David, Larsen, Pettersson, Yi, UPPAAL Implementation Secrets, 2002
     (one list of passed and waiting states).
     """
-    meter = Meter(budget, watch)
     passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
     waiting: deque[Node[SiteT, LinkT]] = deque()
     covers = _cover_test(problem)
@@ -73,18 +59,16 @@ def explore(
                 if not meet(Node(site, zone, node, link)):
                     going = False
                     break
-    stored = sum(map(len, passed.values()))
-    statistics = Statistics(meter.visited, stored, meter.seconds)
+    meter.stored += sum(map(len, passed.values()))
     last, piece = found or (None, None)
-    return Found(last, piece, statistics, "" if found else meter.stopped)
+    return Found(last, piece)
 
 
 def explore_best(
     problem: Problem[SiteT, LinkT],
     cost: Callable[[float, LinkT | None, Zone], float],
     goal_cost: Callable[[float, Zone, Piece], float],
-    budget: Budget = UNLIMITED,
-    watch: Watch | None = None,
+    meter: Meter,
 ) -> Found[SiteT, LinkT]:
     """Search by increasing cost, so that what is found costs least.
 
@@ -93,10 +77,8 @@ def explore_best(
         cost: of a node, from its parent's cost, the step to it and its zone; never below the
             parent's.
         goal_cost: of the part of a node that is sought, from the node's cost; never below it.
-        budget: when to give up.
-        watch: called now and then.
+        meter: counts the states that are kept.
     """
-    meter = Meter(budget, watch)
     passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
     covers = _cover_test(problem)
     order = count()
@@ -123,10 +105,9 @@ def explore_best(
             for link, site, zone in problem.successors(node.site, node.zone):
                 after = Node(site, zone, node, link)
                 heappush(heap, (cost(price, link, zone), next(order), after, None))
-    stored = sum(map(len, passed.values()))
-    statistics = Statistics(meter.visited, stored, meter.seconds)
+    meter.stored += sum(map(len, passed.values()))
     last, piece = found or (None, None)
-    return Found(last, piece, statistics, "" if found else meter.stopped)
+    return Found(last, piece)
 
 
 def _cover_test(problem: Problem[SiteT, LinkT]) -> Callable[[SiteT, Zone, Zone], bool]:

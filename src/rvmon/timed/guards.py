@@ -102,6 +102,19 @@ def normal_form(expression: Expression, positive: bool = True) -> Expression:
             raise AssertionError(f"{expression} is no condition")
 
 
+def with_deadlock(formula: Expression, value: bool) -> Expression:
+    """A normalised formula in which `deadlock` is true, or false."""
+    match formula:
+        case Deadlock():
+            return Constant(int(value))
+        case UnaryOperation(UnaryOp.NOT, Deadlock()):
+            return Constant(int(not value))
+        case BinaryOperation(op, left, right) if not is_discrete(formula):
+            return BinaryOperation(op, with_deadlock(left, value), with_deadlock(right, value))
+        case _:
+            return formula
+
+
 def split_guard(expression: Expression, span: Span) -> Guard:
     """A condition as its discrete part and its clock bounds, which must all hold.
 

@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rvmon.timed.search import Budget, Progress, Watch
+from rvmon.timed.search import Budget, Progress, Statistics, Watch
 
 CHECK_EVERY = 512
 """States between two looks at the clock and at the memory."""
@@ -32,6 +32,7 @@ class Meter:
 
     Attributes:
         visited: states so far.
+        stored: those that a search still held when it ended.
         stopped: which limit was met; empty while none was.
     """
 
@@ -40,12 +41,17 @@ class Meter:
         self._watch = watch
         self._start = time.perf_counter()
         self.visited = 0
+        self.stored = 0
         self.stopped = ""
 
     @property
     def seconds(self) -> float:
         """Since the meter was made."""
         return time.perf_counter() - self._start
+
+    def statistics(self) -> Statistics:
+        """What was counted, as data."""
+        return Statistics(self.visited, self.stored, self.seconds)
 
     def count(self, waiting: int) -> bool:
         """Count one state; False if the search must stop."""

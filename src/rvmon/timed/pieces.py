@@ -108,6 +108,21 @@ def speaks_of_deadlock(formula: Expression) -> bool:
             return False
 
 
+def has_paths(formula: Expression) -> bool:
+    """Whether a path operator occurs in a formula."""
+    match formula:
+        case PathFormula():
+            return True
+        case UnaryOperation(_, operand):
+            return has_paths(operand)
+        case BinaryOperation(_, left, right):
+            return has_paths(left) or has_paths(right)
+        case Choice(condition, then, otherwise):
+            return any(map(has_paths, (condition, then, otherwise)))
+        case _:
+            return False
+
+
 def formula_bounds(formula: Expression, network: Network) -> ClockBounds:
     """What a formula compares clocks with."""
     return compared_bounds(network, compares_of(formula))

@@ -1,92 +1,112 @@
-"""The problem of reaching a state formula without `deadlock`."""
+"""The problem of reaching a state formula."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 
+from rvmon.timed.deadlock import Deadlocks, blurred, is_time_bounded
 from rvmon.timed.discrete import Move, State
+from rvmon.timed.federation import piece_of, subtract_all, universe
+from rvmon.timed.guards import with_deadlock
 from rvmon.timed.model import Expression, Network
-from rvmon.timed.pieces import (
-    Piece,
-    formula_bounds,
-    has_strict_bounds,
-    piece_maker,
-)
-from rvmon.timed.successors import Space
-from rvmon.timed.zones import Zone, constrain, cut, delay_within, normalise, reset, zero
+from rvmon.timed.pieces import Piece, piece_maker
+from rvmon.timed.run import Ending
+from rvmon.timed.symbolic import Steps, meets
+from rvmon.timed.zones import Zone, cut, normalise
 
 
-class Reachability:
-    """Reach a state formula; sites are discrete states, links are moves.
+class Reachability(Steps):
+    """Reach a formula without `deadlock`; sites are discrete states, links are moves.
 
     Args:
         network: where to look.
         formula: normalised.
-        timer: whether an additional last clock measures the time since the start.
+        within: units of time since the start; `None`: whenever.
+        timed: whether the last clock measures the time since the start, and a state that is
+            reached later never covers one that is reached earlier.
+
+    Attributes:
+        timer: the last clock, if there is a bound or `timed`.
     """
 
     simulates = True
 
-    def __init__(self, network: Network, formula: Expression, *, timer: bool = False) -> None:
-        self.space = Space(network, formula_bounds(formula, network), int(timer))
-        self.dim = self.space.dim
-        self.strict = has_strict_bounds(network, formula)
+    def __init__(
+        self,
+        network: Network,
+        formula: Expression,
+        *,
+        within: int | None = None,
+        timed: bool = False,
+    ) -> None:
+        self.timer = 1 + len(network.clocks)
+        uppers = [(self.timer, -inf if timed else -float(within or 0))]
+        if not timed and within is None:
+            uppers = []
+        super().__init__(network, formula, len(uppers), uppers)
         self._pieces = piece_maker(formula)
+        self._due: Piece = () if within is None else ((0, self.timer, float(within)),)
         self._goals: dict[State, list[Piece]] = {}
-
-    def start(self) -> Iterator[tuple[State, Zone]]:
-        """The initial state with all delays; nothing if its invariant is broken from the start."""
-        state = self.space.initial()
-        if state is not None:
-            zone = zero(self.dim)
-            if settle_in(state, zone, self.dim):
-                yield state, normalise(zone)
-
-    def successors(self, site: State, zone: Zone) -> Iterator[tuple[Move, State, Zone]]:
-        """All moves that some valuation of the zone can take."""
-        dim, strict = self.dim, self.strict
-        for move in self.space.moves(site):
-            fresh = fire(move, zone, dim)
-            if fresh is not None and settle_in(move.target, fresh, dim):
-                yield move, move.target, normalise(fresh) if strict else fresh
 
     def goal(self, site: State, zone: Zone) -> Piece | None:
         """The first piece of the formula that meets the zone."""
         pieces = self._goals.get(site)
         if pieces is None:
-            pieces = self._goals[site] = self._pieces(site.vector.locations, site.values)
+            found = self._pieces(site.vector.locations, site.values)
+            pieces = self._goals[site] = [(*piece, *self._due) for piece in found]
         return next((piece for piece in pieces if meets(zone, self.dim, piece)), None)
 
 
-def fire(move: Move, zone: Zone, dim: int) -> Zone | None:
-    """The valuations just after a move, before the target's invariant; `None` if there are none.
+class DeadlockReachability:
+    """Reach a formula that speaks of `deadlock`; sites are discrete states, links are moves.
 
-    Raises:
-        ModelError: the move can be taken, but sets a variable outside its range.
+    Zones are coarsened up to bisimulation only, since simulation would invent deadlocks.
+
+    Args:
+        network: where to look.
+        formula: normalised.
     """
-    fresh = zone[:]
-    for x, y, bound in move.guard:
-        if not constrain(fresh, dim, x, y, bound):
+
+    simulates = False
+
+    def __init__(self, network: Network, formula: Expression) -> None:
+        self.steps = Steps(network, formula)
+        self.dim = self.steps.dim
+        self._deadlocks = Deadlocks(self.steps.space)
+        self._if_dead = piece_maker(with_deadlock(formula, value=True))
+        self._if_alive = piece_maker(with_deadlock(formula, value=False))
+
+    def start(self) -> Iterator[tuple[State, Zone]]:
+        """The initial state with all delays."""
+        for state, zone in self.steps.start():
+            yield state, blurred(state, zone, self.dim)
+
+    def successors(self, site: State, zone: Zone) -> Iterator[tuple[Move, State, Zone]]:
+        """All moves that some valuation of the zone can take."""
+        for move, state, fresh in self.steps.successors(site, zone):
+            yield move, state, blurred(state, fresh, self.dim)
+
+    def goal(self, site: State, zone: Zone) -> Piece | None:
+        """A part of the zone where the formula holds."""
+        locations, values = site.vector.locations, site.values
+        dead_pieces = self._if_dead(locations, values)
+        alive_pieces = self._if_alive(locations, values)
+        if not (dead_pieces or alive_pieces):
             return None
-    if move.failure is not None:
-        raise move.failure
-    for clock, value in move.resets:
-        reset(fresh, dim, clock, value)
-    return fresh
+        dead = self._deadlocks.dead(site, zone)
+        alive = subtract_all([zone], dead, self.dim) if alive_pieces else []
+        for parts, pieces in ((dead, dead_pieces), (alive, alive_pieces)):
+            for part in parts:
+                for piece in pieces:
+                    if meets(part, self.dim, piece):
+                        return (*piece, *piece_of(part, self.dim))
+        return None
 
-
-def settle_in(state: State, zone: Zone, dim: int) -> bool:
-    """Cut a zone to a state's invariant and let time pass if it may, in place.
-
-    Returns:
-        False if no valuation satisfies the invariant.
-    """
-    if state.delays:
-        # Bounds are from above only: who breaks them before the delay does so after it.
-        return delay_within(zone, dim, state.invariant)
-    return all(constrain(zone, dim, 0, clock, bound) for clock, bound in state.invariant)
-
-
-def meets(zone: Zone, dim: int, piece: Piece) -> bool:
-    """Whether some valuation of a zone lies in a piece."""
-    return not piece or cut(zone[:], dim, piece)
+    def ending(self, site: State, piece: Piece) -> Ending:
+        """How a run ends that reaches a part of a state's valuations."""
+        part = universe(self.dim)
+        cut(part, self.dim, piece)
+        if not self._deadlocks.dead(site, normalise(part)):
+            return Ending.REACHED
+        return Ending.TIME_LOCK if is_time_bounded(site) else Ending.DEADLOCK

@@ -141,14 +141,7 @@ class Statistics:
 
 @dataclass(frozen=True, slots=True)
 class Found(Generic[SiteT, LinkT]):
-    """The end of a search.
-
-    Attributes:
-        node: what was sought, and the part of its zone; both `None` if it is not there.
-        stopped: which budget ended the search before it was done; empty if it was done.
-    """
+    """The end of a search: what was sought and the part of its zone, or `None` twice."""
 
     node: Node[SiteT, LinkT] | None
     piece: Piece | None
-    statistics: Statistics
-    stopped: str

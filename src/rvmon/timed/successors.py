@@ -27,14 +27,20 @@ class Space:
         network: whose states they are.
         extra: what a query compares clocks with, at any location.
         observers: number of clocks of queries, counted behind those of the network.
+        uppers: upper bounds of those, as `zones.is_simulated` takes them.
     """
 
     def __init__(
-        self, network: Network, extra: ClockBounds | None = None, observers: int = 0
+        self,
+        network: Network,
+        extra: ClockBounds | None = None,
+        observers: int = 0,
+        uppers: Sequence[tuple[int, float]] = (),
     ) -> None:
         self.network = network
         self.dim = 1 + len(network.clocks) + observers
         self._extra = extra or no_bounds(len(network.clocks))
+        self._uppers = tuple(uppers)
         self._vectors: dict[tuple[int, ...], Vector] = {}
         self._states: dict[tuple[tuple[int, ...], tuple[int, ...]], State] = {}
         self._edges: list[list[list[CompiledEdge]]] = []
@@ -132,7 +138,11 @@ class Space:
             tuple(data for data, _ in invariants if data is not None),
             tuple(atoms for _, atoms in invariants),
             bounds,
-            ((0, 0.0), *((c + 1, -u) for c, u in enumerate(bounds.upper) if u > -inf)),
+            (
+                (0, 0.0),
+                *((c + 1, -u) for c, u in enumerate(bounds.upper) if u > -inf),
+                *self._uppers,
+            ),
             ((0, 0.0), *((c + 1, low) for c, low in enumerate(bounds.lower) if low > -inf)),
         )
         self._vectors[locations] = vector
