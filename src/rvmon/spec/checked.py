@@ -65,9 +65,15 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A number in the unit that the comparison is made in, or a label."""
+    """A number in the unit that the comparison is made in, or a label.
+
+    Attributes:
+        value: the number or label.
+        unit: that unit's symbol, for people; "" if it has none.
+    """
 
     value: float | int | str
+    unit: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

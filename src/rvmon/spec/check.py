@@ -1,0 +1,163 @@
+"""From resolved names to the checked specification: types, units, durations, requirements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.spec.checked import CheckedSpec, Event, Requirement, Signal, TimeModel, Type
+from rvmon.spec.cycles import find_cycles
+from rvmon.spec.expressions import Checker, Reported
+from rvmon.spec.macros import check_unused
+from rvmon.spec.reads import names_in, names_read
+from rvmon.spec.requirements import check_clauses, checked_requirement
+from rvmon.spec.resolved import DeclaredEvent, DeclaredSignal, ResolvedSpec
+from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import time as time_rules
+from rvmon.spec.rules import triggers as trigger_rules
+from rvmon.spec.rules import types as type_rules
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.syntax import Expression, TypeSyntax
+from rvmon.spec.table import Table, close_unit
+from rvmon.spec.unit import Unit
+from rvmon.spec.units import UnknownUnitError, parse_unit
+from rvmon.spec.values import EVERYWHERE
+from rvmon.trace.schema import Kind
+
+
+def check(spec: ResolvedSpec) -> tuple[CheckedSpec, list[Diagnostic]]:
+    """Check everything that a specification says.
+
+    Returns:
+        What could be checked, and all findings; it is fit for use if none of them is an error.
+    """
+    findings: list[Diagnostic] = []
+    recursive, circles = find_cycles(spec.declared)
+    findings += circles
+    table = _table(spec, recursive, findings)
+    checker = Checker(table, findings)
+    signals = dict(table.signals)
+    for declared in spec.declared.values():
+        if isinstance(declared, DeclaredSignal) and declared.stale_after is not None:
+            name = declared.name.text
+            if name in signals:
+                signals[name] = _with_staleness(checker, signals[name], declared.stale_after)
+    period = delay = None
+    if spec.time is not None and spec.time.period is not None:
+        period = _positive(checker, spec.time.period, "the period")
+    if spec.delay is not None:
+        delay = _duration(checker, spec.delay.delay)
+    requirements: dict[str, Requirement] = {}
+    for name, item in spec.requirements.items():
+        check_clauses(checker, item)
+        requirement = checked_requirement(checker, item)
+        if requirement is not None:
+            requirements[name] = requirement
+    check_unused(checker, spec)
+    checked = CheckedSpec(
+        spec.header.name.text if spec.header else "spec",
+        spec.header.title if spec.header else "",
+        table.time,
+        signals,
+        table.events,
+        requirements,
+        period,
+        delay,
+        spec.source,
+    )
+    return checked, findings
+
+
+def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: list[Diagnostic]) -> Table:
+    signals: dict[str, Signal] = {}
+    events: dict[str, Event] = {}
+    units: dict[str, Unit] = {}
+    types = _Types(findings)
+    for name, declared in spec.declared.items():
+        match declared:
+            case DeclaredSignal():
+                found = types.read(declared.type)
+                if found is not None:
+                    type_, units[name] = found
+                    signals[name] = Signal(name, type_, declared.role, None, declared.name.span)
+            case DeclaredEvent():
+                fields = {}
+                for field in declared.event.fields:
+                    if field.name.text in fields:
+                        places = field.name.span, declared.name.span
+                        findings.append(name_rules.double(field.name.text, "field", *places))
+                    found = types.read(field.type)
+                    if found is not None:
+                        fields[field.name.text], units[f"{name}.{field.name.text}"] = found
+                events[name] = Event(name, fields, declared.role, declared.name.span)
+    time = spec.time.model if spec.time is not None else TimeModel.HELD
+    return Table(time, signals, events, units, spec.declared, recursive, spec.doubtful)
+
+
+class _Types:
+    """Reads types, each syntax once, so that `signal a, b : real [kgg]` is one finding."""
+
+    def __init__(self, findings: list[Diagnostic]) -> None:
+        self._findings = findings
+        self._read: dict[int, tuple[Type, Unit] | None] = {}
+
+    def read(self, syntax: TypeSyntax) -> tuple[Type, Unit] | None:
+        if id(syntax) not in self._read:
+            self._read[id(syntax)] = self._fresh(syntax)
+        return self._read[id(syntax)]
+
+    def _fresh(self, syntax: TypeSyntax) -> tuple[Type, Unit] | None:
+        labels = tuple(label.text for label in syntax.labels)
+        for number, label in enumerate(syntax.labels):
+            if label.text in labels[:number]:
+                first = syntax.labels[labels.index(label.text)].span
+                self._findings.append(name_rules.double(label.text, "label", label.span, first))
+        try:
+            unit = parse_unit(syntax.unit)
+        except UnknownUnitError as error:
+            part = str(error)
+            self._findings.append(type_rules.unknown_unit(syntax.span, part, close_unit(part)))
+            return None
+        return Type(Kind(syntax.name), syntax.unit, labels), unit
+
+
+def _with_staleness(checker: Checker, signal: Signal, limit: Expression) -> Signal:
+    ticks = _positive(checker, limit, "the age at which a signal is stale")
+    return Signal(signal.name, signal.type, signal.role, ticks, signal.span)
+
+
+def _positive(checker: Checker, expression: Expression, what: str) -> int | None:
+    ticks = _duration(checker, expression)
+    if ticks == 0:
+        checker.report(time_rules.not_positive(expression.span, what))
+    return ticks
+
+
+def _duration(checker: Checker, expression: Expression) -> int | None:
+    try:
+        return checker.duration(expression, EVERYWHERE)
+    except Refusal as refusal:
+        checker.report(refusal.finding)
+    except Reported:
+        pass
+    return None
+
+
+def never_read(spec: CheckedSpec) -> list[Diagnostic]:
+    """A finding for each signal and event that no requirement reads."""
+    read: set[str] = set()
+    for requirement in spec.requirements.values():
+        read.update(names_read(requirement.trigger))
+        read.update(names_read(requirement.consequent))
+        for capture in requirement.captures:
+            read.update(names_in(capture.value))
+    kinds: tuple[tuple[str, Mapping[str, Signal | Event]], ...] = (
+        ("signal", spec.signals),
+        ("event", spec.events),
+    )
+    return [
+        trigger_rules.never_read(declared.span, kind)
+        for kind, names in kinds
+        for name, declared in names.items()
+        if name not in read and declared.span is not None
+    ]

@@ -1,0 +1,57 @@
+"""Macros and constants that are defined by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.spec.resolved import Declared
+from rvmon.spec.rules import names as rules
+from rvmon.spec.syntax import Call, ConstItem, DefineItem, Expression, Name
+from rvmon.spec.walk import expressions_in
+
+
+def find_cycles(declared: Mapping[str, Declared]) -> tuple[frozenset[str], list[Diagnostic]]:
+    """The names from which a circle of definitions can be reached, and a finding per circle."""
+    uses = {
+        name: sorted(set(_used(item)) & declared.keys())
+        for name, item in declared.items()
+        if isinstance(item, DefineItem | ConstItem)
+    }
+    findings = []
+    caught: set[str] = set()
+    finished: set[str] = set()
+    for root in uses:
+        path: list[str] = []
+        waiting = [(root, iter(uses[root]))] if root not in finished else []
+        while waiting:
+            name, rest = waiting[-1]
+            if len(path) < len(waiting):
+                path.append(name)
+            following = next((n for n in rest if n in uses and n not in finished), None)
+            if following is None:
+                finished.add(name)
+                waiting.pop()
+                path.pop()
+                if caught & set(uses[name]):
+                    caught.add(name)
+            elif following in path:
+                circle = path[path.index(following) :]
+                caught.update(circle)
+                place = declared[circle[0]].name.span
+                findings.append(rules.recursive([*circle, circle[0]], place))
+            else:
+                waiting.append((following, iter(uses[following])))
+    return frozenset(caught), findings
+
+
+def _used(item: DefineItem | ConstItem) -> Iterator[str]:
+    own: frozenset[str] = frozenset()
+    body: Expression = item.value if isinstance(item, ConstItem) else item.body
+    if isinstance(item, DefineItem) and item.parameters:
+        own = frozenset(parameter.text for parameter in item.parameters)
+    for part in expressions_in(body):
+        if isinstance(part, Name) and part.text not in own:
+            yield part.text
+        elif isinstance(part, Call):
+            yield part.function.text

@@ -1,0 +1,162 @@
+"""Syntax errors in the words of the language: what was found, what could have stood there."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from typing import Any
+
+import lark
+from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+from lark.parsers.lalr_interactive_parser import InteractiveParser
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.span import Source, Span
+from rvmon.spec.rules import names, syntax
+from rvmon.spec.words import ITEM_WORDS, RESERVED
+
+_OPERAND = {"NUMBER", "NAME", "NOT", "TEMPORAL", "MINUS"}
+_OPERAND_ALL = _OPERAND | {
+    "WITHIN", "FOR", "IMMEDIATELY", "CTL", "PATH", "QUANTIFIER", "TRUTH", "START", "END", "CALL",
+    "LPAR",
+}  # fmt: skip
+_ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
+_INFIX = {"AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS"}
+_CLAUSES = {"TEXT_CLAUSE", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY"}
+_WORDS = {
+    "NAME": "a name",
+    "NUMBER": "a number",
+    "STRING": 'a text in "quotes"',
+    "UNIT": "a unit",
+    "CALL": "a name with `(`",
+    "ROLE": "`input` or `output`",
+    "$END": "the end of the item",
+    "LSQB": "`[`",
+    "INFINITE": "`inf`",
+    "EQUAL": "`=`",
+    "STALE_AFTER": "`stale after`",
+    "MONITOR_AS_RESPONSE": "`monitor as response`",
+    "MAX_DELAY": "`max delay`",
+    "COMPARE": "a comparison",
+    "UPON": "`upon`",
+    "WHENEVER": "`whenever`",
+    "THEN": "`then`",
+    "WITHIN": "`within`",
+}
+_MEND = {
+    "≤": "write `<=`",
+    "≥": "write `>=`",
+    "≠": "write `!=`",
+    "→": "write `->`",
+    "↔": "write `<->`",
+    "∧": "write `and`",
+    "∨": "write `or`",
+    "¬": "write `not`",
+    "□": "write `always`",
+    "◇": "write `eventually`",
+    '"': "a text ends on the line it starts on, with a second quote",
+    "“": 'write straight quotes: "',
+    "”": 'write straight quotes: "',
+    "'": 'texts stand in double quotes: "',
+    "`": "a quoted name ends on the line it starts on, with a second backtick",
+    "%": "`%` is a unit and stands behind a number",
+    ";": "items and clauses need no `;`",
+}
+
+
+def explain_unexpected(
+    error: UnexpectedInput, parser: lark.Lark, source: Source, start: int, end: int
+) -> Diagnostic:
+    """Say what was found and what could have stood there.
+
+    Args:
+        error: what the parser raised.
+        parser: the parser.
+        source: the file.
+        start: where the text given to the parser starts in it.
+        end: where it ends.
+    """
+    place = _place(error, source, start, end)
+    accepted = _accepted(error, parser)
+    found = place.text
+    if found in RESERVED and "NAME" in accepted and not accepted >= _OPERAND:
+        return names.reserved(place)
+    expected = _in_words(accepted, parser)
+    shown = f"`{syntax.short(found)}`" if found else "the end of the item"
+    message = f"found {shown}" + (f", expected {expected}" if expected else "")
+    return syntax.syntax_error(message, place, _mend(found, accepted, parser, place))
+
+
+def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span:
+    if isinstance(error, UnexpectedToken) and error.token.type != "$END":
+        first = start + (error.token.start_pos or 0)
+        return Span(source, first, first + max(len(error.token), 1))
+    if isinstance(error, UnexpectedCharacters):
+        first = start + error.pos_in_stream
+        word = re.compile(r"\w+|.", re.DOTALL).match(source.text, first)
+        return Span(source, first, word.end() if word else first)
+    text = re.sub(r"(?m)#.*$", lambda comment: " " * len(comment[0]), source.text[start:end])
+    last = start + len(text.rstrip())
+    return Span(source, last, last)
+
+
+def _accepted(error: UnexpectedInput, parser: lark.Lark) -> set[str]:
+    """The terminals with which the text could really go on; the parser's own list is too long."""
+    state: Any = getattr(error, "state", None)
+    if state is None:
+        return set()
+    return set(InteractiveParser(parser.parser.parser, state, None).accepts())  # type: ignore[attr-defined,arg-type]
+
+
+def _in_words(accepted: set[str], parser: lark.Lark) -> str:
+    rest = set(accepted)
+    words = []
+    if rest >= _OPERAND:
+        words.append("a formula or a number")
+        rest -= _OPERAND_ALL
+    if "AND" in rest:
+        words.append("an operator such as `and`, `or`, `->`, `until`")
+        rest -= _INFIX | _ARITHMETIC
+    if rest >= _CLAUSES:
+        words.append("a clause (`source`, `rationale`, `severity`, `tags`, `let`, …)")
+        rest -= _CLAUSES
+    if len(rest & {"SPEC", "SIGNAL", "REQUIREMENT"}) == 3:
+        return f"an item ({', '.join(f'`{word}`' for word in ITEM_WORDS)})"
+    words += sorted(_word(terminal, parser) for terminal in rest if terminal != "$END")
+    if "$END" in rest:
+        words.append(_WORDS["$END"])
+    return " or ".join(words)
+
+
+def _word(terminal: str, parser: lark.Lark) -> str:
+    if terminal in _WORDS:
+        return _WORDS[terminal]
+    pattern = parser.get_terminal(terminal).pattern
+    return (
+        f"`{re.match(r'[a-z]+', pattern.value)[0]}`"
+        if pattern.type == "re"
+        else f"`{pattern.value}`"
+    )  # type: ignore[index]
+
+
+def _mend(found: str, accepted: set[str], parser: lark.Lark, place: Span) -> str:
+    if found in _MEND:
+        return _MEND[found]
+    before = place.source.text[: place.start]
+    call = re.search(r"([^\W\d]\w*)[ \t]+$", before)
+    if found == "(" and call:
+        return f"a call has no space before its bracket: `{call[1]}(`"
+    if found[:1] in "AE" and found[1:2] in "[<" and "AND" not in accepted:
+        return f"put brackets around `{found} …`"
+    if re.fullmatch(r"[^\W\d]\w*", found):
+        words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", _word_pattern(t, parser))]
+        close = difflib.get_close_matches(found, sorted({*words, *ITEM_WORDS}), 1, 0.75)
+        if close and close[0] != found:
+            return f"did you mean `{close[0]}`?"
+    return ""
+
+
+def _word_pattern(terminal: str, parser: lark.Lark) -> str:
+    if terminal in ("$END", "NAME", "NUMBER", "CALL", "UNIT", "STRING"):
+        return ""
+    return str(parser.get_terminal(terminal).pattern.value)

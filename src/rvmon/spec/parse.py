@@ -1,0 +1,117 @@
+"""Text to syntax tree: every item alone, so that all errors of a file appear at once."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import lark
+from lark.exceptions import UnexpectedInput, VisitError
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.span import Source, Span
+from rvmon.spec.build import Builder
+from rvmon.spec.expected import explain_unexpected
+from rvmon.spec.rules import syntax as rules
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.split import split_items
+from rvmon.spec.syntax import Expression, Item, ParsedSpec
+from rvmon.spec.units import compound_pattern
+from rvmon.spec.words import NOT_UNITS, RESERVED
+
+DEEPEST = 100
+"""Expressions nested more deeply are refused."""
+
+Parsed = tuple[Any, list[Diagnostic]]
+
+
+def parse_spec(source: Source) -> tuple[ParsedSpec, list[Diagnostic]]:
+    """Read a file.
+
+    Returns:
+        The items that could be read, and what is wrong with the others.
+    """
+    items: list[Item] = []
+    findings: list[Diagnostic] = []
+    doubtful: set[str] = set()
+    for start, end in split_items(source.text):
+        item, wrong = _parse(source, start, end, "item")
+        findings += wrong
+        if item is not None:
+            items.append(item)
+        else:
+            doubtful.update(re.findall(r"\w[\w.]*", source.text[start:end]))
+    return ParsedSpec(source, tuple(items), frozenset(doubtful)), findings
+
+
+def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic]]:
+    """Read a text that is one expression, such as the value of a constant."""
+    return _parse(source, 0, len(source.text), "expression")
+
+
+def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
+    builder = Builder(source, start)
+    try:
+        tree = grammar().parse(source.text[start:end], start=rule)
+        if _depth(tree) > DEEPEST:
+            place = Span(source, start, start + len(source.text[start:end].rstrip()))
+            return None, [rules.too_deep(place, DEEPEST)]
+        return builder.transform(tree), builder.findings
+    except UnexpectedInput as error:
+        return None, [explain_unexpected(error, grammar(), source, start, end)]
+    except VisitError as error:
+        if isinstance(error.orig_exc, Refusal):
+            return None, [error.orig_exc.finding]
+        raise
+
+
+@cache
+def grammar() -> lark.Lark:
+    """The parser, built once per process."""
+    return lark.Lark(grammar_text(), **GRAMMAR_OPTIONS)
+
+
+GRAMMAR_OPTIONS: dict[str, Any] = {
+    "parser": "lalr",
+    "lexer": "contextual",
+    "start": ["item", "expression"],
+    "propagate_positions": True,
+    "maybe_placeholders": False,
+}
+
+
+def grammar_text() -> str:
+    """The grammar with its terminals filled in from the tables of words and units."""
+    text = resources.files("rvmon.spec").joinpath("rv.lark").read_text(encoding="utf-8")
+    end = r"(?!\w|\.\w)"
+    word = r"[^\W\d]\w*"
+    fillings = {
+        "END": end,
+        "NAME": rf"(?!({_any(RESERVED)}){end}){word}(\.{word})*",
+        "UNIT": rf"(?!({_any(NOT_UNITS)}){end}){word}",
+        "COMPOUND": compound_pattern(NOT_UNITS).replace("/", r"\/"),
+    }
+    for key, pattern in fillings.items():
+        text = text.replace(f"@{key}@", pattern)
+    return text
+
+
+def _any(words: frozenset[str]) -> str:
+    return "|".join(sorted(words))
+
+
+def _depth(tree: Any) -> int:
+    deepest = 0
+    level = [tree]
+    while level:
+        deepest += 1
+        level = [
+            child
+            for node in level
+            if isinstance(node, lark.Tree)
+            for child in node.children
+            if isinstance(child, lark.Tree)
+        ]
+    return deepest

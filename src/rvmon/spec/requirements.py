@@ -1,0 +1,195 @@
+"""From a requirement's syntax to the checked requirement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TypeVar
+
+from rvmon.diagnostics.span import Span
+from rvmon.spec.checked import (
+    Bound,
+    BoundAtom,
+    Capture,
+    Captured,
+    EndPolicy,
+    FieldValue,
+    ForEach,
+    Formula,
+    Mode,
+    Requirement,
+)
+from rvmon.spec.expressions import Checker, Reported
+from rvmon.spec.normalise import normalised
+from rvmon.spec.quantities import node_of
+from rvmon.spec.rules import triggers as rules
+from rvmon.spec.rules import types as type_rules
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.syntax import (
+    AtEndClause,
+    Bare,
+    Clause,
+    Expression,
+    ForEachClause,
+    Group,
+    Immediately,
+    LetClause,
+    PropertyClause,
+    RequirementItem,
+    ResponseMonitor,
+    TagsClause,
+    TextClause,
+    Triggered,
+)
+from rvmon.spec.tense import end_part, future_part, is_pulse, is_timeless, mixed_disjunction
+from rvmon.spec.unit import PLAIN
+from rvmon.spec.values import EVERYWHERE, Quantity, Scope
+from rvmon.trace.schema import Kind
+
+_C = TypeVar("_C", bound=Clause)
+
+
+def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement | None:
+    """Check a requirement; `None` if it is wrong, and then that is reported."""
+    try:
+        for_each, outer = _instances(checker, item)
+        captures, inner = _captures(checker, item, outer)
+        parts = _parts(checker, item, outer, inner)
+        policy = _policy(checker, item)
+    except Refusal as refusal:
+        checker.report(refusal.finding)
+        return None
+    except Reported:
+        return None
+    mode, trigger, consequent = parts
+    texts = {clause.word: clause.text for clause in _clauses(item, TextClause)}
+    properties = [clause.formula.span.text for clause in _clauses(item, PropertyClause)]
+    return Requirement(
+        item.name.text,
+        mode,
+        trigger,
+        consequent,
+        item.text,
+        at_end=policy,
+        pulse=is_pulse(trigger),
+        captures=captures,
+        for_each=for_each,
+        source=texts.get("source", ""),
+        rationale=texts.get("rationale", ""),
+        severity=texts.get("severity", ""),
+        tags=tuple(tag for clause in _clauses(item, TagsClause) for tag in clause.tags),
+        property=properties[0] if properties else "",
+        span=item.span,
+    )
+
+
+def check_clauses(checker: Checker, item: RequirementItem) -> None:
+    """Report clauses that stand twice."""
+    first: dict[str, Span] = {}
+    for clause in item.clauses:
+        word = clause.span.text.split(maxsplit=1)[0]
+        if word == "let":
+            continue
+        if word in first:
+            checker.report(rules.double_clause(word, clause.span, first[word]))
+        first.setdefault(word, clause.span)
+
+
+def _parts(
+    checker: Checker, item: RequirementItem, outer: Scope, inner: Scope
+) -> tuple[Mode, Formula, Formula]:
+    match item.body:
+        case Bare(formula=expression):
+            formula = checker.top(expression, inner)
+            if formula is None:
+                raise Reported
+            if end := end_part(formula):
+                raise Refusal(rules.end_not_alone(end.span or expression.span))
+            return normalised(formula)
+        case Triggered():
+            return _triggered(checker, item.body, outer, inner)
+        case ResponseMonitor():
+            raise NotImplementedError
+
+
+def _triggered(
+    checker: Checker, body: Triggered, outer: Scope, inner: Scope
+) -> tuple[Mode, Formula, Formula]:
+    trigger = checker.top(body.trigger, outer)
+    consequent = checker.top(body.consequent, inner)
+    if trigger is None or consequent is None:
+        raise Reported
+    if ahead := future_part(trigger):
+        raise Refusal(rules.future_trigger(ahead.span or body.trigger.span))
+    alone = isinstance(trigger, BoundAtom) and body.mode is Mode.UPON
+    for formula, place in ((trigger, body.trigger), (consequent, body.consequent)):
+        end = end_part(formula)
+        if end and not (alone and formula is trigger):
+            raise Refusal(rules.end_not_alone(end.span or place.span))
+    _warn(checker, body, trigger, consequent)
+    return body.mode, trigger, consequent
+
+
+def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formula) -> None:
+    at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
+    instant = body.mode is Mode.UPON and not at_end and is_timeless(consequent)
+    if instant and not _on_purpose(body.consequent):
+        checker.report(rules.one_instant(body.consequent.span))
+    if mixed := mixed_disjunction(trigger):
+        pulse, level = mixed
+        place = body.trigger.span
+        checker.report(rules.mixed_trigger(pulse.span or place, level.span or place))
+
+
+def _on_purpose(expression: Expression) -> bool:
+    while isinstance(expression, Group):
+        expression = expression.inner
+    return isinstance(expression, Immediately)
+
+
+def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
+    for clause in _clauses(item, AtEndClause):
+        if clause.policy.text not in EndPolicy:
+            raise Refusal(rules.unknown_policy(clause.policy.span, [str(p) for p in EndPolicy]))
+        return EndPolicy(clause.policy.text)
+    return EndPolicy.DEFAULT
+
+
+def _instances(checker: Checker, item: RequirementItem) -> tuple[ForEach | None, Scope]:
+    """The `for each` clause, and the scope of the trigger: what it names."""
+    for clause in _clauses(item, ForEachClause):
+        field = checker.table.field(clause.field.text)
+        if field is None:
+            checker.values((clause.field,), EVERYWHERE)
+            raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
+        local = Quantity(
+            Captured(clause.name.text),
+            unit=checker.table.units.get(clause.field.text, PLAIN),
+            integral=field.type.kind is Kind.INT,
+            labels=field.type.labels,
+            truth=field.type.kind is Kind.BOOL,
+        )
+        value = FieldValue(field.event, field.field)
+        return ForEach(clause.name.text, value), Scope({clause.name.text: local})
+    return None, EVERYWHERE
+
+
+def _captures(
+    checker: Checker, item: RequirementItem, outer: Scope
+) -> tuple[tuple[Capture, ...], Scope]:
+    """The `let` clauses, and the scope of the consequent: what they and `for each` name."""
+    captures = []
+    values, names = dict(outer.names), dict(outer.names)
+    for clause in _clauses(item, LetClause):
+        (value,) = checker.values((clause.value,), Scope(values))
+        if not isinstance(value, Quantity):
+            raise Refusal(type_rules.needs_number(clause.value.span))
+        node = node_of((value, clause.value.span))
+        captures.append(Capture(clause.name.text, node))
+        values[clause.name.text] = value  # both are of the trigger's instant
+        names[clause.name.text] = replace(value, node=Captured(clause.name.text), constant=None)
+    return tuple(captures), Scope(names)
+
+
+def _clauses(item: RequirementItem, kind: type[_C]) -> Iterable[_C]:
+    return (clause for clause in item.clauses if isinstance(clause, kind))

@@ -1,0 +1,211 @@
+"""Rules on names."""
+
+from __future__ import annotations
+
+import difflib
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.span import Span
+from rvmon.spec.rules.rule import Rule, finding
+
+RESERVED_NAME = Rule(
+    "RV010",
+    "reserved-name",
+    Severity.ERROR,
+    "A word of the language is used as a name.",
+    "Words such as `next`, `time` or `F` always keep their meaning, so that a formula reads the "
+    "same in every file.",
+    """spec demo
+signal next : bool
+""",
+    """spec demo
+signal `next` : bool
+
+requirement R1
+  always `next`
+""",
+)
+
+
+def reserved(span: Span) -> Diagnostic:
+    """A name was expected."""
+    return finding(
+        RESERVED_NAME,
+        f"`{span.text}` is a word of the language, expected a name",
+        span,
+        mend=f"choose another name or quote it: `` `{span.text}` ``",
+    )
+
+
+DOUBLE_NAME = Rule(
+    "RV011",
+    "double-name",
+    Severity.ERROR,
+    "Two declarations have the same name.",
+    "Signals, events, constants and macros share one space of names, requirements and properties "
+    "another, so that a name means one thing.",
+    """spec demo
+signal door : bool
+event door
+""",
+    """spec demo
+signal door_closed : bool
+event door
+
+requirement R1
+  upon door
+  then within 2 s door_closed
+""",
+)
+
+UNKNOWN_NAME = Rule(
+    "RV012",
+    "unknown-signal",
+    Severity.ERROR,
+    "No signal, event, constant, macro or parameter has that name.",
+    "A misspelled name must not become a proposition that is never true.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s relased
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+""",
+)
+
+UNKNOWN_LABEL = Rule(
+    "RV013",
+    "unknown-label",
+    Severity.ERROR,
+    "The signal has no such label.",
+    "A comparison with a label that never occurs would be false throughout.",
+    """spec demo
+signal state : {idle, moving}
+
+requirement R1
+  upon start
+  then eventually state == moveing
+""",
+    """spec demo
+signal state : {idle, moving}
+
+requirement R1
+  upon start
+  then eventually state == moving
+""",
+)
+
+UNKNOWN_FUNCTION = Rule(
+    "RV014",
+    "unknown-function",
+    Severity.ERROR,
+    "No function or macro of that name exists.",
+    "A name right before a bracket is a call. An operator such as `within T (a or b)` has a space "
+    "there.",
+    """spec demo
+event asked, released
+const T = 3 s
+
+requirement R1
+  upon asked
+  then within T(released or asked)
+""",
+    """spec demo
+event asked, released
+const T = 3 s
+
+requirement R1
+  upon asked
+  then within T (released or asked)
+""",
+)
+
+RECURSIVE = Rule(
+    "RV015",
+    "recursive-definition",
+    Severity.ERROR,
+    "A macro or constant is defined by itself.",
+    "Macros are written out where they are used; one that uses itself would never end.",
+    """spec demo
+signal a : bool
+define p = a or q
+define q = p
+
+requirement R1
+  always p
+""",
+    """spec demo
+signal a, b : bool
+define p = a or q
+define q = b
+
+requirement R1
+  always p
+""",
+)
+
+RULES = (
+    RESERVED_NAME,
+    DOUBLE_NAME,
+    UNKNOWN_NAME,
+    UNKNOWN_LABEL,
+    UNKNOWN_FUNCTION,
+    RECURSIVE,
+)
+
+
+def double(name: str, kind: str, here: Span, first: Span) -> Diagnostic:
+    """A second declaration; `kind` says what of, such as `requirement`."""
+    return finding(
+        DOUBLE_NAME,
+        f"{kind} `{name}` is declared twice",
+        here,
+        Label(first, "first here"),
+        mend="rename one of them",
+    )
+
+
+def unknown(span: Span, name: str, close: str) -> Diagnostic:
+    """A name that stands for nothing; `close` describes one that is alike, or is empty."""
+    return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, mend=close)
+
+
+def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:
+    """A label that the signal does not take."""
+    close = difflib.get_close_matches(name, labels, 1, 0.6)
+    listed = ", ".join(labels[:12]) + (", …" if len(labels) > 12 else "")
+    mend = f"did you mean `{close[0]}`?" if close else f"the labels are {listed}"
+    return finding(UNKNOWN_LABEL, f"no label named `{name}`", span, mend=mend)
+
+
+def unknown_function(span: Span, name: str, mend: str) -> Diagnostic:
+    """A call of nothing."""
+    return finding(UNKNOWN_FUNCTION, f"no function or macro named `{name}`", span, mend=mend)
+
+
+def recursive(names: list[str], span: Span) -> Diagnostic:
+    """Definitions that use each other in a circle; the first name stands last again."""
+    circle = " → ".join(f"`{name}`" for name in names)
+    return finding(RECURSIVE, f"`{names[0]}` is defined by itself: {circle}", span)
+
+
+def double_item(word: str, here: Span, first: Span) -> Diagnostic:
+    """A second item of a kind that stands once in a file."""
+    return finding(DOUBLE_NAME, f"a file has one `{word}` item", here, Label(first, "first here"))
+
+
+def built_in(span: Span) -> Diagnostic:
+    """A macro with the name of a function."""
+    return finding(
+        DOUBLE_NAME,
+        f"`{span.text}` is a function of the language",
+        span,
+        mend="choose another name",
+    )

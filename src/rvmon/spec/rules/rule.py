@@ -1,0 +1,52 @@
+"""A rule that specifications keep, and how a breach of it becomes a finding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.span import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A rule and its page in the documentation.
+
+    Attributes:
+        code: stable, never used again for another rule.
+        name: the code in words.
+        severity: what a breach is.
+        what: one sentence: what is found.
+        why: why it matters.
+        example: a specification that breaks the rule.
+        instead: the same mended.
+    """
+
+    code: str
+    name: str
+    severity: Severity
+    what: str
+    why: str
+    example: str
+    instead: str
+
+
+class Refusal(Exception):  # noqa: N818 - it carries a finding through a parser, no caller sees it
+    """An item, expression or declaration cannot be read further."""
+
+    def __init__(self, finding: Diagnostic) -> None:
+        super().__init__(finding.message)
+        self.finding = finding
+
+
+def finding(rule: Rule, message: str, *places: Span | Label, mend: str = "") -> Diagnostic:
+    """A breach of a rule.
+
+    Args:
+        rule: the rule.
+        message: one sentence: what is wrong here.
+        places: the offending place first.
+        mend: how to mend it, or empty.
+    """
+    labels = tuple(place if isinstance(place, Label) else Label(place) for place in places)
+    return Diagnostic(rule.code, rule.name, rule.severity, message, labels, mend)

@@ -1,0 +1,223 @@
+"""Rules on durations, intervals and operators of time."""
+
+from __future__ import annotations
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.diagnostics.span import Span
+from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules.syntax import short
+
+NO_DURATION = Rule(
+    "RV030",
+    "no-duration",
+    Severity.ERROR,
+    "A duration is needed: a constant with a unit of time.",
+    "`within 3 released` leaves open whether seconds or milliseconds are meant.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 released
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+""",
+)
+
+PART_OF_TICK = Rule(
+    "RV031",
+    "part-of-a-tick",
+    Severity.ERROR,
+    "A duration is no whole number of nanoseconds.",
+    "Time is counted in ticks of 1 ns and durations are converted exactly, never rounded.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 0.5 ns released
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 1 ns released
+""",
+)
+
+EMPTY_INTERVAL = Rule(
+    "RV032",
+    "empty-interval",
+    Severity.ERROR,
+    "An interval holds no tick, or starts before 0.",
+    "An operator over no instant at all would be decided by convention, not by what happens.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then eventually[3 s, 2 s] released
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then eventually[2 s, 3 s] released
+""",
+)
+
+LATE_WEAK_WINDOW = Rule(
+    "RV033",
+    "window-after-now",
+    Severity.ERROR,
+    "`W`, `unless` and `M` take no window that starts after 0.",
+    "Their usual definitions disagree for such windows; `R` and `U` say what is meant.",
+    """spec demo
+signal a, b : bool
+
+requirement R1
+  upon start
+  then a unless[1 s, 2 s] b
+""",
+    """spec demo
+signal a, b : bool
+
+requirement R1
+  upon start
+  then a unless[0 s, 2 s] b
+""",
+)
+
+STEP_IN_HELD_TIME = Rule(
+    "RV034",
+    "step-in-held-time",
+    Severity.ERROR,
+    "`next` and `previous` are used in `time held`.",
+    "In held time every nanosecond is a position, so `next` would mean: one nanosecond later.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then next released
+""",
+    """spec demo
+time sampled
+event asked, released
+
+requirement R1
+  upon asked
+  then next released
+""",
+)
+
+NO_WINDOW = Rule(
+    "RV035",
+    "operator-without-window",
+    Severity.ERROR,
+    "An interval is given to an operator that takes none.",
+    "`next` and `previous` speak of the neighbouring position, whenever that is.",
+    """spec demo
+time sampled
+event asked, released
+
+requirement R1
+  upon asked
+  then next[0 s, 1 s] released
+""",
+    """spec demo
+time sampled
+event asked, released
+
+requirement R1
+  upon asked
+  then eventually[0 s, 1 s] released
+""",
+)
+
+RULES = (
+    NO_DURATION,
+    PART_OF_TICK,
+    EMPTY_INTERVAL,
+    LATE_WEAK_WINDOW,
+    STEP_IN_HELD_TIME,
+    NO_WINDOW,
+)
+
+
+def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
+    """Something that is no constant with a unit of time; `plain`: a number without unit."""
+    text = short(span.text)
+    mend = f"did you mean `{text} s`?" if plain else "a duration is written as `3 s` or `200 ms`"
+    return finding(NO_DURATION, f"`{text}` is no duration", span, mend=mend)
+
+
+def part_of_tick(span: Span) -> Diagnostic:
+    """A duration between two ticks."""
+    return finding(
+        PART_OF_TICK,
+        f"`{short(span.text)}` is no whole number of nanoseconds",
+        span,
+        mend="durations are exact: choose a multiple of 1 ns",
+    )
+
+
+def too_long(span: Span) -> Diagnostic:
+    """A duration that does not fit into time."""
+    return finding(
+        EMPTY_INTERVAL, f"`{short(span.text)}` is longer than 146 years", span, mend="shorten it"
+    )
+
+
+def negative(span: Span) -> Diagnostic:
+    """A duration below 0."""
+    return finding(
+        EMPTY_INTERVAL, f"`{short(span.text)}` is negative", span, mend="durations start at 0"
+    )
+
+
+def empty(span: Span) -> Diagnostic:
+    """An interval without a tick."""
+    return finding(
+        EMPTY_INTERVAL,
+        f"no instant lies in `{short(span.text)}`",
+        span,
+        mend="the first bound must not be after the second",
+    )
+
+
+def not_positive(span: Span, what: str) -> Diagnostic:
+    """A duration of 0 where it makes no sense; `what` names its use."""
+    return finding(EMPTY_INTERVAL, f"{what} must be longer than 0", span)
+
+
+def late_weak_window(operator: str, span: Span) -> Diagnostic:
+    """`W` or `M` with a window after now."""
+    return finding(
+        LATE_WEAK_WINDOW,
+        f"`{operator}` takes no window that starts after 0",
+        span,
+        mend="let it start at 0, or write it with `U` or `R`",
+    )
+
+
+def step_in_held_time(operator: str, span: Span) -> Diagnostic:
+    """`X` or `Y` in held time."""
+    return finding(
+        STEP_IN_HELD_TIME,
+        f"`{operator}` has no meaning in `time held`: it would speak of the next nanosecond",
+        span,
+        mend="give a duration (`within`, `once[0, D]`) or declare `time sampled`",
+    )
+
+
+def no_window(operator: str, span: Span) -> Diagnostic:
+    """An interval at an operator that takes none."""
+    return finding(NO_WINDOW, f"`{operator}` takes no interval", span)

@@ -1,0 +1,250 @@
+"""Rules on requirements: their trigger, their consequent, their clauses."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.diagnostics.span import Span
+from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules.syntax import short
+
+FUTURE_TRIGGER = Rule(
+    "RV040",
+    "future-in-trigger",
+    Severity.ERROR,
+    "A trigger speaks of the future.",
+    "Whether a requirement is triggered has to be known at once; what lies ahead belongs behind "
+    "`then`.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked and within 1 s released
+  then within 3 s asked
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked and once[0, 1 s] released
+  then within 3 s asked
+""",
+)
+
+END_NOT_ALONE = Rule(
+    "RV041",
+    "end-not-alone",
+    Severity.ERROR,
+    "`end` stands elsewhere than alone behind `upon`.",
+    "Nobody knows at an instant whether it is the last one, so `end` is judged only when the "
+    "trace is finished.",
+    """spec demo
+signal done : bool
+
+requirement R1
+  always (end -> done)
+""",
+    """spec demo
+signal done : bool
+
+requirement R1
+  upon end
+  then immediately done
+""",
+)
+
+ONE_INSTANT = Rule(
+    "RV042",
+    "one-instant",
+    Severity.WARNING,
+    "What is owed has no word of time, so that a single instant is checked.",
+    "`upon asked then released` demands the release at the very nanosecond of the asking. If that "
+    "is meant, `immediately` says so.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then released
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+""",
+)
+
+MIXED_TRIGGER = Rule(
+    "RV043",
+    "pulse-or-level",
+    Severity.WARNING,
+    "A trigger joins an event and a state by `or`.",
+    "An event triggers at each occurrence, a state where it becomes true. The disjunction counts "
+    "as a state, so an event that occurs while the state holds triggers nothing.",
+    """spec demo
+event asked, released
+signal waiting : bool
+
+requirement R1
+  upon asked or waiting
+  then within 3 s released
+""",
+    """spec demo
+event asked, released
+signal waiting : bool
+
+requirement R1
+  upon asked or rise(waiting)
+  then within 3 s released
+""",
+)
+
+DOUBLE_CLAUSE = Rule(
+    "RV044",
+    "double-clause",
+    Severity.ERROR,
+    "A requirement has two clauses of a kind of which it takes one.",
+    "Which of the two holds would depend on their order.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+  source "a"
+  source "b"
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+  source "a, b"
+""",
+)
+
+UNKNOWN_POLICY = Rule(
+    "RV045",
+    "unknown-policy",
+    Severity.ERROR,
+    "`at end` names no policy.",
+    "The policies are `default`, `strict`, `weak`, `strong`, `pass` and `fail`.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then eventually released
+  at end: week
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then eventually released
+  at end: weak
+""",
+)
+
+NEVER_READ = Rule(
+    "RV046",
+    "never-read",
+    Severity.WARNING,
+    "A signal or event is declared and read by no requirement.",
+    "It may be a leftover, or the requirement that was to read it reads another by mistake.",
+    """spec demo
+event asked, released, cancelled
+
+requirement R1
+  upon asked
+  then within 3 s released
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+""",
+)
+
+RULES = (
+    FUTURE_TRIGGER,
+    END_NOT_ALONE,
+    ONE_INSTANT,
+    MIXED_TRIGGER,
+    DOUBLE_CLAUSE,
+    UNKNOWN_POLICY,
+    NEVER_READ,
+)
+
+
+def future_trigger(span: Span) -> Diagnostic:
+    """An operator of the future in a trigger."""
+    return finding(
+        FUTURE_TRIGGER,
+        f"`{short(span.text)}` speaks of the future, and a trigger has to be known at once",
+        span,
+        mend="move it behind `then`, or use `once`, `historically`, `since`",
+    )
+
+
+def end_not_alone(span: Span) -> Diagnostic:
+    """`end` within a formula."""
+    return finding(
+        END_NOT_ALONE,
+        "`end` stands only alone, as `upon end`",
+        span,
+        mend="write `upon end` and put the rest behind `then`",
+    )
+
+
+def one_instant(span: Span) -> Diagnostic:
+    """A consequent without a word of time."""
+    text = short(span.text)
+    return finding(
+        ONE_INSTANT,
+        f"`{text}` is checked at one instant only",
+        span,
+        mend=f"say for how long or until when (`within D`, `for D`), or `immediately {text}`",
+    )
+
+
+def mixed_trigger(pulse: Span, level: Span) -> Diagnostic:
+    """A disjunction of an event and a state."""
+    return finding(
+        MIXED_TRIGGER,
+        f"`{short(pulse.text)}` is an event and `{short(level.text)}` a state: while the state "
+        "holds, the event triggers nothing",
+        pulse,
+        level,
+        mend=f"write `rise({short(level.text)})`, or make two requirements",
+    )
+
+
+def double_clause(word: str, here: Span, first: Span) -> Diagnostic:
+    """A second clause of a kind."""
+    return finding(DOUBLE_CLAUSE, f"a requirement has one `{word}` clause", here, first)
+
+
+def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:
+    """A policy that does not exist."""
+    close = difflib.get_close_matches(span.text, policies, 1, 0.6)
+    mend = f"did you mean `{close[0]}`?" if close else f"there are {', '.join(policies)}"
+    return finding(UNKNOWN_POLICY, f"no policy named `{short(span.text)}`", span, mend=mend)
+
+
+def never_read(span: Span, kind: str) -> Diagnostic:
+    """A declared name that nothing reads; `kind` is `signal` or `event`."""
+    return finding(
+        NEVER_READ,
+        f"{kind} `{span.text}` is read by no requirement",
+        span,
+        mend="remove it, or look for the requirement that should read it",
+    )

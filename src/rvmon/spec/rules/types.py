@@ -1,0 +1,275 @@
+"""Rules on types and units."""
+
+from __future__ import annotations
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.diagnostics.span import Span
+from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules.syntax import short
+
+WRONG_TYPE = Rule(
+    "RV020",
+    "wrong-type",
+    Severity.ERROR,
+    "A formula stands where a number is needed, or the other way round.",
+    "Signals of type `bool`, events and comparisons are true or false; `int` and `real` signals "
+    "are numbers, and become a formula by a comparison.",
+    """spec demo
+signal speed : real [m/s]
+
+requirement R1
+  always not speed
+""",
+    """spec demo
+signal speed : real [m/s]
+
+requirement R1
+  always not speed > 0 m/s
+""",
+)
+
+WRONG_ARGUMENTS = Rule(
+    "RV021",
+    "wrong-arguments",
+    Severity.ERROR,
+    "A function or macro gets other arguments than it takes.",
+    "Each function takes a fixed number of arguments, some only the name of a signal.",
+    """spec demo
+signal x : real
+
+requirement R1
+  always sqrt(x, 2) < 3
+""",
+    """spec demo
+signal x : real
+
+requirement R1
+  always sqrt(x) < 3
+""",
+)
+
+UNIT_MISMATCH = Rule(
+    "RV022",
+    "unit-mismatch",
+    Severity.ERROR,
+    "Values of different kinds of unit are compared, added or subtracted.",
+    "A force is never less than a distance. Units of one kind (`cm` and `m`) are converted "
+    "exactly; others are mistakes.",
+    """spec demo
+signal grip : real [N]
+
+requirement R1
+  always grip < 5 cm
+""",
+    """spec demo
+signal grip : real [N]
+
+requirement R1
+  always grip < 5 N
+""",
+)
+
+MISSING_UNIT = Rule(
+    "RV023",
+    "missing-unit",
+    Severity.ERROR,
+    "A number stands without its unit.",
+    "`hand_distance < 5` is true of 5 m and of 5 cm, and people have been hurt by less. Only 0 "
+    "needs no unit.",
+    """spec demo
+signal hand_distance : real [m]
+
+requirement R1
+  always hand_distance > 5
+""",
+    """spec demo
+signal hand_distance : real [m]
+
+requirement R1
+  always hand_distance > 5 cm
+""",
+)
+
+UNKNOWN_UNIT = Rule(
+    "RV024",
+    "unknown-unit",
+    Severity.ERROR,
+    "There is no unit of that name.",
+    "Only units with an exact factor to the base units are known. A name behind a number is "
+    "always its unit.",
+    """spec demo
+signal x : real [metres]
+
+requirement R1
+  always x > 0
+""",
+    """spec demo
+signal x : real [m]
+
+requirement R1
+  always x > 0
+""",
+)
+
+OUT_OF_RANGE = Rule(
+    "RV025",
+    "number-out-of-range",
+    Severity.ERROR,
+    "A number is too large, or a constant expression has no value.",
+    "Values are double-precision numbers; a division by the constant 0 has no value.",
+    """spec demo
+signal x : real
+
+requirement R1
+  always x < 1e999
+""",
+    """spec demo
+signal x : real
+
+requirement R1
+  always x < 1e300
+""",
+)
+
+LABELS = Rule(
+    "RV026",
+    "label-use",
+    Severity.ERROR,
+    "A label is used other than in `==` and `!=` with its signal.",
+    "Labels have no order and no arithmetic.",
+    """spec demo
+signal state : {idle, moving}
+
+requirement R1
+  always state < moving
+""",
+    """spec demo
+signal state : {idle, moving}
+
+requirement R1
+  always state != moving
+""",
+)
+
+RULES = (
+    WRONG_TYPE,
+    WRONG_ARGUMENTS,
+    UNIT_MISMATCH,
+    MISSING_UNIT,
+    UNKNOWN_UNIT,
+    OUT_OF_RANGE,
+    LABELS,
+)
+
+
+def needs_formula(span: Span, kind: str) -> Diagnostic:
+    """A number or label where something true or false is needed; `kind` says what it is."""
+    text = short(span.text)
+    mend = f"compare it, as in `{text} > 0`" if kind == "a number" else ""
+    if kind == "a label":
+        mend = "compare it with a label by `==`"
+    return finding(WRONG_TYPE, f"`{text}` is {kind}, expected a formula", span, mend=mend)
+
+
+def needs_number(span: Span) -> Diagnostic:
+    """Something true or false where a number is needed."""
+    return finding(
+        WRONG_TYPE,
+        f"`{short(span.text)}` is true or false, expected a number",
+        span,
+        mend="combine formulas by `and`, `or`, `->`, `<->`",
+    )
+
+
+def compared_truth(span: Span) -> Diagnostic:
+    """A comparison with something true or false."""
+    return finding(
+        WRONG_TYPE,
+        f"`{short(span.text)}` is true or false and is not compared",
+        span,
+        mend="write `p` for `p == true`, `not p` for `p == false`, `p <-> q` for `p == q`",
+    )
+
+
+def age_alone(span: Span) -> Diagnostic:
+    """`age(x)` other than compared with a duration."""
+    return finding(
+        WRONG_TYPE,
+        f"`{short(span.text)}` can only be compared with a constant duration, by < <= > >=",
+        span,
+        mend=f"write `{short(span.text)} > 200 ms`",
+    )
+
+
+def not_constant(span: Span) -> Diagnostic:
+    """A constant is needed."""
+    return finding(
+        WRONG_TYPE,
+        f"`{short(span.text)}` changes during a run, expected a constant",
+        span,
+        mend="use a number or a `const`",
+    )
+
+
+def argument_count(span: Span, name: str, takes: str, given: int) -> Diagnostic:
+    """Too many or too few arguments; `takes` says how many, in words."""
+    return finding(WRONG_ARGUMENTS, f"`{name}` takes {takes}, {given} given", span)
+
+
+def argument_kind(span: Span, name: str, needed: str) -> Diagnostic:
+    """An argument of the wrong kind; `needed` says which kind is needed, with its article."""
+    return finding(WRONG_ARGUMENTS, f"`{name}` needs {needed}, `{short(span.text)}` is none", span)
+
+
+def mismatch(span: Span, left: str, right: str, doing: str) -> Diagnostic:
+    """Units of different kinds; `doing` is `compared with` and the like."""
+    return finding(
+        UNIT_MISMATCH,
+        f"[{left}] {doing} [{right}]",
+        span,
+        mend="both sides need units of the same kind",
+    )
+
+
+def missing_unit(span: Span, unit: str) -> Diagnostic:
+    """A plain number where a unit is needed."""
+    text = short(span.text)
+    return finding(
+        MISSING_UNIT, f"`{text}` needs a unit", span, mend=f"did you mean `{text} {unit}`?"
+    )
+
+
+def superfluous_unit(span: Span, unit: str, other: Span) -> Diagnostic:
+    """A number with a unit where the other side has none."""
+    return finding(
+        UNIT_MISMATCH,
+        f"[{unit}] meets `{short(other.text)}`, which has no unit",
+        span,
+        mend=f"declare the signal as `real [{unit}]`, or leave the unit out",
+    )
+
+
+def no_root(span: Span, unit: str) -> Diagnostic:
+    """A root of a unit that has none."""
+    return finding(UNIT_MISMATCH, f"[{unit}] has no square root", span)
+
+
+def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
+    """A unit that is not in the table; `close` is one that is alike, or empty."""
+    mend = f"did you mean `{close}`?" if close else "units are made of m, kg, s, A, K, rad, …"
+    return finding(UNKNOWN_UNIT, f"no unit named `{short(part)}`", span, mend=mend)
+
+
+def out_of_range(span: Span) -> Diagnostic:
+    """A constant without a value that fits."""
+    return finding(OUT_OF_RANGE, f"`{short(span.text)}` is out of range", span)
+
+
+def label_use(span: Span) -> Diagnostic:
+    """A label in arithmetic or in an order."""
+    return finding(
+        LABELS,
+        f"`{short(span.text)}` is a label",
+        span,
+        mend="labels are compared with their signal by `==` and `!=` only",
+    )
