@@ -1,0 +1,1 @@
+"""Deterministic timed monitors as data, their construction, and how they are driven."""

@@ -1,0 +1,36 @@
+"""What the runtime needs of an engine that judges attempts step by step."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from rvmon.formula.residual import Residual
+
+Token = tuple[int, tuple[int, ...]]
+"""Where an attempt is: its location, and for each clock the instant at which it was started."""
+
+INFINITY = 1 << 63
+"""Later than any instant."""
+
+
+class Machine(Protocol):
+    """A deterministic timed monitor; tokens are values, so a machine serves any number of attempts.
+
+    The location of a decided attempt is `FAILED` or `PASSED`.
+    """
+
+    @property
+    def start(self) -> Token:
+        """The token of an attempt before the position of its trigger."""
+
+    def step(self, token: Token, t: int, letter: int) -> Token:
+        """The token after a position at `t`, which is later than all before."""
+
+    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
+        """For each clock of a location the ages, ascending, from which on it acts differently."""
+
+    def time_value(self, token: Token, t: int) -> int:
+        """The truth once time has come to `t` and no position came."""
+
+    def residual(self, location: int) -> Residual:
+        """What is owed in a location."""

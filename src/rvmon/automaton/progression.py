@@ -1,0 +1,85 @@
+"""Progression on the fly: the machine whose locations are made when they are needed."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from rvmon.automaton.location import NOW, Location, location_of, normalise
+from rvmon.automaton.machine import Token
+from rvmon.formula.alphabet import Alphabet, holds
+from rvmon.formula.core import Literal, Temporal
+from rvmon.formula.progress import after, step, value
+from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Residual
+
+_CACHE_LIMIT = 20_000
+"""Edges that are kept; with more, all are forgotten (they can be made again)."""
+
+Edge = tuple[int, tuple[int, ...]]
+"""Target and the sources of its clocks."""
+
+
+class Progression:
+    """Judges any formula; memory grows with the residuals that occur.
+
+    Source: AUTOMATA 1.
+
+    Args:
+        owed: what an attempt owes, as `X` of it: an attempt starts before its trigger's position.
+        alphabet: of that formula.
+    """
+
+    def __init__(self, owed: Temporal, alphabet: Alphabet) -> None:
+        self.alphabet = alphabet
+        self._locations: list[Location] = []
+        self._index: dict[Residual, int] = {}
+        self._edges: dict[tuple[int, tuple[int, ...], int], Edge] = {}
+        for residual in (FAILS, HOLDS):
+            self._location(residual)
+        first = self._location(frozenset([frozenset([(owed, NO_CLOCK)])]))
+        self.start: Token = (first, ())
+
+    def _location(self, residual: Residual) -> int:
+        index = self._index.get(residual)
+        if index is None:
+            index = self._index[residual] = len(self._locations)
+            self._locations.append(location_of(residual))
+        return index
+
+    def step(self, token: Token, t: int, letter: int) -> Token:
+        """See `Machine`."""
+        index, anchors = token
+        cuts = self._locations[index].cuts
+        regions = tuple(
+            bisect_right(cut, t - anchor) for cut, anchor in zip(cuts, anchors, strict=True)
+        )
+        key = (index, regions, letter)
+        edge = self._edges.get(key)
+        if edge is None:
+            if len(self._edges) >= _CACHE_LIMIT:
+                self._edges.clear()
+            edge = self._edges[key] = self._edge(index, [t - anchor for anchor in anchors], letter)
+        target, sources = edge
+        return target, tuple([t if source == NOW else anchors[source] for source in sources])
+
+    def _edge(self, index: int, ages: list[int], letter: int) -> Edge:
+        cells = self.alphabet.cells_of(letter)
+
+        def read(literal: Literal) -> Residual:
+            return HOLDS if holds(literal.sense, cells[literal.proposition]) else FAILS
+
+        reached = step(self._locations[index].residual, ages, read)
+        residual, sources = normalise(reached, len(ages))
+        return self._location(residual), sources
+
+    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
+        """See `Machine`."""
+        return self._locations[location].cuts
+
+    def time_value(self, token: Token, t: int) -> int:
+        """See `Machine`."""
+        index, anchors = token
+        return value(after(self._locations[index].residual, [t - anchor for anchor in anchors]))
+
+    def residual(self, location: int) -> Residual:
+        """See `Machine`."""
+        return self._locations[location].residual

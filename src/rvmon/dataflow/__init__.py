@@ -1,0 +1,1 @@
+"""State formulas over the input, evaluated as it changes."""

@@ -1,0 +1,212 @@
+"""State formulas over a running input: only what changed is evaluated again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from heapq import heappop, heappush
+from typing import assert_never
+
+from rvmon.dataflow.graph import Graph
+from rvmon.dataflow.inputs import NEVER, Inputs, Reported
+from rvmon.dataflow.leaves import Evaluate, evaluator
+from rvmon.dataflow.since import Previous, Since
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp
+from rvmon.spec.checked import ProbeAtom
+from rvmon.trace.sample import Scalar
+
+
+class Flow:
+    """The truth of all nodes of a graph at the current position.
+
+    Between two positions at which something is evaluated all values stay as they are;
+    `next_change` says when something changes by time alone.
+
+    Args:
+        graph: what to evaluate.
+        inputs: owned by this flow.
+        gap: ticks between two positions; `None` if only samples are positions.
+        captured: values of `let` and `for each`.
+
+    Attributes:
+        values: per node of the graph.
+        origin: the first position; `None` before it.
+        position: the position that `values` were evaluated at last.
+    """
+
+    def __init__(
+        self, graph: Graph, inputs: Inputs, gap: int | None, captured: Mapping[str, Scalar]
+    ) -> None:
+        self.graph = graph
+        self.inputs = inputs
+        self.gap = gap
+        self.captured = captured
+        self.values = [UNKNOWN] * len(graph.nodes)
+        self.origin: int | None = None
+        self.position = 0
+        self._last = 0
+        self._dirty: set[int] = set()
+        self._fading: list[int] = []
+        self._wakes: dict[int, int] = {}
+        self._left = True
+        self._momentary = frozenset(
+            place
+            for place, reads in graph.reads.items()
+            if reads.momentary and not self._is_never(place)
+        )
+        self._evaluate = [self._evaluator(place) for place in range(len(graph.nodes))]
+
+    def _is_never(self, place: int) -> bool:
+        """Whether an occurrence that a leaf speaks of has no source, so that its value is fixed."""
+        absent = self.inputs.absent & self.graph.reads[place].names
+        if isinstance(self.graph.nodes[place].leaf, ProbeAtom):
+            return bool(absent)
+        return bool(absent - self.inputs.slots.keys())
+
+    def apply(self, t: int, values: Mapping[str, Reported]) -> None:
+        """Take the updates of a sample; they show at the next call of `evaluate`."""
+        self._leave()
+        self.inputs.apply(t, values)
+        for name in values:
+            self._dirty.update(self.graph.by_name.get(name, ()))
+
+    def fork(self, graph: Graph, captured: Mapping[str, Scalar], *, occurring: bool) -> Flow:
+        """A flow at the same position for another graph, which must not remember anything.
+
+        Args:
+            graph: of the new flow.
+            captured: values of `let` and `for each`.
+            occurring: whether it sees what occurs at this position.
+        """
+        made = Flow(graph, self.inputs.copy(), self.gap, captured)
+        if self.origin is not None:
+            made.origin = self.origin
+            made._dirty.update(range(len(graph.nodes)))
+            made._left = not occurring
+            made.evaluate(self.position)
+        return made
+
+    def _leave(self) -> None:
+        if self._left:
+            self.inputs.forget_occurrences()
+            self._left = False
+
+    def evaluate(self, t: int) -> list[int]:
+        """Move to the position at `t`; returns the nodes whose value changed."""
+        self._leave()
+        dirty = self._dirty
+        if self.origin is None:
+            self.origin = t
+            dirty.update(range(len(self.values)))
+        elif self.gap is None:
+            dirty.update(self.graph.stateful)
+        self._last = self.position if self.gap is None else t - self.gap
+        dirty.update(self._fading)
+        dirty.update(place for place, wake in self._wakes.items() if wake <= t)
+        for name in self.inputs.expire(t):
+            dirty.update(self.graph.by_name.get(name, ()))
+        changed, evaluated = self._propagate(t, dirty)
+        self._fading = [
+            place for place in evaluated if place in self._momentary and self.values[place] != FALSE
+        ]
+        self._dirty = set()
+        self._left = True
+        self.position = t
+        return changed
+
+    def _propagate(self, t: int, dirty: set[int]) -> tuple[list[int], set[int]]:
+        queue = sorted(dirty)
+        values, parents = self.values, self.graph.parents
+        changed = []
+        while queue:
+            place = heappop(queue)
+            new = self._evaluate[place](t)
+            if new == values[place]:
+                continue
+            values[place] = new
+            changed.append(place)
+            for parent in parents[place]:
+                if parent not in dirty:
+                    dirty.add(parent)
+                    heappush(queue, parent)
+        return changed, dirty
+
+    @property
+    def next_change(self) -> int:
+        """The first position after this one at which a value can change by time alone."""
+        if self.gap is None or self.origin is None:
+            return NEVER
+        found = min(min(self._wakes.values(), default=NEVER), self.inputs.next_expiry)
+        if self._fading:
+            found = min(found, self.position + self.gap)
+        if found >= NEVER:
+            return NEVER
+        return self.position + -(-(found - self.position) // self.gap) * self.gap
+
+    def _evaluator(self, place: int) -> Evaluate:
+        state = self.graph.nodes[place]
+        values = self.values
+        operands = self.graph.operands[place]
+        match state.op:
+            case StateOp.LEAF:
+                return self._leaf(place, state)
+            case StateOp.NOT:
+                (operand,) = operands
+                return lambda _: TRUE - values[operand]
+            case StateOp.AND:
+                return lambda _: min([values[operand] for operand in operands])
+            case StateOp.OR:
+                return lambda _: max([values[operand] for operand in operands])
+            case StateOp.PREVIOUS:
+                return self._previous(place)
+            case StateOp.SINCE:
+                return self._since(place, state)
+            case _:
+                assert_never(state.op)
+
+    def _leaf(self, place: int, state: State) -> Evaluate:
+        assert state.leaf is not None
+        read = evaluator(state.leaf, self.inputs, self.captured, self._origin)
+        if not isinstance(state.leaf, Elapsed):
+            return read
+        duration = state.leaf.duration
+
+        def elapsed(t: int) -> int:
+            value = read(t)
+            self._set_wake(place, NEVER if value else self._origin() + duration)
+            return value
+
+        return elapsed
+
+    def _previous(self, place: int) -> Evaluate:
+        node = Previous(self.gap or 1)
+        (operand,) = self.graph.operands[place]
+        values = self.values
+
+        def previous(t: int) -> int:
+            value = node.step(t, values[operand])
+            self._set_wake(place, node.wake)
+            return value
+
+        return previous
+
+    def _since(self, place: int, state: State) -> Evaluate:
+        node = Since(state.low, state.high, self.gap or 1)
+        left, right = self.graph.operands[place]
+        values = self.values
+
+        def since(t: int) -> int:
+            value = node.step(t, self._last, values[left], values[right])
+            self._set_wake(place, node.wake)
+            return value
+
+        return since
+
+    def _origin(self) -> int:
+        assert self.origin is not None
+        return self.origin
+
+    def _set_wake(self, place: int, wake: int) -> None:
+        if wake < NEVER:
+            self._wakes[place] = wake
+        else:
+            self._wakes.pop(place, None)

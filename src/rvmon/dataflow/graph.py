@@ -1,0 +1,86 @@
+"""The state formulas of some requirements as one graph with shared nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from rvmon.dataflow.leaves import Reads, captured_names, reads
+from rvmon.formula.state import Elapsed, State, StateOp
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Graph:
+    """Nodes in an order in which operands come first.
+
+    Attributes:
+        nodes: the state formulas.
+        index: their places in `nodes`.
+        operands: per node the places of its operands.
+        parents: per node the places of those it is an operand of.
+        reads: what each leaf depends on, by place.
+        by_name: per signal and event, the leaves that read it.
+        stateful: the nodes that remember, and those that change by time alone.
+        captured: names of captured values that some leaf reads.
+        remembers_captured: whether a node that remembers stands above such a leaf.
+    """
+
+    nodes: tuple[State, ...]
+    index: Mapping[State, int]
+    operands: tuple[tuple[int, ...], ...]
+    parents: tuple[tuple[int, ...], ...]
+    reads: Mapping[int, Reads]
+    by_name: Mapping[str, tuple[int, ...]]
+    stateful: tuple[int, ...]
+    captured: frozenset[str]
+    remembers_captured: bool
+
+
+def graph_of(roots: Iterable[State]) -> Graph:
+    """The graph of state formulas and all they are made of."""
+    seen: set[State] = set()
+    stack = list(roots)
+    while stack:
+        state = stack.pop()
+        if state not in seen:
+            seen.add(state)
+            stack.extend(state.args)
+    nodes = tuple(sorted(seen, key=lambda state: state.id))
+    index = {state: place for place, state in enumerate(nodes)}
+    operands = tuple(tuple(index[arg] for arg in state.args) for state in nodes)
+    parents: list[list[int]] = [[] for _ in nodes]
+    by_name: dict[str, list[int]] = {}
+    leaf_reads: dict[int, Reads] = {}
+    stateful: list[int] = []
+    captured: set[str] = set()
+    varies: set[int] = set()
+    remembers = False
+    for place, state in enumerate(nodes):
+        for operand in dict.fromkeys(operands[place]):
+            parents[operand].append(place)
+        if state.leaf is not None:
+            leaf_reads[place] = found = reads(state.leaf)
+            for name in found.names:
+                by_name.setdefault(name, []).append(place)
+            own = captured_names(state.leaf)
+            captured |= own
+            if own:
+                varies.add(place)
+        elif varies.intersection(operands[place]):
+            varies.add(place)
+        if state.op in (StateOp.PREVIOUS, StateOp.SINCE):
+            remembers |= place in varies
+            stateful.append(place)
+        elif isinstance(state.leaf, Elapsed):
+            stateful.append(place)
+    return Graph(
+        nodes,
+        index,
+        operands,
+        tuple(tuple(places) for places in parents),
+        leaf_reads,
+        {name: tuple(places) for name, places in by_name.items()},
+        tuple(stateful),
+        frozenset(captured),
+        remembers,
+    )

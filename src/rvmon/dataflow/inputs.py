@@ -1,0 +1,167 @@
+"""What is known of the signals and events: held values, occurrences, staleness."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.spec.checked import CheckedSpec
+from rvmon.trace.sample import Payload, Scalar, Value
+
+NEVER = 1 << 63
+
+Reported = Value | tuple[Payload | None, ...]
+"""What is taken for a name; a `None` among payloads is an unknown occurrence."""
+
+
+class Slot:
+    """One signal.
+
+    Attributes:
+        value: as seen now; `None` if unknown, also because it is stale.
+        updates: how often it was updated, counted to two.
+        last: the value of the last update; `None` if that was unknown.
+        at: the instant of the last update.
+        before: the value of the update before; `None` if it was unknown or there was none.
+        before_at: its instant.
+        stale_after: as declared.
+        stale_at: the instant from which on it is stale; `NEVER` if it cannot become so.
+    """
+
+    __slots__ = (
+        "at",
+        "before",
+        "before_at",
+        "last",
+        "stale_after",
+        "stale_at",
+        "updates",
+        "value",
+    )
+
+    def __init__(self, stale_after: int | None) -> None:
+        self.value: Scalar = None
+        self.updates = 0
+        self.last: Scalar = None
+        self.at = 0
+        self.before: Scalar = None
+        self.before_at = 0
+        self.stale_after = stale_after
+        self.stale_at = NEVER
+
+    def copy(self) -> Slot:
+        """The same, independent from now on."""
+        made = Slot(self.stale_after)
+        for name in Slot.__slots__:
+            setattr(made, name, getattr(self, name))
+        return made
+
+    def update(self, t: int, value: Scalar) -> int:
+        """Take an update; returns whether it is one with another value (Kleene)."""
+        if value != value:
+            value = None
+        first = not self.updates
+        self.before, self.before_at = self.last, self.at
+        self.last, self.at, self.value = value, t, value
+        self.updates = 1 if first else 2
+        if self.stale_after is not None:
+            self.stale_at = t + self.stale_after + 1
+        if first:
+            return FALSE
+        if value is None or self.before is None:
+            return UNKNOWN
+        return TRUE if value != self.before else FALSE
+
+
+class Inputs:
+    """All signals and events of a spec, as of one position.
+
+    Occurrences (of events, updates, changes) belong to one position: they gather until
+    `forget_occurrences` is called.
+
+    Attributes:
+        slots: by signal.
+        occurrences: by event what was said of it for this position, in order.
+        updated: the names that were updated for this position.
+        changed: by signal, whether an update for this position brought another value.
+        absent: names without a source.
+    """
+
+    def __init__(self, spec: CheckedSpec, sources: frozenset[str] | None) -> None:
+        self.slots = {name: Slot(signal.stale_after) for name, signal in spec.signals.items()}
+        names = {*spec.signals, *spec.events}
+        self.absent = frozenset() if sources is None else frozenset(names - sources)
+        self.occurrences: dict[str, list[Reported]] = {}
+        self.updated: set[str] = set()
+        self.changed: dict[str, int] = {}
+        self._perishable = [
+            (name, slot) for name, slot in self.slots.items() if slot.stale_after is not None
+        ]
+
+    def apply(self, t: int, values: Mapping[str, Reported]) -> None:
+        """Take the updates of one sample; `values` are valid and their names have a source."""
+        for name, value in values.items():
+            self.updated.add(name)
+            slot = self.slots.get(name)
+            if slot is None:
+                self.occurrences.setdefault(name, []).append(value)
+            else:
+                assert value is None or isinstance(value, bool | int | float | str)
+                changed = slot.update(t, value)
+                self.changed[name] = max(changed, self.changed.get(name, FALSE))
+
+    def forget_occurrences(self) -> None:
+        """Leave the position to which the gathered occurrences belong."""
+        self.occurrences.clear()
+        self.updated.clear()
+        self.changed.clear()
+
+    def copy(self) -> Inputs:
+        """The same as of this position, independent from now on."""
+        made = Inputs.__new__(Inputs)
+        made.slots = {name: slot.copy() for name, slot in self.slots.items()}
+        made.absent = self.absent
+        made.occurrences = {name: list(values) for name, values in self.occurrences.items()}
+        made.updated = set(self.updated)
+        made.changed = dict(self.changed)
+        made._perishable = [(name, made.slots[name]) for name, _ in self._perishable]
+        return made
+
+    @property
+    def next_expiry(self) -> int:
+        """The next instant at which a signal becomes stale."""
+        return min((slot.stale_at for _, slot in self._perishable), default=NEVER)
+
+    def expire(self, t: int) -> list[str]:
+        """Make stale what is so at `t`; returns the names."""
+        expired = [name for name, slot in self._perishable if slot.stale_at <= t]
+        for name in expired:
+            self.slots[name].value = None
+            self.slots[name].stale_at = NEVER
+        return expired
+
+    def occurs(self, event: str) -> int:
+        """Whether an event occurs at this position."""
+        if event in self.absent:
+            return UNKNOWN
+        return max(
+            (occurrence_truth(value) for value in self.occurrences.get(event, ())), default=FALSE
+        )
+
+
+def occurrence_truth(value: Reported) -> int:
+    """What a sample says of the occurrence of an event."""
+    if isinstance(value, tuple):
+        return max((UNKNOWN if payload is None else TRUE for payload in value), default=FALSE)
+    if value is None:
+        return UNKNOWN
+    return FALSE if value is False else TRUE
+
+
+def payloads_of(value: Reported) -> tuple[Payload | None, ...]:
+    """The payloads of a report of an event: one per occurrence, `None` if it is unknown."""
+    if isinstance(value, tuple):
+        return value
+    if isinstance(value, Mapping):
+        return (value,)
+    return (None,) if value is None else ({},) if value is True else ()

@@ -1,0 +1,143 @@
+"""Leaves of state formulas: what they read, and their value at a position."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import assert_never
+
+from rvmon.dataflow.inputs import Inputs, payloads_of
+from rvmon.dataflow.numbers import COMPARE, captured_of, events_of, names_of, reader
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf
+from rvmon.spec.checked import (
+    BoundAtom,
+    Compare,
+    Constant,
+    EventAtom,
+    Probe,
+    ProbeAtom,
+    SignalAtom,
+)
+from rvmon.trace.sample import Scalar
+
+Evaluate = Callable[[int], int]
+"""From the instant of the position to the leaf's truth there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reads:
+    """What a leaf depends on.
+
+    Attributes:
+        names: signals and events whose updates can change it.
+        momentary: whether it speaks of one position only and has to be read again at the next.
+    """
+
+    names: frozenset[str] = frozenset()
+    momentary: bool = False
+
+
+def reads(leaf: Leaf) -> Reads:
+    """What a leaf depends on."""
+    match leaf:
+        case Constant() | Elapsed():
+            return Reads()
+        case BoundAtom():
+            return Reads(momentary=True)
+        case SignalAtom(name=name):
+            return Reads(frozenset({name}))
+        case EventAtom(name=name):
+            return Reads(frozenset({name}), True)
+        case ProbeAtom(probe=probe, name=name):
+            return Reads(frozenset({name}), probe is not Probe.KNOWN)
+        case Compare(left=left, right=right):
+            events = events_of(leaf)
+            names = names_of(left) | names_of(right)
+            return Reads(frozenset(names) | frozenset(events), bool(events))
+        case _:
+            assert_never(leaf)
+
+
+def captured_names(leaf: Leaf) -> frozenset[str]:
+    """The captured values that a leaf compares with."""
+    if isinstance(leaf, Compare):
+        return frozenset(captured_of(leaf.left) | captured_of(leaf.right))
+    return frozenset()
+
+
+def evaluator(
+    leaf: Leaf, inputs: Inputs, captured: Mapping[str, Scalar], origin: Callable[[], int]
+) -> Evaluate:
+    """A function that gives the truth of a leaf at the current position.
+
+    Args:
+        leaf: any.
+        inputs: read at each call.
+        captured: values of `let` and `for each`.
+        origin: gives the instant of the first position.
+    """
+    match leaf:
+        case Constant(value=value):
+            truth = TRUE if value else FALSE
+            return lambda _: truth
+        case Elapsed(duration=duration):
+            return lambda t: TRUE if t - origin() >= duration else FALSE
+        case BoundAtom():
+            return lambda t: TRUE if t == origin() else FALSE
+        case SignalAtom(name=name):
+            slot = inputs.slots[name]
+            return lambda _: UNKNOWN if slot.value is None else TRUE if slot.value else FALSE
+        case EventAtom(name=name):
+            return lambda _: inputs.occurs(name)
+        case ProbeAtom(probe=probe, name=name):
+            return _probe(probe, name, inputs)
+        case Compare():
+            return _compare(leaf, inputs, captured)
+        case _:
+            assert_never(leaf)
+
+
+def _probe(probe: Probe, name: str, inputs: Inputs) -> Evaluate:
+    match probe:
+        case Probe.KNOWN:
+            slot = inputs.slots.get(name)
+            if slot is None:
+                return lambda _: FALSE if inputs.occurs(name) == UNKNOWN else TRUE
+            return lambda _: FALSE if slot.value is None else TRUE
+        case Probe.UPDATED:
+            return lambda _: TRUE if name in inputs.updated else FALSE
+        case Probe.CHANGED:
+            if name in inputs.absent:
+                return lambda _: UNKNOWN
+            return lambda _: inputs.changed.get(name, FALSE)
+        case _:
+            assert_never(probe)
+
+
+def _compare(leaf: Compare, inputs: Inputs, captured: Mapping[str, Scalar]) -> Evaluate:
+    operation = COMPARE[leaf.op]
+    left = reader(leaf.left, inputs, captured)
+    right = reader(leaf.right, inputs, captured)
+    events = events_of(leaf)
+
+    def truth(payloads: Mapping[str, Mapping[str, Scalar]]) -> int:
+        first, second = left(payloads), right(payloads)
+        if first is None or second is None:
+            return UNKNOWN
+        return TRUE if operation(first, second) else FALSE
+
+    def of_occurrences(_: int) -> int:
+        if any(event in inputs.absent for event in events):
+            return UNKNOWN
+        found = FALSE
+        choices = [
+            [p for value in inputs.occurrences.get(event, ()) for p in payloads_of(value)]
+            for event in events
+        ]
+        for chosen in product(*choices):
+            payloads = {e: p for e, p in zip(events, chosen, strict=True) if p is not None}
+            found = max(found, truth(payloads) if len(payloads) == len(events) else UNKNOWN)
+        return found
+
+    return of_occurrences if events else lambda _: truth({})

@@ -1,0 +1,164 @@
+"""Numeric expressions as functions of the input; `None` is unknown."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping
+from typing import Any, assert_never
+
+from rvmon.dataflow.inputs import Inputs, Slot
+from rvmon.spec.checked import (
+    Arithmetic,
+    Captured,
+    Compare,
+    CompareOp,
+    FieldValue,
+    Literal,
+    Numeric,
+    NumericOp,
+    SignalValue,
+    UpdateFunction,
+    UpdateValue,
+)
+from rvmon.trace.sample import Payload, Scalar
+from rvmon.trace.time import TICKS_PER_SECOND
+
+Payloads = Mapping[str, Payload]
+"""By event, the payload that its fields are read from."""
+
+Read = Callable[[Payloads], Scalar]
+
+COMPARE: Mapping[CompareOp, Callable[[Any, Any], bool]] = {
+    CompareOp.LT: operator.lt,
+    CompareOp.LE: operator.le,
+    CompareOp.EQ: operator.eq,
+    CompareOp.NE: operator.ne,
+    CompareOp.GE: operator.ge,
+    CompareOp.GT: operator.gt,
+}
+
+_BINARY: Mapping[NumericOp, Callable[..., float]] = {
+    NumericOp.ADD: operator.add,
+    NumericOp.SUB: operator.sub,
+    NumericOp.MUL: operator.mul,
+    NumericOp.DIV: operator.truediv,
+    NumericOp.MIN: min,
+    NumericOp.MAX: max,
+    NumericOp.HYPOT: math.hypot,
+    NumericOp.NEG: operator.neg,
+    NumericOp.ABS: abs,
+    NumericOp.SQRT: math.sqrt,
+}
+
+
+def reader(expression: Numeric, inputs: Inputs, captured: Mapping[str, Scalar]) -> Read:
+    """A function that gives the value of an expression at the current position."""
+    match expression:
+        case Literal(value=value):
+            return lambda _: value
+        case SignalValue(name=name):
+            slot = inputs.slots[name]
+            return lambda _: slot.value
+        case FieldValue(event=event, field=field):
+            return lambda payloads: _number(payloads[event].get(field))
+        case Captured(name=name):
+            known = captured[name]
+            return lambda _: known
+        case UpdateValue(function=function, name=name):
+            return _update_reader(function, inputs.slots[name])
+        case Arithmetic(op=op, args=args):
+            return _arithmetic(_BINARY[op], [reader(arg, inputs, captured) for arg in args])
+        case _:
+            assert_never(expression)
+
+
+def _number(value: Scalar) -> Scalar:
+    return None if value != value else value
+
+
+def _update_reader(function: UpdateFunction, slot: Slot) -> Read:
+    def prev(_: Payloads) -> Scalar:
+        return slot.before if slot.updates == 2 and slot.value is not None else None
+
+    def delta(payloads: Payloads) -> float | None:
+        before, now = prev(payloads), slot.value
+        if before is None or isinstance(before, str) or now is None or isinstance(now, str):
+            return None
+        return _finite(operator.sub, [now, before])
+
+    def rate(payloads: Payloads) -> float | None:
+        difference = delta(payloads)
+        if difference is None:
+            return None
+        return _finite(lambda: difference * TICKS_PER_SECOND / (slot.at - slot.before_at), [])
+
+    match function:
+        case UpdateFunction.PREV:
+            return prev
+        case UpdateFunction.DELTA:
+            return delta
+        case UpdateFunction.RATE:
+            return rate
+        case _:
+            assert_never(function)
+
+
+def _arithmetic(operation: Callable[..., float], args: list[Read]) -> Read:
+    def read(payloads: Payloads) -> float | None:
+        values = [arg(payloads) for arg in args]
+        if any(value is None or isinstance(value, str) for value in values):
+            return None
+        return _finite(operation, values)
+
+    return read
+
+
+def _finite(operation: Callable[..., float], values: list[Scalar]) -> float | None:
+    """The result, unless it is no finite number."""
+    try:
+        result = operation(*values)
+        return result if math.isfinite(result) else None
+    except (ValueError, OverflowError, ZeroDivisionError):
+        return None
+
+
+def events_of(compare: Compare) -> tuple[str, ...]:
+    """The events whose fields a comparison reads, each once."""
+    found: dict[str, None] = {}
+
+    def visit(expression: Numeric) -> None:
+        match expression:
+            case FieldValue(event=event):
+                found[event] = None
+            case Arithmetic(args=args):
+                for arg in args:
+                    visit(arg)
+            case _:
+                pass
+
+    visit(compare.left)
+    visit(compare.right)
+    return tuple(found)
+
+
+def names_of(expression: Numeric) -> set[str]:
+    """The signals that an expression reads."""
+    match expression:
+        case SignalValue(name=name) | UpdateValue(name=name):
+            return {name}
+        case Arithmetic(args=args):
+            return set().union(*(names_of(arg) for arg in args))
+        case _:
+            return set()
+
+
+def captured_of(expression: Numeric) -> set[str]:
+    """The captured values that an expression reads."""
+    match expression:
+        case Captured(name=name):
+            return {name}
+        case Arithmetic(args=args):
+            return set().union(*(captured_of(arg) for arg in args))
+        case _:
+            return set()

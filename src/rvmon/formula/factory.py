@@ -1,0 +1,165 @@
+"""Making formulas: equal ones become the same object, and what is constant is folded.
+
+Only such laws are applied as change neither the value of a prefix nor that at the end of a trace:
+those of distributive lattices and of constants. `p or not p` stays (Kleene), `G[0,3] true` stays (it
+is decided when its window is over).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, cast
+
+from rvmon.formula.core import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Release,
+    Sense,
+    Until,
+)
+from rvmon.formula.state import Leaf, State, StateOp
+from rvmon.spec.checked import Constant as ConstantLeaf
+
+
+class Factory:
+    """The formulas of one specification; ids count from 0, operands before operators."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[Any, ...], Any] = {}
+        self._count = 0
+        self.true: Core = self._core(Constant, True)
+        self.false: Core = self._core(Constant, False)
+        self.state_true = self.leaf(ConstantLeaf(True))
+        self.state_false = self.leaf(ConstantLeaf(False))
+
+    def _next_id(self) -> int:
+        self._count += 1
+        return self._count - 1
+
+    # State formulas.
+
+    def _state(
+        self,
+        op: StateOp,
+        args: tuple[State, ...] = (),
+        leaf: Leaf | None = None,
+        low: int = 0,
+        high: int | None = None,
+    ) -> State:
+        key = (op, args, leaf, low, high)
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = State(self._next_id(), op, args, leaf, low, high)
+        return cast(State, found)
+
+    def leaf(self, leaf: Leaf) -> State:
+        """What is read off the input."""
+        return self._state(StateOp.LEAF, leaf=leaf)
+
+    def negation(self, arg: State) -> State:
+        """Not `arg`; double negation is dropped."""
+        if arg is self.state_true:
+            return self.state_false
+        if arg is self.state_false:
+            return self.state_true
+        return arg.args[0] if arg.op is StateOp.NOT else self._state(StateOp.NOT, (arg,))
+
+    def state_all(self, args: Iterable[State]) -> State:
+        """All of `args`."""
+        return self._lattice(StateOp.AND, args, self.state_true, self.state_false)
+
+    def state_any(self, args: Iterable[State]) -> State:
+        """One of `args`."""
+        return self._lattice(StateOp.OR, args, self.state_false, self.state_true)
+
+    def _lattice(self, op: StateOp, args: Iterable[State], unit: State, zero: State) -> State:
+        flat: dict[State, None] = {}
+        for arg in args:
+            flat.update(dict.fromkeys(arg.args if arg.op is op else (arg,)))
+        flat.pop(unit, None)
+        if zero in flat:
+            return zero
+        if len(flat) <= 1:
+            return next(iter(flat), unit)
+        return self._state(op, tuple(sorted(flat, key=_id)))
+
+    def previous(self, arg: State) -> State:
+        """`arg` at the position before; false at the first."""
+        return self._state(StateOp.PREVIOUS, (arg,))
+
+    def since(self, left: State, right: State, low: int, high: int | None) -> State:
+        """`left S[low, high] right`."""
+        return self._state(StateOp.SINCE, (left, right), low=low, high=high)
+
+    # Core formulas.
+
+    def _core(self, kind: type[Any], *fields: Any) -> Any:
+        key = (kind, *fields)
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = kind(self._next_id(), *fields)
+        return found
+
+    def constant(self, value: bool) -> Constant:
+        """True or false."""
+        return cast(Constant, self.true if value else self.false)
+
+    def literal(self, proposition: State, sense: Sense) -> Core:
+        """A proposition read in one sense; negations move into the sense."""
+        if proposition is self.state_true:
+            return self.constant(sense is Sense.TRUE)
+        if proposition is self.state_false:
+            return self.constant(sense is not Sense.TRUE)
+        if proposition.op is StateOp.NOT and sense is not Sense.KNOWN_FALSE:
+            flipped = Sense.FALSE if sense is Sense.TRUE else Sense.TRUE
+            return self.literal(proposition.args[0], flipped)
+        return cast(Core, self._core(Literal, proposition, sense))
+
+    def all_of(self, args: Iterable[Core]) -> Core:
+        """All of `args`."""
+        return self._junction(And, args, self.true, self.false)
+
+    def any_of(self, args: Iterable[Core]) -> Core:
+        """One of `args`."""
+        return self._junction(Or, args, self.false, self.true)
+
+    def _junction(self, kind: type[And | Or], args: Iterable[Core], unit: Core, zero: Core) -> Core:
+        flat: dict[Core, None] = {}
+        for arg in args:
+            flat.update(dict.fromkeys(arg.args if isinstance(arg, kind) else (arg,)))
+        flat.pop(unit, None)
+        if zero in flat:
+            return zero
+        if len(flat) <= 1:
+            return next(iter(flat), unit)
+        return cast(Core, self._core(kind, tuple(sorted(flat, key=_id))))
+
+    def next(self, operand: Core) -> Next:
+        """`operand` at the next position, undecided until there is one."""
+        return cast(Next, self._core(Next, operand))
+
+    def until(self, left: Core, right: Core, low: int, high: int | None) -> Core:
+        """`left U[low, high] right`, or an equal simpler formula."""
+        if left is self.false:
+            return right if low == 0 else self.false
+        if right is self.true and low == 0:
+            return right
+        opened = self._core(Until, left, right, 0, high, None) if low else None
+        return cast(Core, self._core(Until, left, right, low, high, opened))
+
+    def release(self, left: Core, right: Core, low: int, high: int | None) -> Core:
+        """`left R[low, high] right`, or an equal simpler formula."""
+        if left is self.true:
+            return right if low == 0 else self.true
+        if right is self.false and low == 0:
+            return right
+        opened = self._core(Release, left, right, 0, high, None) if low else None
+        return cast(Core, self._core(Release, left, right, low, high, opened))
+
+
+def _id(node: State | Core) -> int:
+    return node.id

@@ -1,0 +1,172 @@
+"""One step of a residual, and what time alone and the end of a trace make of it.
+
+Source: AUTOMATA 1; progression after Bacchus and Kabanza 1998, with ages in place of shrinking bounds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import Enum
+from typing import assert_never
+
+from rvmon.formula.core import And, Constant, Core, Literal, Next, Or, Release, Until
+from rvmon.formula.residual import (
+    FAILS,
+    HOLDS,
+    NO_CLOCK,
+    Atom,
+    Residual,
+    both,
+    either,
+    substitute,
+)
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+
+ReadLiteral = Callable[[Literal], Residual]
+
+
+class Phase(Enum):
+    """Where an age lies relative to a window."""
+
+    BEFORE = 0
+    INSIDE = 1
+    OVER = 2
+
+
+def phase(node: Until | Release, age: int) -> Phase:
+    """Where `age` lies relative to the window of `node`."""
+    if age < node.low:
+        return Phase.BEFORE
+    return Phase.INSIDE if node.high is None or age <= node.high else Phase.OVER
+
+
+def step(
+    residual: Residual, ages: Sequence[int], read: ReadLiteral, limit: int | None = None
+) -> Residual:
+    """What is owed after a position.
+
+    In the result, clocks below `len(ages)` are the old ones, and `len(ages)` is a new one that was
+    started at this position.
+
+    Args:
+        residual: what was owed before.
+        ages: of each clock at this position.
+        read: what a literal is at this position; itself as an atom, if it is to stay open.
+        limit: the greatest number of clauses, if there is to be one.
+
+    Raises:
+        TooManyClausesError: the result, or something on the way to it, may have more clauses.
+    """
+    stepper = _Step(ages, read, limit)
+    made = {atom: stepper.atom(atom) for clause in residual for atom in clause}
+    return substitute(residual, made, limit)
+
+
+class _Step:
+    def __init__(self, ages: Sequence[int], read: ReadLiteral, limit: int | None) -> None:
+        self.ages = ages
+        self.limit = limit
+        self.read = read
+        self.made: dict[Core, Residual] = {}
+
+    def atom(self, atom: Atom) -> Residual:
+        node, clock = atom
+        match node:
+            case Literal():
+                raise AssertionError("literals are read when they are instantiated")
+            case Next(operand=operand):
+                return self.instance(operand)
+            case Until() | Release():
+                age = 0 if clock == NO_CLOCK else self.ages[clock]
+                return self.window(node, clock, phase(node, age))
+            case _:
+                assert_never(node)
+
+    def window(self, node: Until | Release, clock: int, where: Phase) -> Residual:
+        until = isinstance(node, Until)
+        if where is Phase.OVER:
+            return FAILS if until else HOLDS
+        kept: Atom = (node, clock) if where is Phase.BEFORE else _opened(node, clock)
+        pending: Residual = frozenset([frozenset([kept])])
+        left = self.instance(node.left)
+        waiting = both(left, pending, self.limit) if until else either(left, pending)
+        if where is Phase.BEFORE:
+            return waiting
+        right = self.instance(node.right)
+        return either(right, waiting) if until else both(right, waiting, self.limit)
+
+    def instance(self, node: Core) -> Residual:
+        """What `node` owes if it is instantiated at this position."""
+        found = self.made.get(node)
+        if found is None:
+            found = self.made[node] = self._instance(node)
+        return found
+
+    def _instance(self, node: Core) -> Residual:
+        match node:
+            case Constant(value=value):
+                return HOLDS if value else FAILS
+            case Literal():
+                return self.read(node)
+            case And(args=args):
+                result = HOLDS
+                for arg in args:
+                    result = both(result, self.instance(arg), self.limit)
+                return result
+            case Or(args=args):
+                result = FAILS
+                for arg in args:
+                    result = either(result, self.instance(arg))
+                return result
+            case Next():
+                return frozenset([frozenset([(node, NO_CLOCK)])])
+            case Until() | Release():
+                return self.window(node, len(self.ages), phase(node, 0))
+            case _:
+                assert_never(node)
+
+
+def _opened(node: Until | Release, clock: int) -> Atom:
+    """What is left of a window that has opened: its start matters no more, without an end no age."""
+    return node.opened or node, NO_CLOCK if node.high is None else clock
+
+
+def after(residual: Residual, ages: Sequence[int]) -> Residual:
+    """What is owed when time has passed and no position came: windows that are over are settled.
+
+    Args:
+        residual: what is owed after the last position.
+        ages: of each clock at the instant that time has reached.
+    """
+    settled: dict[Atom, Residual] = {}
+    for clause in residual:
+        for node, clock in clause:
+            if isinstance(node, Until | Release) and clock != NO_CLOCK:
+                if phase(node, ages[clock]) is Phase.OVER:
+                    settled[node, clock] = FAILS if isinstance(node, Until) else HOLDS
+    return substitute(residual, settled) if settled else residual
+
+
+def value(residual: Residual) -> int:
+    """The truth of a prefix that leaves this residual."""
+    if residual == HOLDS:
+        return TRUE
+    return UNKNOWN if residual else FALSE
+
+
+def holds_at_end(residual: Residual, ages: Sequence[int]) -> bool:
+    """Whether the rule for the end of a trace makes the residual true.
+
+    Args:
+        residual: what is owed, after all windows that are over were settled.
+        ages: of each clock at the end of the trace.
+    """
+    return any(all(_counts_at_end(atom, ages) for atom in clause) for clause in residual)
+
+
+def _counts_at_end(atom: Atom, ages: Sequence[int]) -> bool:
+    """An unbounded `R` whose window has opened (SEMANTICS 3, The end)."""
+    node, clock = atom
+    if not isinstance(node, Release) or node.high is not None:
+        return False
+    return clock == NO_CLOCK or ages[clock] >= node.low

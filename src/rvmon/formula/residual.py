@@ -1,0 +1,125 @@
+"""What an attempt still owes: a reduced disjunctive normal form of timed atoms.
+
+Source: AUTOMATA 1; reduced DNFs of monotone functions are their prime implicants (Quine 1952).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from rvmon.formula.core import Literal, Next, Release, Until
+
+NO_CLOCK = -1
+"""The clock of an atom that does not depend on when it was instantiated."""
+
+Atom = tuple[Literal | Next | Until | Release, int]
+"""A subformula and the clock that measures its age: clocks count from the oldest, from 0.
+
+A literal occurs only where a step is computed for all letters at once.
+"""
+
+Clause = frozenset[Atom]
+Residual = frozenset[Clause]
+"""A disjunction of conjunctions of atoms, none of which can be dropped."""
+
+HOLDS: Residual = frozenset([frozenset()])
+FAILS: Residual = frozenset()
+
+
+class TooManyClausesError(Exception):
+    """A residual outgrew the limit that was set for it."""
+
+
+def implies(strong: Atom, weak: Atom) -> bool:
+    """Whether `weak` is at least as true as `strong`, whatever comes and wherever the trace ends.
+
+    Both are pending. `U[0,b]`: the earlier deadline implies the later one; `R[0,b]`: the later one
+    the earlier. `U[a,inf)`: the later implies the earlier. For `R[a,inf)` the logic says the
+    opposite of the rule for the end, by which only an opened window counts: neither implies.
+    """
+    left, first = strong
+    right, second = weak
+    if left is right:
+        if first == second:
+            return True
+        match left:
+            case Until(low=0, high=int()):
+                return first < second
+            case Release(low=0, high=int()):
+                return first > second
+            case Until(high=None):
+                return first > second
+            case _:
+                return False
+    return isinstance(left, Until) and left.high is None and left.opened is right
+
+
+def either(left: Residual, right: Residual) -> Residual:
+    """The reduced disjunction."""
+    if left == right or not right:
+        return left
+    if not left:
+        return right
+    return _reduced(left | right)
+
+
+def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
+    """The reduced conjunction.
+
+    Raises:
+        TooManyClausesError: it may have more than `limit` clauses.
+    """
+    if left == right or right == HOLDS:
+        return left
+    if left == HOLDS:
+        return right
+    if limit is not None and len(left) * len(right) > limit:
+        raise TooManyClausesError
+    return _reduced({_conjunction(first | second) for first in left for second in right})
+
+
+def _conjunction(clause: Clause) -> Clause:
+    """Without the atoms that others of the clause imply."""
+    if len(clause) < 2:
+        return clause
+    kept = [
+        atom
+        for atom in clause
+        if not any(other is not atom and implies(other, atom) for other in clause)
+    ]
+    return frozenset(kept) if len(kept) < len(clause) else clause
+
+
+def _reduced(clauses: Iterable[Clause]) -> Residual:
+    """Without the clauses that imply others; `clauses` are conjunctions without implied atoms."""
+    ordered = sorted(clauses, key=len)
+    if ordered and not ordered[0]:
+        return HOLDS
+    kept: list[Clause] = []
+    for clause in ordered:
+        if not any(_clause_implies(clause, other) for other in kept):
+            kept = [other for other in kept if not _clause_implies(other, clause)]
+            kept.append(clause)
+    return frozenset(kept)
+
+
+def _clause_implies(strong: Clause, weak: Clause) -> bool:
+    return weak <= strong or all(any(implies(s, w) for s in strong) for w in weak)
+
+
+def substitute(
+    residual: Residual, values: Mapping[Atom, Residual], limit: int | None = None
+) -> Residual:
+    """The residual with some of its atoms replaced.
+
+    Raises:
+        TooManyClausesError: an intermediate result may have more than `limit` clauses.
+    """
+    result = FAILS
+    for clause in residual:
+        made: Residual = frozenset([clause.difference(values)])
+        for atom in clause:
+            if atom in values:
+                made = both(made, values[atom], limit)
+        result = either(result, made)
+    return result

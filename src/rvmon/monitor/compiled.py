@@ -1,0 +1,131 @@
+"""A specification made ready for monitors: formulas, alphabets, engines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
+from rvmon.automaton.machine import Machine
+from rvmon.automaton.progression import Progression
+from rvmon.automaton.table import TableMachine
+from rvmon.dataflow.graph import Graph, graph_of
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.formula.alphabet import Alphabet, alphabet_of
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import Obligation, lower
+from rvmon.spec.checked import CheckedSpec, Requirement
+
+ENGINES = ("auto", "automaton", "progression")
+
+
+class CompiledRequirement:
+    """One requirement, ready to be judged by any engine; what an engine needs is made at first use.
+
+    Attributes:
+        rank: its place in the file.
+        requirement: as checked.
+        obligation: its formulas.
+        alphabet: of what it owes.
+    """
+
+    def __init__(
+        self, rank: int, requirement: Requirement, obligation: Obligation, factory: Factory
+    ) -> None:
+        self.rank = rank
+        self.requirement = requirement
+        self.obligation = obligation
+        self.alphabet: Alphabet = alphabet_of(obligation.owed)
+        self._owed = factory.next(obligation.owed)
+
+    @cached_property
+    def _built(self) -> Automaton | DoesNotCloseError:
+        try:
+            return construct(self._owed, self.alphabet, Budget())
+        except DoesNotCloseError as error:
+            return error
+
+    @property
+    def automaton(self) -> Automaton | None:
+        """Its automaton; `None` if that does not close."""
+        return self._built if isinstance(self._built, Automaton) else None
+
+    @property
+    def refusal(self) -> str:
+        """Why it has no automaton, or empty."""
+        return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
+
+    @cached_property
+    def _table(self) -> TableMachine | None:
+        return None if self.automaton is None else TableMachine(self.automaton)
+
+    @cached_property
+    def _progression(self) -> Progression:
+        return Progression(self._owed, self.alphabet)
+
+    def machine(self, engine: str) -> Machine:
+        """The machine that judges its attempts.
+
+        Args:
+            engine: `auto` takes the automaton where there is one.
+
+        Raises:
+            UnknownNameError: there is no such engine.
+            RvmonError: the engine was asked for by name and cannot judge this requirement.
+        """
+        if engine not in ENGINES:
+            raise UnknownNameError(f"no engine `{engine}`: there are {', '.join(ENGINES)}")
+        if engine == "progression":
+            return self._progression
+        if self._table is not None:
+            return self._table
+        if engine == "automaton":
+            raise RvmonError(
+                f"{self.requirement.id} has no automaton ({self.refusal}): use the engine `auto`"
+            )
+        return self._progression
+
+    @cached_property
+    def shared_graph(self) -> Graph:
+        """The state formulas of all its attempts: with `let`, only those of the trigger."""
+        trigger = [] if self.obligation.trigger is None else [self.obligation.trigger]
+        owed = () if self.requirement.captures else self.alphabet.propositions
+        return graph_of([*trigger, *owed])
+
+    @cached_property
+    def consequent_graph(self) -> Graph:
+        """The propositions of what it owes."""
+        return graph_of(self.alphabet.propositions)
+
+
+class CompiledSpec:
+    """A specification from which any number of monitors can be built.
+
+    Attributes:
+        checked: as checked.
+        requirements: by id.
+    """
+
+    def __init__(
+        self, checked: CheckedSpec, requirements: Mapping[str, CompiledRequirement]
+    ) -> None:
+        self.checked = checked
+        self.requirements = requirements
+
+
+def compile_spec(checked: CheckedSpec) -> CompiledSpec:
+    """Compile a specification, once for all its monitors.
+
+    Raises:
+        RvmonError: a requirement is beyond all engines; which and why is said.
+    """
+    factory = Factory()
+    made = {}
+    for rank, (name, requirement) in enumerate(checked.requirements.items()):
+        try:
+            obligation = lower(requirement, factory, checked.period)
+        except NotImplementedError as error:
+            raise RvmonError(f"{name} cannot be monitored: {error}") from None
+        made[name] = CompiledRequirement(rank, requirement, obligation, factory)
+    return CompiledSpec(checked, made)

@@ -1,0 +1,209 @@
+"""The online monitor of a specification."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from rvmon.automaton.machine import INFINITY
+from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
+from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.lanes import Lanes
+from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.validate import Validator
+from rvmon.spec.checked import TimeModel
+from rvmon.trace.time import TIME_LIMIT, format_ticks, ticks_of_seconds
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+
+class Monitor:
+    """Judges a stream of samples; made by `build_monitor`.
+
+    Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
+    methods that end in `_ns`.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        engine: str,
+        sources: frozenset[str] | None,
+    ) -> None:
+        self._compiled = compiled
+        self._requirements = requirements
+        self._engine = engine
+        self._sources = sources
+        self._validator = Validator(compiled.checked, sources, frozenset())
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the run; the next sample starts another."""
+        self._ledger = Ledger()
+        self._lanes = Lanes(
+            self._compiled.checked, self._requirements, self._engine, self._sources, self._ledger
+        )
+        self._last: int | None = None
+        self._reached: int | None = None
+        self._report: Report | None = None
+
+    def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take one sample; see `step_ns`.
+
+        Args:
+            t: seconds.
+            values: what was updated or occurred.
+        """
+        return self.step_ns(ticks_of_seconds(t), values)
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take one sample and return the attempts that it decided.
+
+        Args:
+            t_ns: ticks, later than all samples before.
+            values: what was updated or occurred: signals by value, `None` or NaN if it became
+                unknown; events `True`, or their payload.
+
+        Raises:
+            TimeOrderError: the time is not later, or an `advance` said that nothing would come.
+            TraceError: a name or a value that the specification does not know. In both cases the
+                monitor is as it was.
+        """
+        self._check_time(t_ns)
+        if self._last is not None and t_ns <= self._last:
+            raise TimeOrderError(
+                f"sample at {format_ticks(t_ns)} is not after the one at "
+                f"{format_ticks(self._last)}: merge what has equal stamps (settle='next' does), "
+                "sort what is out of order"
+            )
+        if self._reached is not None and t_ns < self._reached:
+            raise TimeOrderError(
+                f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) said "
+                "that none before would come: advance later, or drop the sample"
+            )
+        plain = self._validator.check(t_ns, values)
+        self._lanes.through(t_ns - 1)
+        self._lanes.sample(t_ns, plain)
+        self._last = self._reached = t_ns
+        return self._ledger.flush()
+
+    def advance(self, t: float) -> Sequence[Attempt]:
+        """Say that no sample before `t` (seconds) will come; see `advance_ns`."""
+        return self.advance_ns(ticks_of_seconds(t))
+
+    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
+        """Say that no sample before `t_ns` will come, and return the attempts that this decided.
+
+        A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
+        """
+        self._check_time(t_ns)
+        if self._reached is None or t_ns > self._reached:
+            self._pass_to(t_ns)
+            self._reached = t_ns
+        return self._ledger.flush()
+
+    def _pass_to(self, t: int) -> None:
+        self._lanes.through(t - 1)
+        self._lanes.reach(t)
+
+    def _check_time(self, t: int) -> None:
+        if self._report is not None:
+            raise TraceError("the run is finished: call reset() before the next")
+        if not -TIME_LIMIT < t < TIME_LIMIT:
+            raise TraceError(f"time {t} ns is out of range: at most 2**62 ns (146 years)")
+
+    def finish(self, t: float | None = None) -> Report:
+        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        return self.finish_ns(None if t is None else ticks_of_seconds(t))
+
+    def finish_ns(self, t_ns: int | None = None) -> Report:
+        """End the run and judge it.
+
+        Args:
+            t_ns: the end of the trace in ticks, if it is later than all so far.
+
+        Returns:
+            The report; the same again if the run was finished before.
+        """
+        if self._report is not None:
+            return self._report
+        if t_ns is not None:
+            self._check_time(t_ns)
+        end = self._end(t_ns)
+        if end is not None:
+            reached = max(end, self._reached or end)
+            self._lanes.through(end)
+            self._lanes.finish(end, reached)
+        self._ledger.flush()
+        self._report = report_of(
+            [compiled.requirement.id for compiled in self._requirements],
+            self._ledger.attempts,
+            end=end,
+        )
+        return self._report
+
+    def _end(self, t: int | None) -> int | None:
+        """The last instant of the trace; `None` if there was no sample."""
+        if self._last is None:
+            return None
+        known = [self._last]
+        if t is not None:
+            known.append(t)
+        if self._reached is not None and self._compiled.checked.time is not TimeModel.SAMPLED:
+            known.append(self._reached - 1)
+        return max(known)
+
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """The attempts that are undecided now."""
+        return [
+            self._ledger.open_record(judge, attempt)
+            for judge in self._lanes.judges
+            for attempt in judge.attempts
+        ]
+
+    @property
+    def next_due(self) -> int | None:
+        """The next instant (ticks) at which time alone can decide something."""
+        found = min((lane.next_due for lane in self._lanes.all), default=INFINITY)
+        return found if found < INFINITY else None
+
+
+def build_monitor(
+    compiled: CompiledSpec,
+    *,
+    only: Iterable[str] | None = None,
+    engine: str = "auto",
+    settle: str = "now",
+    sources: Iterable[str] | None = None,
+) -> Monitor:
+    """Build a monitor from a compiled specification.
+
+    Args:
+        compiled: from `compile_spec`; any number of monitors can share it.
+        only: ids of the requirements to judge; default all.
+        engine: `auto`, `automaton` or `progression`.
+        settle: `now` judges each sample at once.
+        sources: the signals and events that can arrive; the others are unknown throughout.
+
+    Raises:
+        UnknownNameError: `only`, `engine` or `settle` names what does not exist.
+        RvmonError: the engine was asked for by name and cannot judge a requirement.
+    """
+    if settle not in ("now",):
+        raise UnknownNameError(f"no way to settle `{settle}`: there is now")
+    wanted = None if only is None else frozenset(only)
+    unknown = sorted((wanted or frozenset()) - compiled.requirements.keys())
+    if unknown:
+        known = ", ".join(compiled.requirements)
+        raise UnknownNameError(f"no requirement `{unknown[0]}`: there are {known}")
+    chosen = [
+        requirement
+        for name, requirement in compiled.requirements.items()
+        if wanted is None or name in wanted
+    ]
+    for requirement in chosen:
+        requirement.machine(engine)
+    return Monitor(compiled, chosen, engine, None if sources is None else frozenset(sources))
