@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from rvmon.session import Spec
 from rvmon.spec.checked import TimeModel
@@ -64,11 +65,17 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
+def profile_of(options: argparse.Namespace) -> Profile:
+    """What the specs may hold."""
+    without: dict[str, Any] = dict.fromkeys(options.without, False)
+    whole = Profile(time=MODELS.get(options.time or ""), depth=options.depth)
+    return replace(whole, **without)
+
+
 def main(argv: list[str]) -> int:
     """Run the campaign and print its figures."""
     options = parse(argv)
-    profile = Profile(time=MODELS.get(options.time or ""), depth=options.depth)
-    profile = replace(profile, **dict.fromkeys(options.without, False))
+    profile = profile_of(options)
     traces = TraceProfile(unknowns=not options.known)
     seeds = [f"{options.seed}/{number}" for number in range(options.pairs)]
     size = 20 if options.fail_fast else 250
