@@ -149,7 +149,7 @@ def _on_purpose(expression: Expression) -> bool:
 
 def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
     for clause in _clauses(item, AtEndClause):
-        if clause.policy.text not in EndPolicy:
+        if clause.policy.text not in EndPolicy.__members__.values():
             raise Refusal(rules.unknown_policy(clause.policy.span, [str(p) for p in EndPolicy]))
         return EndPolicy(clause.policy.text)
     return EndPolicy.DEFAULT
