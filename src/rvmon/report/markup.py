@@ -1,0 +1,98 @@
+"""Build HTML and SVG as a tree, so that no text of a spec or a trace can become markup."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable, Mapping
+from importlib import resources
+
+Child = ET.Element | str | None
+
+_UNSAFE_IN_SCRIPT = {"<": r"\u003c", ">": r"\u003e", "&": r"\u0026"}
+
+
+def e(tag: str, attributes: Mapping[str, object] | None = None, *children: Child) -> ET.Element:
+    """An element with its children: elements, texts (escaped when written), `None` for nothing.
+
+    Args:
+        tag: of HTML or SVG.
+        attributes: by name; `None` and `False` leave one out, `True` writes it without value.
+        children: in order.
+
+    >>> to_html(e("p", {"class": "x"}, "a < b ", e("code", None, "c")))
+    '<p class="x">a &lt; b <code>c</code></p>'
+    """
+    element = ET.Element(tag)
+    for name, value in (attributes or {}).items():
+        if value is not None and value is not False:
+            element.set(name, "" if value is True else str(value))
+    extend(element, children)
+    return element
+
+
+def extend(element: ET.Element, children: Iterable[Child]) -> None:
+    """Append children to an element."""
+    for child in children:
+        if child is None:
+            continue
+        if isinstance(child, ET.Element):
+            element.append(child)
+        elif len(element):
+            element[-1].tail = (element[-1].tail or "") + child
+        else:
+            element.text = (element.text or "") + child
+
+
+def to_html(element: ET.Element) -> str:
+    """The tree as HTML text."""
+    return ET.tostring(element, encoding="unicode", method="html")
+
+
+def page(
+    title: str, body: Iterable[Child], *, styles: Iterable[str], scripts: Iterable[str]
+) -> str:
+    """A whole page that needs nothing but itself.
+
+    Args:
+        title: of the window.
+        body: its content.
+        styles: names of style sheets of this package, put into the page.
+        scripts: names of its scripts, put at the page's end.
+    """
+    head = e(
+        "head",
+        None,
+        e("meta", {"charset": "utf-8"}),
+        e("meta", {"name": "viewport", "content": "width=device-width, initial-scale=1"}),
+        e("meta", {"name": "color-scheme", "content": "light dark"}),
+        e("title", None, title),
+        *(e("style", None, asset(name)) for name in styles),
+    )
+    content = e("body", None, *body, *(e("script", None, asset(name)) for name in scripts))
+    return "<!DOCTYPE html>\n" + to_html(e("html", {"lang": "en"}, head, content)) + "\n"
+
+
+def data(identifier: str, value: object) -> ET.Element:
+    """Data for a script, as JSON that cannot end the element it stands in."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    for character, escape in _UNSAFE_IN_SCRIPT.items():
+        text = text.replace(character, escape)
+    return e("script", {"type": "application/json", "id": identifier}, text)
+
+
+def asset(name: str) -> str:
+    """The text of a file beside this module's `assets`."""
+    return (resources.files("rvmon.report") / "assets" / name).read_text(encoding="utf-8").strip()
+
+
+def with_code(sentence: str) -> list[Child]:
+    """A sentence whose `quoted` words become code.
+
+    >>> to_html(e("p", None, *with_code("saw `x` twice")))
+    '<p>saw <code>x</code> twice</p>'
+    """
+    parts = sentence.split("`")
+    if len(parts) % 2 == 0:  # an odd number of quotes quotes nothing
+        return [sentence]
+    return [e("code", None, part) if index % 2 else part for index, part in enumerate(parts)]

@@ -1,0 +1,39 @@
+"""A flat scene over time, for a page to animate: data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """What a body looks like: a convex polygon in its own coordinates, metres.
+
+    Attributes:
+        body: that it belongs to; one that is not among the scene's bodies never moves.
+        corners: one for a disc, two for a bar, more for a polygon.
+        radius: rounds the corners.
+        role: what the page's style sheet colours it as.
+    """
+
+    body: str
+    corners: tuple[tuple[float, float], ...]
+    radius: float
+    role: str
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Bodies in a vertical plane; between two frames far apart they stand still.
+
+    Attributes:
+        bodies: in the order of each frame.
+        outlines: drawn in this order.
+        frames: `(ticks, (x, z, angle) of each body, flattened)`, metres and radians.
+        view: what is shown: left, bottom, right, top in metres.
+    """
+
+    bodies: tuple[str, ...]
+    outlines: tuple[Outline, ...]
+    frames: tuple[tuple[int, tuple[float, ...]], ...]
+    view: tuple[float, float, float, float]

@@ -1,0 +1,153 @@
+"""The timeline of one attempt as HTML: obligation, axis, and a track per signal concerned."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rvmon.report.markup import Child, e
+from rvmon.report.style import MARKS
+from rvmon.report.track_rows import place_of, track_row
+from rvmon.report.tracks import Track
+from rvmon.report.view import View, moment, round_instants
+from rvmon.verdict.attempt import Attempt
+
+CLOSEST = 0.2
+"""Labels closer than this share of the width stand in different rows: enough on a phone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ghost:
+    """The nearest passing attempt, laid over the failed one.
+
+    Attributes:
+        name: of its run.
+        number: of the attempt.
+        tracks: of its run, shifted in time so that both attempts are triggered together.
+        end: of its run, shifted likewise.
+        decided: shifted likewise.
+    """
+
+    name: str
+    number: int
+    tracks: tuple[Track, ...]
+    end: int
+    decided: int | None
+
+
+def timeline(
+    attempt: Attempt | None,
+    tracks: Sequence[Track],
+    view: View,
+    *,
+    origin: int,
+    end: int,
+    ghost: Ghost | None = None,
+) -> ET.Element:
+    """Draw a timeline.
+
+    Args:
+        attempt: the one that it is about; `None` if there was none.
+        tracks: of the signals and events concerned.
+        view: what is shown.
+        origin: the instant from which people count seconds, ticks.
+        end: the last instant of the run, ticks.
+        ghost: drawn behind the tracks, dashed.
+    """
+    ghosts = {track.name: track for track in ghost.tracks} if ghost else {}
+    blamed = attempt.blame.at if attempt is not None and attempt.blame is not None else ()
+    rows: list[Child] = []
+    if attempt is not None:
+        rows.append(_obligation(attempt, view, origin))
+    for track in tracks:
+        other = ghosts.get(track.name)
+        rows.append(track_row(track, view, end, blamed, other, ghost.end if ghost else end))
+    rows.append(_axis(view, origin))
+    guides = [] if attempt is None else _guides(attempt, view)
+    overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
+    return e("div", {"class": "timeline"}, *rows, overlay)
+
+
+def _obligation(attempt: Attempt, view: View, origin: int) -> ET.Element:
+    """The window in which something was owed, between labels of its instants."""
+    first, last = _window(attempt)
+    left = view.fraction(first)
+    right = 1.0 if last is None else min(view.fraction(last), 1.0)
+    kind = "window unbounded" if last is None else "window"
+    bar = e("div", {"class": kind, "style": place_of(left, max(right - left, 0.0))})
+    labels = _labels(attempt, view, origin)
+    rows = 1 + max(row for _, row in labels)
+    height = {"style": f"height:{rows * 1.35 + 0.9:g}rem"}
+    plot = e("div", {"class": "plot owed", **height}, *(label for label, _ in labels), bar)
+    return e("div", {"class": "row"}, e("div", {"class": "name"}, "owed in"), plot)
+
+
+def _window(attempt: Attempt) -> tuple[int, int | None]:
+    if attempt.blame is not None:
+        return attempt.blame.window
+    return attempt.triggered, attempt.deadline
+
+
+def _labels(attempt: Attempt, view: View, origin: int) -> list[tuple[ET.Element, int]]:
+    """Labels of trigger, deadline and decision, each in the first row in which it has room."""
+    wanted = [(attempt.triggered, "trigger", "▼ trigger", "")]
+    deadline = _window(attempt)[1]
+    if deadline is not None and deadline != attempt.triggered:
+        wanted.append((deadline, "deadline", "▏deadline", ""))
+    if attempt.decided is not None:
+        mark = MARKS[attempt.verdict]
+        verdict = f"{mark.sign} {mark.word}"
+        wanted.append((attempt.decided, "decision", verdict, attempt.verdict.value))
+    taken: list[list[float]] = []
+    labels = []
+    for instant, kind, text, verdict in wanted:
+        place = min(max(view.fraction(instant), 0.0), 1.0)
+        row = next(
+            (i for i, used in enumerate(taken) if all(abs(place - x) >= CLOSEST for x in used)),
+            len(taken),
+        )
+        if row == len(taken):
+            taken.append([])
+        taken[row].append(place)
+        side = " to-left" if place > 1 - CLOSEST else ""
+        attributes = {
+            "class": f"label {kind}{side}",
+            "data-verdict": verdict or None,
+            "style": f"left:{place:.2%};top:{row * 1.35:g}rem",
+        }
+        when = e("span", {"class": "when"}, " " + moment(instant, origin))
+        labels.append((e("div", attributes, text, when), row))
+    return labels
+
+
+def _guides(attempt: Attempt, view: View) -> list[ET.Element]:
+    """Lines through all tracks at trigger, deadline and decision."""
+    wanted = [("trigger", attempt.triggered), ("deadline", _window(attempt)[1])]
+    wanted.append(("decision", attempt.decided))
+    return [
+        e(
+            "div",
+            {
+                "class": f"guide {kind}",
+                "data-verdict": attempt.verdict.value,
+                "style": f"left:{view.fraction(instant):.2%}",
+            },
+        )
+        for kind, instant in wanted
+        if instant is not None and view.start <= instant <= view.end
+    ]
+
+
+def _axis(view: View, origin: int) -> ET.Element:
+    ticks = [
+        e(
+            "span",
+            {"class": "tick", "style": f"left:{view.fraction(instant):.2%}"},
+            moment(instant, origin).removesuffix(" s"),
+        )
+        for instant in round_instants(view, origin)
+        if 0.01 <= view.fraction(instant) <= 0.99
+    ]
+    axis = e("div", {"class": "plot axis"}, *ticks)
+    return e("div", {"class": "row"}, e("div", {"class": "name unit"}, "time, s"), axis)

@@ -1,0 +1,143 @@
+"""The rows of a timeline: one signal or event each, as HTML."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+
+from rvmon.report.marks import Stretch, occurrences, polylines, readable, stretches
+from rvmon.report.markup import e
+from rvmon.report.tracks import Track, TrackKind
+from rvmon.report.view import View
+
+WIDTH, HEIGHT = 1000, 100
+"""Units of a number's drawing, which is stretched to the width of the page."""
+
+EDGE = 0.12
+"""Of a number's range, left free above and below."""
+
+
+def track_row(
+    track: Track,
+    view: View,
+    end: int,
+    blamed: Sequence[int],
+    ghost: Track | None,
+    ghost_end: int,
+) -> ET.Element:
+    """Draw one track.
+
+    Args:
+        track: what to draw.
+        view: the stretch of time that is shown.
+        end: the last instant of the run, ticks.
+        blamed: instants of the offending samples.
+        ghost: the same signal in another run, drawn behind, dashed.
+        ghost_end: the last instant of that run.
+    """
+    plot = e("div", {"class": f"plot {track.kind.value}"})
+    if track.absent:
+        plot.append(_unknown(0.0, 1.0))
+    elif track.kind is TrackKind.EVENT:
+        _add_event(plot, track, view, blamed, ghost)
+    elif track.kind is TrackKind.NUMBER:
+        _add_number(plot, track, view, end, blamed, ghost, ghost_end)
+    else:
+        _add_stretches(plot, stretches(track, view, end))
+        if ghost is not None:
+            _add_stretches(plot, stretches(ghost, view, ghost_end), " ghost")
+    name = e("div", {"class": "name"}, e("code", None, track.name))
+    if track.kind is not TrackKind.EVENT:
+        name.append(e("output", {"data-track": track.name}))
+    return e("div", {"class": "row"}, name, plot)
+
+
+def _add_event(
+    plot: ET.Element, track: Track, view: View, blamed: Sequence[int], ghost: Track | None
+) -> None:
+    if ghost is not None:
+        for place, _ in occurrences(ghost, view):
+            plot.append(e("span", {"class": "mark ghost", "style": f"left:{place:.2%}"}, "◇"))
+    offending = {round(view.fraction(t), 9) for t in blamed}
+    for place, value in occurrences(track, view):
+        sign = "?" if value is None else "◆"
+        kind = "mark offending" if round(place, 9) in offending else "mark"
+        plot.append(e("span", {"class": kind, "style": f"left:{place:.2%}"}, sign))
+
+
+def _add_stretches(plot: ET.Element, pieces: Sequence[Stretch], extra: str = "") -> None:
+    for piece in readable(pieces):
+        width = piece.right - piece.left
+        place = {"style": place_of(piece.left, width)}
+        if piece.busy:
+            plot.append(e("div", {"class": f"busy{extra}", "title": "changes too fast", **place}))
+        elif piece.value is None:
+            if not extra:
+                plot.append(_unknown(piece.left, width))
+        elif piece.value is True:
+            plot.append(e("div", {"class": f"on{extra}", **place}))
+        elif isinstance(piece.value, str):
+            plot.append(e("div", {"class": f"state{extra}", **place}, piece.value))
+
+
+def _add_number(
+    plot: ET.Element,
+    track: Track,
+    view: View,
+    end: int,
+    blamed: Sequence[int],
+    ghost: Track | None,
+    ghost_end: int,
+) -> None:
+    pieces = stretches(track, view, end)
+    others = [] if ghost is None else stretches(ghost, view, ghost_end)
+    lowest, highest = _range([*pieces, *others], track)
+    drawing = e(
+        "svg",
+        {"viewBox": f"0 0 {WIDTH} {HEIGHT}", "preserveAspectRatio": "none", "aria-hidden": "true"},
+    )
+    for kind, some in (("ghost", others), ("line", pieces)):
+        for points in polylines(some, lowest, highest):
+            drawing.append(e("polyline", {"class": kind, "points": _points(points)}))
+    plot.append(drawing)
+    for piece in pieces:
+        if piece.value is None:
+            plot.append(_unknown(piece.left, piece.right - piece.left))
+    for threshold in track.thresholds:
+        top = (highest - threshold.value) / (highest - lowest)
+        text = f"{threshold.op} {threshold.value:g}{_unit(track)}"
+        line = {"class": "threshold", "style": f"top:{top:.2%}"}
+        plot.append(e("div", line, e("span", None, text)))
+    for instant in blamed:
+        value = track.value_at(instant)
+        if isinstance(value, int | float) and view.start <= instant <= view.end:
+            x, y = view.fraction(instant), (highest - value) / (highest - lowest)
+            plot.append(e("span", {"class": "sample", "style": f"left:{x:.2%};top:{y:.2%}"}, "✗"))
+
+
+def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
+    """What a number's track spans: all finite values in sight, and the thresholds."""
+    values = [float(one.value) for one in pieces if isinstance(one.value, int | float)]
+    values = [value for value in values if math.isfinite(value)]
+    values += [threshold.value for threshold in track.thresholds]
+    lowest, highest = min(values, default=0.0), max(values, default=1.0)
+    edge = (highest - lowest) * EDGE or abs(highest) * EDGE or 1.0
+    return lowest - edge, highest + edge
+
+
+def _points(points: Sequence[tuple[float, float]]) -> str:
+    return " ".join(f"{x * WIDTH:.4g},{y * HEIGHT:.3g}" for x, y in points)
+
+
+def place_of(left: float, width: float) -> str:
+    """Position of something within a track, from fractions of its width."""
+    return f"left:{left:.3%};width:{width:.3%}"
+
+
+def _unknown(left: float, width: float) -> ET.Element:
+    return e("div", {"class": "unknown", "title": "unknown", "style": place_of(left, width)})
+
+
+def _unit(track: Track) -> str:
+    return f" {track.unit}" if track.unit else ""

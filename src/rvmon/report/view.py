@@ -1,0 +1,91 @@
+"""The stretch of time that a timeline shows around an attempt."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+MARGIN = 0.2
+"""Of the attempt's length, shown on either side."""
+
+SMALLEST_MARGIN = TICKS_PER_SECOND
+"""For attempts that are decided at once; less if the run is short."""
+
+STEPS = (1, 2, 5)
+
+FINE = 1_000_000
+"""Ticks below which every one of them is shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """The stretch `[start, end]` in ticks, `start < end`."""
+
+    start: int
+    end: int
+
+    def fraction(self, instant: int) -> float:
+        """Where an instant lies: 0 at the start, 1 at the end."""
+        return (instant - self.start) / (self.end - self.start)
+
+
+def view_of(attempt: Attempt, report: Report) -> View:
+    """From before the trigger to behind the decision and the deadline."""
+    instants = [attempt.triggered]
+    if attempt.decided is not None:
+        instants.append(attempt.decided)
+    elif report.end is not None:
+        instants.append(report.end)
+    if attempt.blame is not None:
+        instants.extend(bound for bound in attempt.blame.window if bound is not None)
+        instants.extend(attempt.blame.at)
+    if attempt.deadline is not None:
+        instants.append(attempt.deadline)
+    first, last = min(instants), max(instants)
+    margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 1)
+    return View(first - margin, last + margin)
+
+
+def whole_run(report: Report, first: int) -> View:
+    """All of a run that starts with a sample at `first`."""
+    last = first if report.end is None else report.end
+    return View(first, max(last, first + 1))
+
+
+def round_instants(view: View, origin: int, count: int = 6) -> list[int]:
+    """Round instants within a view, about `count` of them, for the labels of an axis.
+
+    Args:
+        view: what is shown.
+        origin: the instant from which people count.
+        count: how many are wanted.
+
+    >>> second = 1_000_000_000
+    >>> [t // second for t in round_instants(View(0, 10 * second), 0)]
+    [0, 2, 4, 6, 8, 10]
+    """
+    rough = max((view.end - view.start) / count, 1)
+    power = 10 ** math.floor(math.log10(rough))
+    step = next((power * step for step in STEPS if power * step >= rough), 10 * power)
+    first = -((origin - view.start) // step) * step + origin
+    return list(range(first, view.end + 1, step))
+
+
+def moment(instant: int, origin: int) -> str:
+    """An instant for people: seconds since the origin, to the microsecond if that is fine enough.
+
+    A missed deadline is decided one tick behind it; that tick is not shown.
+
+    >>> moment(3_000_000_001, 0), moment(17, 5)
+    ('3 s', '12 ns')
+    """
+    since = instant - origin
+    return format_ticks(since if abs(since) < FINE else round(since, -3))
+
+
+def _length(report: Report) -> int:
+    return 0 if report.end is None else max(report.end - report.origin, 0)
