@@ -33,6 +33,7 @@ STATES = (
 
 END = "end"
 HUMAN_SIGNALS = "human_signals"
+RESET_MOTIONS = (("zero_pose", 0.2), ("start_pose", 0.8))
 HANDOVER_POINT = (0.20, 0.22)
 GRIP_ABOVE_CENTRE = 0.02
 APPROACH_HEIGHTS = (0.18, 0.06, 0.0)
@@ -100,9 +101,9 @@ class HandoverRobot:
         if not self.behaviour.resubscribes:
             self.node.subscribe(HUMAN_SIGNALS)
         self.gripper.open()
-        for pose in ("zero_pose", "start_pose"):
+        for pose, share in RESET_MOTIONS:
             shoulder, elbow, wrist = self.node.params[pose]
-            path = self.arm.interpolate((shoulder, elbow, wrist), self.behaviour.reset_s / 2)
+            path = self.arm.interpolate((shoulder, elbow, wrist), self.behaviour.reset_s * share)
             yield from self.arm.follow(path)
         return "receive_activation"
 

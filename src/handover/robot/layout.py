@@ -3,32 +3,13 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass
 from types import FunctionType
 
+from handover.robot.code_block import CodeBlock
 from handover.robot.handover import STATES, HandoverRobot
 
 COMMON = "common"
 """The group of the code that several states share, or none."""
-
-
-@dataclass(frozen=True, slots=True)
-class CodeBlock:
-    """One function of the robot's code.
-
-    Attributes:
-        state: the state that it belongs to, or `COMMON`.
-        function: its name.
-        path: of the source file.
-        first: its first line, that of `def`.
-        last: its last line.
-    """
-
-    state: str
-    function: str
-    path: str
-    first: int
-    last: int
 
 
 def code_blocks() -> tuple[CodeBlock, ...]:

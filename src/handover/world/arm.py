@@ -5,30 +5,13 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Generator
-from dataclasses import dataclass
 from itertools import pairwise
 
 from handover.world import parameters as p
 from handover.world.kinematics import Joints, grip_point, joints_for
 from handover.world.motion import min_jerk
 from handover.world.scene import Scene
-
-CONTROL_S = p.CONTROL_STEPS * p.STEP_NS / p.NS
-
-
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """A path in joint space, at rest at both ends.
-
-    Attributes:
-        start: joint angles, rad.
-        goal: joint angles, rad.
-        duration: seconds.
-    """
-
-    start: Joints
-    goal: Joints
-    duration: float
+from handover.world.trajectory import Trajectory
 
 
 class Arm:
@@ -80,7 +63,7 @@ class Arm:
         wanted = self._goal
         path = self._path
         if path is not None:
-            self._path_s += CONTROL_S
+            self._path_s += p.CONTROL_S
             share = min_jerk(self._path_s / path.duration)
             a, b = path.start, path.goal
             wanted = (
@@ -94,7 +77,7 @@ class Arm:
             zip(self._scene.joint_motors, wanted, self.joints(), strict=True)
         ):
             error = want - have
-            rate = -error / CONTROL_S if abs(error) > 1e-6 else 0.0
+            rate = -error / p.CONTROL_S if abs(error) > 1e-6 else 0.0
             if rate != self._rates[index]:
                 self._rates[index] = rate
                 motor.rate = rate

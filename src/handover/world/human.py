@@ -4,74 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import pymunk
 
 from handover.world import parameters as p
-from handover.world.contacts import contact_force
-from handover.world.motion import PEAK_OVER_MEAN, Quintic, evaluate, quintic, slope
-from handover.world.scene import Scene, seen_piece
+from handover.world.limb import Limb
+from handover.world.measures import contact_force, seen_piece
+from handover.world.scene import Scene
 
-CONTROL_S = p.CONTROL_STEPS * p.STEP_NS / p.NS
 Point = tuple[float, float]
-
-
-@dataclass(slots=True)
-class _Reach:
-    """A motion under way or still to begin, along one quintic path for each coordinate."""
-
-    goal: tuple[float, ...]
-    duration: float
-    paths: tuple[Quintic, ...]
-    elapsed: float = 0.0
-
-
-class _Limb:
-    """A kinematic body that is moved on minimum-jerk paths; it may be redirected in flight."""
-
-    def __init__(self, body: pymunk.Body, *, turns: bool) -> None:
-        self.body = body
-        self.reach: _Reach | None = None
-        self._turns = turns
-
-    def start(self, goal: tuple[float, ...]) -> float:
-        """Begin to move to a goal from where the limb is; returns the seconds that it takes."""
-        here = self._place()
-        speed = self._speed()
-        duration = max(
-            p.SHORTEST_REACH_S, PEAK_OVER_MEAN * math.dist(here[:2], goal[:2]) / p.REACH_SPEED
-        )
-        paths = tuple(quintic(a, v, b, duration) for a, v, b in zip(here, speed, goal, strict=True))
-        self.reach = _Reach(goal, duration, paths)
-        return duration
-
-    def control(self) -> None:
-        """Set the velocity so that the next control step ends on the path."""
-        reach = self.reach
-        if reach is None:
-            return
-        if reach.elapsed >= reach.duration:
-            self.reach = None
-            self.body.velocity = (0.0, 0.0)
-            self.body.angular_velocity = 0.0
-            return
-        reach.elapsed += CONTROL_S
-        over = reach.elapsed >= reach.duration
-        wanted = reach.goal if over else tuple(evaluate(c, reach.elapsed) for c in reach.paths)
-        rates = [(b - a) / CONTROL_S for a, b in zip(self._place(), wanted, strict=True)]
-        self.body.velocity = (rates[0], rates[1])
-        if self._turns:
-            self.body.angular_velocity = rates[2]
-
-    def _place(self) -> tuple[float, ...]:
-        x, z = self.body.position
-        return (x, z, self.body.angle) if self._turns else (x, z)
-
-    def _speed(self) -> tuple[float, ...]:
-        if self.reach is None:
-            return (0.0, 0.0, 0.0) if self._turns else (0.0, 0.0)
-        return tuple(slope(c, self.reach.elapsed) for c in self.reach.paths)
 
 
 class Human:
@@ -94,8 +35,8 @@ class Human:
         self._scene = scene
         self._wake = wake
         self._after = after
-        self._head = _Limb(scene.head, turns=True)
-        self._arm = _Limb(scene.hand_target, turns=False)
+        self._head = Limb(scene.head, turns=True)
+        self._arm = Limb(scene.hand_target, turns=False)
         self._gaze: tuple[float, float, float] | None = None
         self._place: Point | None = None
         self._near = False
@@ -142,8 +83,8 @@ class Human:
 
     def is_moving(self) -> tuple[bool, bool]:
         """Whether head and hand are moving, so that trackers give no reading."""
-        hand = self._arm.reach is not None or self._scene.hand.velocity.length > p.STILL_SPEED
-        return self._head.reach is not None, hand
+        hand = self._arm.is_moving() or self._scene.hand.velocity.length > p.STILL_SPEED
+        return self._head.is_moving(), hand
 
     def grasp_force(self) -> float:
         """N that the closed hand exchanges with the piece through its grasp."""

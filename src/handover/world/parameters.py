@@ -27,6 +27,8 @@ ITERATIONS: Final = 20
 CONTROL_STEPS: Final = 4
 """Physics steps between two updates of motors and of the human's path: 50 Hz."""
 
+CONTROL_S: Final = CONTROL_STEPS * STEP_NS / NS
+
 WATCH_STEPS: Final = 20
 """Physics steps between two publications of distance and speed while something moves: 10 Hz."""
 
@@ -163,7 +165,7 @@ STARTUP_LOSS: Final = 0.07
 start, so that no signal arrives. Fitted: it is the paper's 93 of 100 closed grippers in
 constrained tests."""
 
-HUMAN_START_S: Final = (1.5, 4.0)
+HUMAN_START_S: Final = (3.0, 5.5)
 """Uniform: the human's process comes up after the robot's; with its first signal 2 s later the
 gripper closes when the paper's robot closes it."""
 

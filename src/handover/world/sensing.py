@@ -7,9 +7,9 @@ import random
 from collections import deque
 
 from handover.world import parameters as p
-from handover.world.contacts import contact_force
 from handover.world.faults import SensorFaults
 from handover.world.human import Human
+from handover.world.measures import contact_force, hand_offset
 from handover.world.reading import Reading
 from handover.world.scene import Scene
 
@@ -112,25 +112,3 @@ class Sensors:
     def _noise(self) -> float:
         sd = self._faults.noise_m
         return self._rng.gauss(0.0, sd) if sd else 0.0
-
-
-def hand_offset(scene: Scene) -> tuple[float, float]:
-    """Metres between the mass centres of hand and gripper on each axis, without sign."""
-    x, z = gripper_centre(scene)
-    hand = scene.hand.position
-    return abs(hand.x - x), abs(hand.y - z)
-
-
-def tool_speed(scene: Scene) -> float:
-    """Metres per second of the point between the pads."""
-    between_pads = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
-    return float(scene.links[2].velocity_at_local_point(between_pads).length)
-
-
-def gripper_centre(scene: Scene) -> tuple[float, float]:
-    """The mass centre of palm and fingers, (x, z) in metres."""
-    parts = (scene.links[2], *scene.fingers)
-    mass = sum(part.mass for part in parts)
-    x = sum(part.mass * part.position.x for part in parts) / mass
-    z = sum(part.mass * part.position.y for part in parts) / mass
-    return x, z

@@ -6,16 +6,18 @@ import random
 from collections.abc import Callable
 
 from handover.world import parameters as p
-from handover.world import scene as scenes
 from handover.world.arm import Arm, Gripper
+from handover.world.building import build
 from handover.world.bus import Bus, Value
 from handover.world.faults import SensorFaults
+from handover.world.film import Film
 from handover.world.human import Human
+from handover.world.measures import hand_offset, seen_piece, tool_speed
 from handover.world.poses import Poses
 from handover.world.reading import Reading
 from handover.world.recorder import Recorder, SampleValue
 from handover.world.schedule import Schedule
-from handover.world.sensing import Sensors, hand_offset, tool_speed
+from handover.world.sensing import Sensors
 
 PERFECT = SensorFaults()
 
@@ -52,7 +54,7 @@ class World:
         self.schedule = Schedule()
         self.bus = Bus(self.schedule)
         self.recorder = Recorder(observer)
-        self.scene = scenes.build(p.ZERO_POSE)
+        self.scene = build(p.ZERO_POSE)
         self.arm = Arm(self.scene, rng, self._wake)
         self.gripper = Gripper(self.scene, self._wake)
         self.human = Human(self.scene, self._wake, self._after)
@@ -62,7 +64,7 @@ class World:
         self._planned_until = 0
         self._at_rest = False
         self._jump = jump
-        self._frames: list[tuple[int, tuple[float, ...]]] | None = [] if record_poses else None
+        self._film = Film(self.scene) if record_poses else None
         self.bus.tap(self._record)
         self._wake(0.0)
         self._watch()
@@ -90,7 +92,7 @@ class World:
 
     def piece(self) -> tuple[float, float]:
         """Where the robot's camera sees the piece, (x, z) in metres."""
-        return scenes.seen_piece(self.scene)
+        return seen_piece(self.scene)
 
     @property
     def stepped_s(self) -> float:
@@ -99,9 +101,7 @@ class World:
 
     def poses(self) -> Poses | None:
         """The recorded frames, if they were asked for."""
-        if self._frames is None:
-            return None
-        return Poses(scenes.BODIES, scenes.outlines(), tuple(self._frames))
+        return None if self._film is None else self._film.poses()
 
     def _advance(self, t_ns: int) -> None:
         """Bring the physics to the last step at or before an instant."""
@@ -146,17 +146,8 @@ class World:
         self._measure_hand(t_ns)
         speed = 0.0 if self._at_rest else round(tool_speed(self.scene), 3)
         self.recorder.signal(t_ns, "tool_speed", speed)
-        if self._frames is not None:
-            frame = [
-                value
-                for body in scenes.bodies(self.scene)
-                for value in (
-                    round(body.position.x, 4),
-                    round(body.position.y, 4),
-                    round(body.angle, 4),
-                )
-            ]
-            self._frames.append((t_ns, tuple(frame)))
+        if self._film is not None:
+            self._film.take(t_ns)
 
     def _measure_hand(self, t_ns: int) -> None:
         distance = self.sensors.distance()

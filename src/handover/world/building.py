@@ -1,0 +1,178 @@
+"""Builds the physical scene: arm, gripper, piece, table and human."""
+
+from __future__ import annotations
+
+import math
+
+import pymunk
+
+from handover.world import parameters as p
+from handover.world.kinematics import Joints
+from handover.world.scene import Scene
+
+_SCENERY = 1
+_PIECE = 2
+_GRIPPER = 4
+_HAND = 8
+_FINGER_X = p.PALM_LENGTH / 2
+_FINGER_OFFSET = (p.PIECE_SIZE[0] + p.FINGER_THICKNESS) / 2
+
+
+def build(pose: Joints) -> Scene:
+    """Make the scene with the arm in a pose, the piece on the table and the human at rest.
+
+    Collisions: the piece with everything; gripper and hand also with table and floor. Hand and
+    gripper pass each other, since the plane is a projection and the hand may be in front; how
+    close they come is what requirement 5 measures. The arm's links touch nothing.
+    """
+    space = pymunk.Space()
+    space.gravity = (0.0, -p.GRAVITY)
+    space.iterations = p.ITERATIONS
+    space.collision_slop = 0.0005
+    _add_scenery(space)
+    links, joint_motors = _add_arm(space, pose)
+    fingers, finger_motors = _add_fingers(space, links[2])
+    piece = _add_piece(space)
+    hand, hand_target, hand_pull = _add_hand(space)
+    head = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    head.position = p.HEAD_REST
+    head.angle = p.HEAD_REST_ANGLE
+    space.add(head)
+    return Scene(
+        space,
+        links,
+        joint_motors,
+        fingers,
+        finger_motors,
+        piece,
+        hand,
+        hand_target,
+        hand_pull,
+        head,
+    )
+
+
+def _filter(category: int, *collides_with: int) -> pymunk.ShapeFilter:
+    return pymunk.ShapeFilter(categories=category, mask=sum(collides_with))
+
+
+def table_corners() -> tuple[tuple[float, float], ...]:
+    """The table's outline in the scene, metres."""
+    left, right = p.TABLE
+    return (
+        (left, -p.TABLE_THICKNESS),
+        (right, -p.TABLE_THICKNESS),
+        (right, 0.0),
+        (left, 0.0),
+    )
+
+
+def palm_corners() -> tuple[tuple[float, float], ...]:
+    """The palm's outline around its centre, metres."""
+    length, width = p.PALM_LENGTH / 2, p.PALM_WIDTH / 2
+    return ((-length, -width), (length, -width), (length, width), (-length, width))
+
+
+def _add_scenery(space: pymunk.Space) -> None:
+    table = pymunk.Poly(space.static_body, table_corners())
+    # A thick segment, so that nothing falls through within one step.
+    floor = pymunk.Segment(space.static_body, (-2.0, p.FLOOR_Z - 0.1), (3.0, p.FLOOR_Z - 0.1), 0.1)
+    for shape in (table, floor):
+        shape.friction = p.TABLE_FRICTION
+        shape.filter = _filter(_SCENERY, _PIECE, _GRIPPER, _HAND)
+    space.add(table, floor)
+
+
+def _add_arm(
+    space: pymunk.Space, pose: Joints
+) -> tuple[
+    tuple[pymunk.Body, pymunk.Body, pymunk.Body],
+    tuple[pymunk.SimpleMotor, pymunk.SimpleMotor, pymunk.SimpleMotor],
+]:
+    x, z = p.SHOULDER
+    angle = 0.0
+    before = space.static_body
+    links: list[pymunk.Body] = []
+    motors: list[pymunk.SimpleMotor] = []
+    sizes = ((p.UPPER_ARM, 0.06), (p.FOREARM, 0.05), (p.PALM_LENGTH, p.PALM_WIDTH))
+    for size, mass, joint in zip(sizes, p.LINK_MASSES, pose, strict=True):
+        length = size[0]
+        angle += joint
+        link = pymunk.Body(mass, pymunk.moment_for_box(mass, size))
+        link.angle = angle
+        link.position = (x + length / 2 * math.cos(angle), z + length / 2 * math.sin(angle))
+        motor = pymunk.SimpleMotor(before, link, 0.0)
+        motor.max_force = p.JOINT_TORQUE
+        space.add(link, _hinge(before, link, (x, z)), motor)
+        links.append(link)
+        motors.append(motor)
+        x, z = x + length * math.cos(angle), z + length * math.sin(angle)
+        before = link
+    palm = pymunk.Poly(links[2], palm_corners())
+    palm.friction = p.FRICTION
+    palm.filter = _filter(_GRIPPER, _SCENERY, _PIECE)
+    space.add(palm)
+    return (links[0], links[1], links[2]), (motors[0], motors[1], motors[2])
+
+
+def _hinge(a: pymunk.Body, b: pymunk.Body, at: tuple[float, float]) -> pymunk.PivotJoint:
+    hinge = pymunk.PivotJoint(a, b, at)
+    # The share of a position error that is left after one second, per pymunk: repair 30 % of it
+    # in each sixtieth of a second.
+    hinge.error_bias = 0.7**60
+    return hinge
+
+
+def _add_fingers(
+    space: pymunk.Space, palm: pymunk.Body
+) -> tuple[tuple[pymunk.Body, pymunk.Body], tuple[pymunk.SimpleMotor, pymunk.SimpleMotor]]:
+    fingers: list[pymunk.Body] = []
+    motors: list[pymunk.SimpleMotor] = []
+    length, width = p.FINGER_LENGTH / 2, p.FINGER_THICKNESS / 2
+    for side in (1, -1):
+        root = palm.local_to_world((_FINGER_X, _FINGER_OFFSET * side))
+        finger = pymunk.Body(p.FINGER_MASS, p.FINGER_MASS * p.FINGER_LENGTH**2 / 6)
+        finger.angle = palm.angle + side * p.FINGER_OPEN
+        finger.position = (
+            root.x + length * math.cos(finger.angle),
+            root.y + length * math.sin(finger.angle),
+        )
+        shape = pymunk.Poly(
+            finger, ((-length, -width), (length, -width), (length, width), (-length, width))
+        )
+        shape.friction = p.FRICTION
+        shape.filter = _filter(_GRIPPER, _SCENERY, _PIECE)
+        motor = pymunk.SimpleMotor(palm, finger, 0.0)
+        motor.max_force = p.FINGER_TORQUE
+        low, high = sorted((side * p.FINGER_OVERCLOSED, side * p.FINGER_OPEN))
+        limit = pymunk.RotaryLimitJoint(palm, finger, low, high)
+        space.add(finger, shape, _hinge(palm, finger, (root.x, root.y)), motor, limit)
+        fingers.append(finger)
+        motors.append(motor)
+    return (fingers[0], fingers[1]), (motors[0], motors[1])
+
+
+def _add_piece(space: pymunk.Space) -> pymunk.Body:
+    piece = pymunk.Body(p.PIECE_MASS, pymunk.moment_for_box(p.PIECE_MASS, p.PIECE_SIZE))
+    piece.position = (p.PIECE_X, p.PIECE_SIZE[1] / 2)
+    shape = pymunk.Poly.create_box(piece, p.PIECE_SIZE)
+    shape.friction = p.FRICTION
+    shape.filter = _filter(_PIECE, _SCENERY, _GRIPPER, _HAND)
+    space.add(piece, shape)
+    return piece
+
+
+def _add_hand(
+    space: pymunk.Space,
+) -> tuple[pymunk.Body, pymunk.Body, pymunk.PivotJoint]:
+    hand = pymunk.Body(p.HAND_MASS, math.inf)
+    hand.position = p.HAND_REST
+    shape = pymunk.Circle(hand, p.HAND_RADIUS)
+    shape.friction = p.FRICTION
+    shape.filter = _filter(_HAND, _SCENERY, _PIECE)
+    target = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    target.position = p.HAND_REST
+    pull = pymunk.PivotJoint(target, hand, (0.0, 0.0), (0.0, 0.0))
+    pull.max_force = p.HAND_FORCE
+    space.add(hand, shape, target, pull)
+    return hand, target, pull
