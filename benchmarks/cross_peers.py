@@ -21,6 +21,7 @@ from benchmarks.peers.contest import CONTESTS, Contest, ask_peer, random_questio
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.positions import Judge, Question, answers, ask_engine, ask_oracle
 
+from rvmon.errors import RvmonError
 from rvmon.testing.show import show
 
 JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
@@ -50,7 +51,11 @@ def campaign(
             continue
         tally.pairs += 1
         for name, judge in judges.items():
-            ours = answers(question, judge)
+            try:
+                ours = answers(question, judge)
+            except RvmonError as error:
+                tally.errors[f"{name} declines: {error}"[:100]] += 1
+                continue
             for own, other in zip(ours, theirs, strict=True):
                 tally.ticks[f"{_word(own)} / {_word(other)}"] += 1
             if _disagree(ours, theirs):
@@ -75,7 +80,7 @@ def _questions(contest: Contest, tally: Tally, seed: int) -> Iterator[Question]:
 def _differs(contest: Contest, peer: Peer, judge: Judge, question: Question) -> bool:
     try:
         return _disagree(answers(question, judge), ask_peer(contest, peer, question))
-    except (PeerError, ValueError):
+    except (PeerError, RvmonError, ValueError):
         return False
 
 
@@ -133,7 +138,7 @@ def main(argv: list[str]) -> int:
         print(f"  pairs {tally.pairs}, refused {sum(tally.refused.values())}")
         print("  ticks ours / theirs:", ", ".join(f"{k} {n}" for k, n in tally.ticks.most_common()))
         for text, count in tally.errors.most_common(5):
-            print(f"  peer's error, {count} times: {text}")
+            print(f"  no answer, {count} times: {text}")
         print(f"  disagreements {len(tally.disagreements)}")
         for text in tally.disagreements[: options.show]:
             print("\n" + text)

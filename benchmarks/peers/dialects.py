@@ -8,7 +8,7 @@ is one tick; a proposition is a column of the trace (`spelling`), `true` a colum
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from benchmarks.peers.core import (
     EVER,
@@ -55,8 +55,9 @@ class Dialect:
         unbounded: whether intervals from above 0 to infinity can be written.
         ever: whether operators without an interval can be written.
         point: whether `[0, 0]` can be written.
-        closed: whether `U` and `S` want their left operand also at the instant of the right one.
-        strict_now: whether `S` wants its left operand now even where the right one is true now.
+        split: whether `U` and `S` from above 0 are to be said by those from 0 on.
+        weakened: whether `U` and `S` from 0 on are to be said with the right operand or-ed to the
+            left, as the peer wants the left one also at the instant of the right one.
     """
 
     name: str
@@ -69,8 +70,8 @@ class Dialect:
     unbounded: bool = False
     ever: bool = True
     point: bool = True
-    closed: bool = False
-    strict_now: bool = False
+    split: bool = False
+    weakened: bool = False
 
 
 def translate(formula: Formula, dialect: Dialect) -> str:
@@ -149,9 +150,9 @@ def _binary(formula: Binary, dialect: Dialect) -> str:
     window = formula.interval or EVER
     if window == Interval(0, 0) and not dialect.point:
         return _say(right, dialect)
-    if window.low > 0 and (dialect.closed or _needs_split(window, dialect)):
+    if window.low > 0 and (dialect.split or _needs_split(window, dialect)):
         return _say(_opened(formula, window), dialect)
-    if dialect.closed or (dialect.strict_now and window.low == 0):
+    if dialect.weakened:
         # From 0 on, an earlier witness is in the window too: φ U ψ = (φ | ψ) U ψ.
         left = either(left, right)
     return template.format(_say(left, dialect), _say(right, dialect), bound=_bound(window, dialect))
@@ -198,6 +199,10 @@ def _record(name: str) -> str:
     return f"{{{name}}}"
 
 
+def _record_half(name: str) -> str:
+    return f"{{{name} > 0.5}}"
+
+
 def _record_compare(name: str, op: str, value: str) -> str:
     return f"{{{name} {op} {value}}}"
 
@@ -219,6 +224,10 @@ REELAY_DISCRETE = Dialect(
     _REELAY_SINCE,
     _reelay_bound,
     unbounded=True,
+    point=False,
+)
+REELAY_ROBUSTNESS = replace(
+    REELAY_DISCRETE, name="reelay, discrete robustness", proposition=_record_half, split=True
 )
 REELAY_DENSE = Dialect(
     "reelay, dense",
@@ -230,7 +239,11 @@ REELAY_DENSE = Dialect(
     _reelay_bound,
     unbounded=True,
     point=False,
-    strict_now=True,
+    split=True,
+    weakened=True,
+)
+REELAY_DENSE_ROBUSTNESS = replace(
+    REELAY_DENSE, name="reelay, dense robustness", proposition=_record_half
 )
 
 _STL_UNARY = {
@@ -260,7 +273,8 @@ RTAMT_DENSE = Dialect(
     _STL_WORDS,
     _STL_UNARY,
     _STL_BINARY,
-    closed=True,
+    split=True,
+    weakened=True,
 )
 
 MSTLO = Dialect(
@@ -272,5 +286,6 @@ MSTLO = Dialect(
     {BinaryOp.UNTIL: "(({0}) U{bound} ({1}))"},
     lambda low, high: f"[{low}, {high}]",
     ever=False,
-    closed=True,
+    split=True,
+    weakened=True,
 )

@@ -21,7 +21,8 @@ class Peer:
         time_model, _, semantics = kind.partition(" ")
         semantics = semantics or "boolean"
         ticks = len(next(iter(columns.values())))
-        rows = [{name: column[i] for name, column in columns.items()} for i in range(ticks)]
+        number = float if semantics == "robustness" else lambda value: value
+        rows = [{name: number(column[i]) for name, column in columns.items()} for i in range(ticks)]
         if time_model == "discrete":
             monitor = reelay.discrete_timed_monitor(
                 pattern=formula, semantics=semantics, condense=False
@@ -29,10 +30,10 @@ class Peer:
             return {"values": [_finite(monitor.update(row)["value"]) for row in rows]}
         monitor = reelay.dense_timed_monitor(pattern=formula, semantics=semantics)
         changes: list[dict[str, Any]] = []
-        for tick, row in [*enumerate(rows), (ticks, rows[-1])]:
-            before = rows[tick - 1] if tick else None
-            if row != before or tick == ticks:
-                changes += monitor.update({"time": tick, **row})
+        # Every tick, also without a change: of a longer stretch that starts and ends true, with
+        # false at its beginning, the Python package does not print the changes.
+        for tick, row in enumerate([*rows, rows[-1]]):
+            changes += monitor.update({"time": tick, **row})
         return {"values": _per_tick(changes, ticks)}
 
     def load(
@@ -98,10 +99,9 @@ def _index(rows: list[dict[str, Any]], row: dict[str, Any]) -> int:
 def _per_tick(changes: list[dict[str, Any]], ticks: int) -> list[Any]:
     """Spread changes (each holds until the next) over the ticks; `None` where nothing is known."""
     values: list[Any] = [None] * ticks
-    for change, following in zip(changes, [*changes[1:], None], strict=True):
-        end = ticks if following is None else following["time"]
+    for change in changes:
         for tick in range(ticks):
-            if change["time"] <= tick < end:
+            if tick >= change["time"]:
                 values[tick] = _finite(change["value"])
     return values
 
