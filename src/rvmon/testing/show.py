@@ -90,7 +90,7 @@ def show(formula: Formula) -> str:
     """A formula as text, with every bracket.
 
     >>> show(Unary(UnaryOp.EVENTUALLY, SignalAtom("p"), Interval(0, 3)))
-    'F[0 ns, 3 ns] p'
+    '(F[0 ns, 3 ns] p)'
     """
     match formula:
         case Constant(value=value):
@@ -109,7 +109,7 @@ def show(formula: Formula) -> str:
         case Unary(op=op, operand=operand) if op in _CALLED:
             return f"{op.value}({show(operand)})"
         case Unary(op=op, operand=operand, interval=interval):
-            return f"{op.value}{_window(interval)} {show(operand)}"
+            return f"({op.value}{_window(interval)} {show(operand)})"
         case Binary(op=op, left=left, right=right, interval=interval):
             return f"({show(left)} {op.value}{_window(interval)} {show(right)})"
         case _:

@@ -1,0 +1,43 @@
+"""What is shown of a case can be read back: a counterexample is one's own `.rv` file."""
+
+from __future__ import annotations
+
+import rvmon
+from rvmon.spec.checked import Requirement
+from rvmon.testing.compare import differences
+from rvmon.testing.differential import case_of, judge
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.oracle import evaluate
+from rvmon.testing.show import show_spec
+
+NEEDS_A_UNIT = {"RV022", "RV023"}
+"""Random specs compare `rate(x)` with plain numbers; the language wants them per second."""
+
+PER_ZERO = "RV025"
+
+
+def read_back(seed: int) -> bool:
+    """Whether the spec of a seed can be written in the language; if so, it has to mean the same."""
+    case = case_of(f"show {seed}", Profile(), TraceProfile())
+    try:
+        spec = rvmon.loads(show_spec(case.spec))
+    except rvmon.SpecError as error:
+        assert {found.code for found in error.diagnostics} <= NEEDS_A_UNIT | {PER_ZERO, "RV042"}
+        return False
+    wanted, got = case.spec.requirements, spec.checked.requirements
+    assert list(wanted) == list(got)
+    assert [summary(found) for found in wanted.values()] == [summary(r) for r in got.values()]
+    again = evaluate(spec, case.samples, end=case.end, advances=case.advances, names=case.names)
+    assert differences(judge(case), again) == []
+    return True
+
+
+def summary(found: Requirement) -> tuple[object, ...]:
+    return found.mode, found.at_end, found.pulse, found.captures, found.for_each
+
+
+def test_specs_are_read_back() -> None:
+    """A random spec, shown and loaded, has the same attempts and verdicts."""
+    read = sum(read_back(seed) for seed in range(120))
+    assert read > 100
