@@ -1,0 +1,24 @@
+"""The directed tests, played and judged by the specification of their robot."""
+
+from __future__ import annotations
+
+import pytest
+
+import rvmon
+from handover.checker import Checker, spec_path
+from handover.driver import run_test
+from handover.generator import AbstractTest
+from handover.generator.files import directed
+
+
+@pytest.mark.parametrize("test", directed(), ids=lambda test: test.name)
+def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
+    """Each directed test gives the verdicts that its file expects, for all five requirements."""
+    assert test.robot is not None
+    checker = Checker(rvmon.load(spec_path(test.robot)))
+    checker.begin()
+    run = run_test(test, observer=checker.observe)
+    report = checker.finish(run.end_ns)
+    verdicts = {name: str(verdict) for name, verdict in report.verdicts.items()}
+    assert verdicts == test.expected
+    assert (run.error is not None) == (test.mutation == "crashes")
