@@ -37,7 +37,8 @@ def _full(diagnostic: Diagnostic) -> str:
 
 
 def _heading(diagnostic: Diagnostic) -> str:
-    return f"{diagnostic.severity}[{diagnostic.code} {diagnostic.name}]: {_one_line(diagnostic.message)}"
+    kind = f"{diagnostic.severity}[{diagnostic.code} {diagnostic.name}]"
+    return f"{kind}: {_one_line(diagnostic.message)}"
 
 
 def _concise(diagnostic: Diagnostic) -> str:

@@ -8,6 +8,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.spec.checked import CheckedSpec, Event, Requirement, Signal, TimeModel, Type
 from rvmon.spec.cycles import find_cycles
 from rvmon.spec.expressions import Checker, Reported
+from rvmon.spec.items import TypeSyntax
 from rvmon.spec.macros import check_unused
 from rvmon.spec.reads import names_in, names_read
 from rvmon.spec.requirements import check_clauses, checked_requirement
@@ -17,7 +18,7 @@ from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import triggers as trigger_rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal
-from rvmon.spec.syntax import Expression, TypeSyntax
+from rvmon.spec.syntax import Expression
 from rvmon.spec.table import Table, close_unit
 from rvmon.spec.unit import Unit
 from rvmon.spec.units import UnknownUnitError, parse_unit

@@ -47,12 +47,15 @@ def compared(checker: Checker, node: Comparison, scope: Scope) -> Formula:
         Reported: a side is wrong.
     """
     left, right = _sides(checker, node, scope)
-    placed = (left, node.left.span), (right, node.right.span)
     if isinstance(left, Age):
-        return _age(left, node.op, placed[1], node.span)
+        limit = _comparable(right, node.right.span)
+        return _age(left, node.op, limit, node.span)
     if isinstance(right, Age):
-        return _age(right, _MIRRORED[node.op], placed[0], node.span)
-    return _quantities(node.op, *(_comparable(*side) for side in placed), node.span)
+        limit = _comparable(left, node.left.span)
+        return _age(right, _MIRRORED[node.op], limit, node.span)
+    first = _comparable(left, node.left.span)
+    second = _comparable(right, node.right.span)
+    return _quantities(node.op, first, second, node.span)
 
 
 def _sides(checker: Checker, node: Comparison, scope: Scope) -> list[Value]:
@@ -79,6 +82,8 @@ def _may_be_signal(checker: Checker, expression: Expression, scope: Scope) -> bo
 
 
 def _comparable(value: Value, span: Span) -> Placed:
+    if isinstance(value, Age):
+        raise Refusal(rules.age_alone(span))
     if not isinstance(value, Quantity) or value.truth:
         raise Refusal(rules.compared_truth(span))
     return value, span

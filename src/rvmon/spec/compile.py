@@ -22,7 +22,7 @@ def compile_text(
     constants: Mapping[str, str] | None = None,
     directory: Path | None = None,
 ) -> tuple[CheckedSpec, tuple[Diagnostic, ...]]:
-    """Compile the text of a specification.
+    r"""Compile the text of a specification.
 
     Args:
         text: the specification.
@@ -36,7 +36,7 @@ def compile_text(
     Raises:
         SpecError: the text is wrong; carries all diagnostics, rendered.
 
-    >>> spec, warnings = compile_text("event a, b\\nrequirement R upon a then within 3 s b")
+    >>> spec, warnings = compile_text("event a, b\nrequirement R upon a then within 3 s b")
     >>> spec.requirements["R"].pulse, warnings
     (True, ())
     """

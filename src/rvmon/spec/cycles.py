@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.spec.items import ConstItem, DefineItem
 from rvmon.spec.resolved import Declared
 from rvmon.spec.rules import names as rules
-from rvmon.spec.syntax import Call, ConstItem, DefineItem, Expression, Name
+from rvmon.spec.syntax import Call, Expression, Name
 from rvmon.spec.walk import expressions_in
 
 

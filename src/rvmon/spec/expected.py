@@ -92,7 +92,7 @@ def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span
         first = start + (error.token.start_pos or 0)
         return Span(source, first, first + max(len(error.token), 1))
     if isinstance(error, UnexpectedCharacters):
-        first = start + error.pos_in_stream
+        first = start + (error.pos_in_stream or 0)
         word = re.compile(r"\w+|.", re.DOTALL).match(source.text, first)
         return Span(source, first, word.end() if word else first)
     text = re.sub(r"(?m)#.*$", lambda comment: " " * len(comment[0]), source.text[start:end])
@@ -105,7 +105,8 @@ def _accepted(error: UnexpectedInput, parser: lark.Lark) -> set[str]:
     state: Any = getattr(error, "state", None)
     if state is None:
         return set()
-    return set(InteractiveParser(parser.parser.parser, state, None).accepts())  # type: ignore[attr-defined,arg-type]
+    interactive: Any = InteractiveParser
+    return set(interactive(parser.parser.parser, state, None).accepts())
 
 
 def _in_words(accepted: set[str], parser: lark.Lark) -> str:
@@ -132,11 +133,8 @@ def _word(terminal: str, parser: lark.Lark) -> str:
     if terminal in _WORDS:
         return _WORDS[terminal]
     pattern = parser.get_terminal(terminal).pattern
-    return (
-        f"`{re.match(r'[a-z]+', pattern.value)[0]}`"
-        if pattern.type == "re"
-        else f"`{pattern.value}`"
-    )  # type: ignore[index]
+    word = re.match(r"[a-z]+", pattern.value)
+    return f"`{word[0] if word and pattern.type == 're' else pattern.value}`"
 
 
 def _mend(found: str, accepted: set[str], parser: lark.Lark, place: Span) -> str:

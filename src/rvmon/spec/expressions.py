@@ -27,6 +27,7 @@ from rvmon.spec.checked import (
 from rvmon.spec.comparisons import compared
 from rvmon.spec.durations import closed_interval, ticks_of
 from rvmon.spec.functions import applied
+from rvmon.spec.items import ConstItem, DefineItem
 from rvmon.spec.quantities import arithmetic
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
@@ -37,8 +38,6 @@ from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax import (
     Call,
     Comparison,
-    ConstItem,
-    DefineItem,
     Edge,
     Expression,
     Group,
@@ -55,6 +54,7 @@ from rvmon.spec.syntax import (
     Window,
 )
 from rvmon.spec.table import Table, close_name, close_unit
+from rvmon.spec.tense import FUTURE
 from rvmon.spec.unit import PLAIN
 from rvmon.spec.units import UnknownUnitError, parse_unit
 from rvmon.spec.values import EVERYWHERE, Age, Closure, Quantity, Scope, Value
@@ -66,10 +66,7 @@ DEEPEST = 100
 LARGEST = 10_000
 """Formulas with more operators are refused, macros expanded."""
 
-_TEMPORAL = frozenset(
-    (BinaryOp.UNTIL, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE)
-    + (BinaryOp.SINCE,)
-)
+_TEMPORAL = FUTURE | {BinaryOp.SINCE}
 
 
 class Reported(Exception):  # noqa: N818 - never leaves this package

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from rvmon.spec.expressions import Checker
+from rvmon.spec.items import ConstItem, DefineItem
 from rvmon.spec.resolved import ResolvedSpec
 from rvmon.spec.rules import names as rules
-from rvmon.spec.syntax import ConstItem, DefineItem, Name
+from rvmon.spec.syntax import Name
 from rvmon.spec.table import close_name
 from rvmon.spec.values import EVERYWHERE
 from rvmon.spec.walk import expressions_in

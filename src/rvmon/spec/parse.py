@@ -14,10 +14,11 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.build import Builder
 from rvmon.spec.expected import explain_unexpected
+from rvmon.spec.items import Item, ParsedSpec
 from rvmon.spec.rules import syntax as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.split import split_items
-from rvmon.spec.syntax import Expression, Item, ParsedSpec
+from rvmon.spec.syntax import Expression
 from rvmon.spec.units import compound_pattern
 from rvmon.spec.words import NOT_UNITS, RESERVED
 

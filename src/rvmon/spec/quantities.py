@@ -27,7 +27,7 @@ _COMPARE: dict[CompareOp, Callable[[Fraction, Fraction], bool]] = {
     CompareOp.GT: operator.gt,
 }
 _FOLD: dict[NumericOp, Callable[[list[Fraction]], Fraction]] = {
-    NumericOp.ADD: sum,
+    NumericOp.ADD: lambda values: values[0] + values[1],
     NumericOp.SUB: lambda values: values[0] - values[1],
     NumericOp.NEG: lambda values: -values[0],
     NumericOp.ABS: lambda values: abs(values[0]),
@@ -151,8 +151,8 @@ def _integral(args: Sequence[Placed]) -> bool:
 
 
 def _exact(value: Quantity, unit: Unit) -> Fraction:
-    assert value.constant is not None, "only constants have an exact value"
-    return value.constant * value.unit.factor / unit.factor
+    """The value of a constant in another unit of its kind."""
+    return (value.constant or Fraction(0)) * value.unit.factor / unit.factor
 
 
 def _nodes(args: Sequence[Placed], unit: Unit) -> tuple[Numeric, ...]:

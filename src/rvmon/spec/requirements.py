@@ -20,19 +20,11 @@ from rvmon.spec.checked import (
     Requirement,
 )
 from rvmon.spec.expressions import Checker, Reported
-from rvmon.spec.normalise import normalised
-from rvmon.spec.quantities import node_of
-from rvmon.spec.rules import triggers as rules
-from rvmon.spec.rules import types as type_rules
-from rvmon.spec.rules.rule import Refusal
-from rvmon.spec.syntax import (
+from rvmon.spec.items import (
     AtEndClause,
     Bare,
     Clause,
-    Expression,
     ForEachClause,
-    Group,
-    Immediately,
     LetClause,
     PropertyClause,
     RequirementItem,
@@ -41,6 +33,12 @@ from rvmon.spec.syntax import (
     TextClause,
     Triggered,
 )
+from rvmon.spec.normalise import normalised
+from rvmon.spec.quantities import node_of
+from rvmon.spec.rules import triggers as rules
+from rvmon.spec.rules import types as type_rules
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.syntax import Expression, Group, Immediately
 from rvmon.spec.tense import end_part, future_part, is_pulse, is_timeless, mixed_disjunction
 from rvmon.spec.unit import PLAIN
 from rvmon.spec.values import EVERYWHERE, Quantity, Scope
@@ -55,7 +53,7 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
         parts = _parts(checker, item, outer, inner)
-        policy = _policy(checker, item)
+        policy = _policy(item)
     except Refusal as refusal:
         checker.report(refusal.finding)
         return None
@@ -147,7 +145,7 @@ def _on_purpose(expression: Expression) -> bool:
     return isinstance(expression, Immediately)
 
 
-def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
+def _policy(item: RequirementItem) -> EndPolicy:
     for clause in _clauses(item, AtEndClause):
         if clause.policy.text not in EndPolicy.__members__.values():
             raise Refusal(rules.unknown_policy(clause.policy.span, [str(p) for p in EndPolicy]))

@@ -5,15 +5,12 @@ from __future__ import annotations
 from typing import assert_never
 
 from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.spec.resolved import Declared, DeclaredEvent, DeclaredSignal, ResolvedSpec
-from rvmon.spec.rules import names as rules
-from rvmon.spec.syntax import (
+from rvmon.spec.items import (
     ConstItem,
     DefineItem,
     DelayItem,
     EventItem,
     Header,
-    Ident,
     Item,
     ParsedSpec,
     PropertyItem,
@@ -21,6 +18,9 @@ from rvmon.spec.syntax import (
     SignalItem,
     TimeItem,
 )
+from rvmon.spec.resolved import Declared, DeclaredEvent, DeclaredSignal, ResolvedSpec
+from rvmon.spec.rules import names as rules
+from rvmon.spec.syntax import Ident
 from rvmon.spec.words import FUNCTIONS
 
 

@@ -7,19 +7,18 @@ from dataclasses import dataclass
 
 from rvmon.diagnostics.span import Source
 from rvmon.spec.checked import Role
-from rvmon.spec.syntax import (
+from rvmon.spec.items import (
     ConstItem,
     DefineItem,
     DelayItem,
     EventSyntax,
-    Expression,
     Header,
-    Ident,
     PropertyItem,
     RequirementItem,
     TimeItem,
     TypeSyntax,
 )
+from rvmon.spec.syntax import Expression, Ident
 
 
 @dataclass(frozen=True, slots=True)

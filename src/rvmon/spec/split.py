@@ -14,11 +14,11 @@ _ITEM = re.compile(
 
 
 def split_items(text: str) -> list[tuple[int, int]]:
-    """The places `[start, end)` of the items, with what stands before the first one, if anything.
+    r"""The places `[start, end)` of the items, with what stands before the first one, if anything.
 
     `property` inside a requirement is a clause of it unless a name and a colon follow.
 
-    >>> split_items("spec a\\nevent b")
+    >>> split_items("spec a\nevent b")
     [(0, 7), (7, 14)]
     """
     starts: list[int] = []

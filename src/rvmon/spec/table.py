@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from rvmon.spec.checked import Event, Signal, TimeModel
+from rvmon.spec.items import ConstItem, DefineItem
 from rvmon.spec.resolved import Declared, DeclaredEvent, DeclaredSignal
-from rvmon.spec.syntax import ConstItem, DefineItem
 from rvmon.spec.unit import Unit
 from rvmon.spec.units import unit_table
 from rvmon.spec.values import FieldOf

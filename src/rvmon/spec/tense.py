@@ -24,9 +24,16 @@ from rvmon.spec.checked import (
     UnaryOp,
 )
 
-FUTURE = frozenset(
-    (UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS)
-    + (BinaryOp.UNTIL, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE)
+FUTURE: frozenset[UnaryOp | BinaryOp] = frozenset(
+    {
+        UnaryOp.NEXT,
+        UnaryOp.EVENTUALLY,
+        UnaryOp.ALWAYS,
+        BinaryOp.UNTIL,
+        BinaryOp.RELEASE,
+        BinaryOp.WEAK_UNTIL,
+        BinaryOp.STRONG_RELEASE,
+    }
 )
 """The operators that look ahead."""
 

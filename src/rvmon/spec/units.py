@@ -49,27 +49,10 @@ _DERIVED: tuple[tuple[str, str, Fraction | int], ...] = (
     ("Mbit", "bit", 10**6),
     ("%", "", Fraction(1, 100)),
 )
-_PREFIXED = [
-    "m",
-    "g",
-    "s",
-    "A",
-    "K",
-    "rad",
-    "L",
-    "N",
-    "Pa",
-    "bar",
-    "J",
-    "W",
-    "Wh",
-    "Ah",
-    "V",
-    "ohm",
-    "T",
-    "Hz",
-    "mol",
-]
+_PREFIXED = (
+    *("m", "g", "s", "A", "K", "rad", "L", "N", "Pa", "bar", "J", "W", "Wh", "Ah"),
+    *("V", "ohm", "T", "Hz", "mol"),
+)
 _PREFIXES = {
     "n": Fraction(1, 10**9),
     "u": Fraction(1, 10**6),
@@ -94,8 +77,8 @@ def unit_table() -> Mapping[str, Unit]:
     """All simple units by symbol."""
     table = {base: Unit(base, ((base, 1),)) for base in _BASES}
     for symbol, definition, factor in _DERIVED:
-        base = _parse(definition, table)
-        table[symbol] = Unit(symbol, base.dimension, base.factor * factor)
+        defined = _parse(definition, table)
+        table[symbol] = Unit(symbol, defined.dimension, defined.factor * factor)
         if symbol in _PREFIXED:
             _add_prefixed(table, symbol)
     for base in _BASES:

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from rvmon.spec.checked import Event, Formula, Numeric, Signal, Type
-from rvmon.spec.syntax import ConstItem, DefineItem, Expression
+from rvmon.spec.items import ConstItem, DefineItem
+from rvmon.spec.syntax import Expression
 from rvmon.spec.unit import PLAIN, Unit
 
 

@@ -18,57 +18,27 @@ ITEM_WORDS = (
 )
 """Words that start an item; besides, `max delay` does."""
 
-RESERVED = frozenset(
-    (
-        *ITEM_WORDS,
-        *[
-            "not",
-            "next",
-            "eventually",
-            "always",
-            "previous",
-            "once",
-            "historically",
-            "within",
-            "for",
-            "immediately",
-        ],
-        *["F", "G", "X", "Y", "O", "H", "A", "E", "AG", "AF", "AX", "EG", "EF", "EX"],
-        *[
-            "upon",
-            "whenever",
-            "then",
-            "and",
-            "or",
-            "xor",
-            "implies",
-            "iff",
-            "start",
-            "end",
-            "true",
-            "false",
-        ],
-    )
+_TEMPORAL_WORDS = (
+    *("not", "next", "eventually", "always", "previous", "once", "historically"),
+    *("within", "for", "immediately"),
+    *("F", "G", "X", "Y", "O", "H", "A", "E", "AG", "AF", "AX", "EG", "EF", "EX"),
 )
+_OTHER_WORDS = (
+    *("upon", "whenever", "then", "and", "or", "xor", "implies", "iff"),
+    *("start", "end", "true", "false"),
+)
+
+RESERVED = frozenset((*ITEM_WORDS, *_TEMPORAL_WORDS, *_OTHER_WORDS))
 """Words that are never names, unless quoted."""
 
-INFIX_WORDS = frozenset(["until", "since", "unless", "weak", "U", "W", "R", "M", "S"])
+INFIX_WORDS = frozenset(("until", "since", "unless", "weak", "U", "W", "R", "M", "S"))
 """Operators between formulas; where an operand stands they are names."""
 
 CLAUSE_WORDS = frozenset(
-    [
-        "source",
-        "rationale",
-        "severity",
-        "tags",
-        "scope",
-        "at",
-        "let",
-        "monitor",
-        "goal",
-        "ignore",
-        "illegal",
-    ]
+    {
+        *("source", "rationale", "severity", "tags", "scope", "at", "let", "monitor"),
+        *("goal", "ignore", "illegal"),
+    }
 )
 """Words that start a clause of an item; elsewhere they are names."""
 
