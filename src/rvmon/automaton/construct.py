@@ -175,7 +175,7 @@ class _Construction:
 def _layout(
     locations: Sequence[Location],
 ) -> tuple[tuple[int, ...], tuple[tuple[int, ...], ...], int]:
-    """First row and strides of each location, and the number of rows; the last clock runs fastest."""
+    """First row and strides of each location, number of rows; the last clock runs fastest."""
     bases, strides, total = [], [], 0
     for location in locations:
         bases.append(total)

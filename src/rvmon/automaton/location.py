@@ -1,4 +1,4 @@
-"""Locations: residuals with their clocks numbered by age, and where those clocks make a difference."""
+"""Locations: residuals with their clocks numbered by age, and the ages that make a difference."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from rvmon.dataflow.graph import Graph
 from rvmon.dataflow.inputs import NEVER, Inputs, Reported
 from rvmon.dataflow.leaves import Evaluate, evaluator
 from rvmon.dataflow.since import Previous, Since
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf, State, StateOp
 from rvmon.spec.checked import ProbeAtom
 from rvmon.trace.sample import Scalar
 
@@ -146,9 +146,11 @@ class Flow:
         state = self.graph.nodes[place]
         values = self.values
         operands = self.graph.operands[place]
+        if state.leaf is not None:
+            return self._leaf(place, state.leaf)
         match state.op:
             case StateOp.LEAF:
-                return self._leaf(place, state)
+                raise ValueError("a leaf reads something")
             case StateOp.NOT:
                 (operand,) = operands
                 return lambda _: TRUE - values[operand]
@@ -163,16 +165,14 @@ class Flow:
             case _:
                 assert_never(state.op)
 
-    def _leaf(self, place: int, state: State) -> Evaluate:
-        assert state.leaf is not None
-        read = evaluator(state.leaf, self.inputs, self.captured, self._origin)
-        if not isinstance(state.leaf, Elapsed):
+    def _leaf(self, place: int, leaf: Leaf) -> Evaluate:
+        read = evaluator(leaf, self.inputs, self.captured, lambda: self.origin)
+        if not isinstance(leaf, Elapsed):
             return read
-        duration = state.leaf.duration
 
         def elapsed(t: int) -> int:
             value = read(t)
-            self._set_wake(place, NEVER if value else self._origin() + duration)
+            self._set_wake(place, NEVER if value else (self.origin or 0) + leaf.duration)
             return value
 
         return elapsed
@@ -200,10 +200,6 @@ class Flow:
             return value
 
         return since
-
-    def _origin(self) -> int:
-        assert self.origin is not None
-        return self.origin
 
     def _set_wake(self, place: int, wake: int) -> None:
         if wake < NEVER:

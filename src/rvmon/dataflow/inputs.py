@@ -103,10 +103,9 @@ class Inputs:
         for name, value in values.items():
             self.updated.add(name)
             slot = self.slots.get(name)
-            if slot is None:
+            if slot is None or isinstance(value, Mapping | tuple):
                 self.occurrences.setdefault(name, []).append(value)
             else:
-                assert value is None or isinstance(value, bool | int | float | str)
                 changed = slot.update(t, value)
                 self.changed[name] = max(changed, self.changed.get(name, FALSE))
 

@@ -67,7 +67,7 @@ def captured_names(leaf: Leaf) -> frozenset[str]:
 
 
 def evaluator(
-    leaf: Leaf, inputs: Inputs, captured: Mapping[str, Scalar], origin: Callable[[], int]
+    leaf: Leaf, inputs: Inputs, captured: Mapping[str, Scalar], origin: Callable[[], int | None]
 ) -> Evaluate:
     """A function that gives the truth of a leaf at the current position.
 
@@ -82,7 +82,7 @@ def evaluator(
             truth = TRUE if value else FALSE
             return lambda _: truth
         case Elapsed(duration=duration):
-            return lambda t: TRUE if t - origin() >= duration else FALSE
+            return lambda t: TRUE if t - (origin() or 0) >= duration else FALSE
         case BoundAtom():
             return lambda t: TRUE if t == origin() else FALSE
         case SignalAtom(name=name):

@@ -1,8 +1,8 @@
 """Making formulas: equal ones become the same object, and what is constant is folded.
 
 Only such laws are applied as change neither the value of a prefix nor that at the end of a trace:
-those of distributive lattices and of constants. `p or not p` stays (Kleene), `G[0,3] true` stays (it
-is decided when its window is over).
+those of distributive lattices and of constants. `p or not p` stays (Kleene), and so does
+`G[0,3] true` (it is decided when its window is over).
 """
 
 from __future__ import annotations

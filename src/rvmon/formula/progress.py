@@ -1,6 +1,6 @@
 """One step of a residual, and what time alone and the end of a trace make of it.
 
-Source: AUTOMATA 1; progression after Bacchus and Kabanza 1998, with ages in place of shrinking bounds.
+Source: AUTOMATA 1; after Bacchus and Kabanza 1998, with ages in place of shrinking bounds.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ class _Step:
 
 
 def _opened(node: Until | Release, clock: int) -> Atom:
-    """What is left of a window that has opened: its start matters no more, without an end no age."""
+    """What is left of an opened window: its start matters no more, and without an end no age."""
     return node.opened or node, NO_CLOCK if node.high is None else clock
 
 
@@ -141,9 +141,10 @@ def after(residual: Residual, ages: Sequence[int]) -> Residual:
     settled: dict[Atom, Residual] = {}
     for clause in residual:
         for node, clock in clause:
-            if isinstance(node, Until | Release) and clock != NO_CLOCK:
-                if phase(node, ages[clock]) is Phase.OVER:
-                    settled[node, clock] = FAILS if isinstance(node, Until) else HOLDS
+            if not isinstance(node, Until | Release) or clock == NO_CLOCK:
+                continue
+            if phase(node, ages[clock]) is Phase.OVER:
+                settled[node, clock] = FAILS if isinstance(node, Until) else HOLDS
     return substitute(residual, settled) if settled else residual
 
 

@@ -3,10 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from rvmon.dataflow.inputs import Reported, payloads_of
 from rvmon.spec.checked import FieldValue
 from rvmon.trace.sample import Payload, Scalar, Value
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """One value of a `for each`.
+
+    Attributes:
+        rank: from 1, in order of first occurrence.
+        source: the field that the value came from.
+        value: the value.
+    """
+
+    rank: int
+    source: FieldValue
+    value: Scalar
 
 
 def values_in(source: FieldValue, values: Mapping[str, Value]) -> list[Scalar]:
@@ -19,20 +35,21 @@ def values_in(source: FieldValue, values: Mapping[str, Value]) -> list[Scalar]:
     return found
 
 
-def seen_by(source: FieldValue, own: Scalar, values: Mapping[str, Value]) -> Mapping[str, Reported]:
-    """A sample as the instance of the value `own` sees it.
+def seen_by(instance: Instance | None, values: Mapping[str, Reported]) -> Mapping[str, Reported]:
+    """A sample as an instance sees it.
 
-    Its event stands for the occurrences with that value; one whose value is not known is an unknown
-    occurrence in every instance.
+    Its event stands for the occurrences with its value; one whose value is not known is an unknown
+    occurrence in every instance. Outside of instances all is seen.
     """
-    if source.event not in values:
+    if instance is None or instance.source.event not in values:
         return values
+    source = instance.source
     seen: list[Payload | None] = []
     for payload in payloads_of(values[source.event]):
         value = None if payload is None else _known(payload, source.field)
         if value is None:
             seen.append(None)
-        elif value == own:
+        elif value == instance.value:
             seen.append(payload)
     rest: dict[str, Reported] = {n: v for n, v in values.items() if n != source.event}
     if seen:

@@ -115,9 +115,9 @@ class Lane:
         for starter in self.starters:
             if starter.trigger is None:
                 continue
-            if first or id(starter) in triggers or starter.repeats:
-                if starter.trigger.starts(self.flow.values[starter.place]):
-                    starter.start(t, t)
+            asked = first or id(starter) in triggers or starter.repeats
+            if asked and starter.trigger.starts(self.flow.values[starter.place]):
+                starter.start(t, t)
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, of which no position is known, from `t − 1`."""

@@ -10,12 +10,12 @@ from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.dataflow.numbers import reader
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.instances import seen_by, values_in
+from rvmon.monitor.instances import Instance, seen_by, values_in
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.lane import Lane, Starter
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.trigger import Trigger
-from rvmon.spec.checked import CheckedSpec, FieldValue, Mode, Numeric, TimeModel
+from rvmon.spec.checked import CheckedSpec, ForEach, Mode, Numeric, TimeModel
 from rvmon.trace.sample import Payload, Scalar, Value
 
 Captured = Mapping[str, Scalar]
@@ -30,6 +30,9 @@ class Lanes:
         engine: judges them.
         sources: the names that can arrive; `None`: all.
         ledger: takes the records.
+
+    Attributes:
+        main: the lane of all requirements without `for each`; its inputs are those of the run.
     """
 
     def __init__(
@@ -45,25 +48,31 @@ class Lanes:
         self.sources = sources
         self.ledger = ledger
         self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
-        self._each = [r for r in requirements if r.requirement.for_each is not None]
-        self._instances: dict[tuple[str, Scalar], int] = {}
-        self._history: list[tuple[int, Mapping[str, Value]]] | None = None
-        if any(_needs_history(r) for r in requirements):
-            self._history = []
-        shared = [r for r in requirements if r.requirement.for_each is None]
-        roots = [node for r in shared for node in r.shared_graph.nodes]
+        self._each: list[tuple[CompiledRequirement, ForEach]] = []
+        self._instances: dict[str, dict[Scalar, Instance]] = {}
+        needs_history = any(_needs_history(compiled) for compiled in requirements)
+        self._history: list[tuple[int, Mapping[str, Value]]] | None = [] if needs_history else None
+        shared = []
+        for compiled in requirements:
+            if compiled.requirement.for_each is None:
+                shared.append(compiled)
+            else:
+                self._each.append((compiled, compiled.requirement.for_each))
+        roots = [node for compiled in shared for node in compiled.shared_graph.nodes]
         self.main = Lane(self._flow(graph_of(roots), {}))
-        self._lanes: list[tuple[Lane, FieldValue | None, Scalar]] = [(self.main, None, None)]
+        self._lanes: list[tuple[Lane, Instance | None]] = [(self.main, None)]
         for compiled in shared:
-            self._seat(self.main, compiled, {}, 0, None)
+            self._seat(self.main, compiled, {}, None)
 
     @property
     def all(self) -> Sequence[Lane]:
         """The lanes there are now."""
-        return [lane for lane, _, _ in self._lanes]
+        return [lane for lane, _ in self._lanes]
 
-    def _flow(self, graph: Graph, captured: Captured) -> Flow:
-        return Flow(graph, Inputs(self.spec, self.sources), self.gap, captured)
+    @property
+    def judges(self) -> Sequence[Judge]:
+        """The judges of all lanes."""
+        return [judge for lane in self.all for judge in lane.judges]
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit` in all lanes, also those that are made on the way."""
@@ -79,17 +88,12 @@ class Lanes:
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Give a sample to all lanes; time has come to `t − 1` before."""
-        for compiled in self._each:
-            self._make_instances(compiled, t, values)
+        for compiled, each in self._each:
+            self._make_instances(compiled, each, t, values)
         if self._history is not None:
             self._history.append((t, values))
-        for lane, source, own in tuple(self._lanes):
-            lane.sample(t, values if source is None else seen_by(source, own, values))
-
-    @property
-    def judges(self) -> Sequence[Judge]:
-        """The judges of all lanes."""
-        return [judge for lane in self.all for judge in lane.judges]
+        for lane, instance in tuple(self._lanes):
+            lane.sample(t, seen_by(instance, values))
 
     def finish(self, end: int, reached: int) -> None:
         """Settle what is undecided; time has come to `end` before.
@@ -111,26 +115,37 @@ class Lanes:
 
     # Making lanes.
 
+    def _flow(self, graph: Graph, captured: Captured) -> Flow:
+        return Flow(graph, Inputs(self.spec, self.sources), self.gap, captured)
+
+    def _judge(self, compiled: CompiledRequirement, lane: Lane, captured: Captured) -> Judge:
+        machine = compiled.machine(self.engine)
+        judge = Judge(compiled, machine, lane.flow, self.ledger, captured)
+        lane.add_judge(judge)
+        return judge
+
     def _seat(
         self,
         lane: Lane,
         compiled: CompiledRequirement,
         captured: Captured,
-        instance: int,
-        source: FieldValue | None,
+        instance: Instance | None,
     ) -> Starter:
-        """Give a requirement its trigger in a lane, and its judge unless attempts bring their own."""
+        """Give a requirement its trigger in a lane, and its judge, unless attempts bring theirs."""
         requirement = compiled.requirement
+        rank = 0 if instance is None else instance.rank
         start: Callable[[int, int], None]
         if requirement.captures:
 
             def start(t: int, triggered: int) -> None:
-                self._start_captured(lane, compiled, captured, instance, source, t, triggered)
+                own, judge = self._captured_lane(lane, compiled, captured, instance, t)
+                self.ledger.started(rank, judge, judge.begin(t, triggered))
+                self._lanes.append((own, instance))
         else:
             judge = self._judge(compiled, lane, captured)
 
             def start(t: int, triggered: int) -> None:
-                self.ledger.started(instance, judge, judge.begin(t, triggered))
+                self.ledger.started(rank, judge, judge.begin(t, triggered))
 
         formula = compiled.obligation.trigger
         if formula is None:
@@ -141,69 +156,63 @@ class Lanes:
         lane.add_starter(starter)
         return starter
 
-    def _judge(self, compiled: CompiledRequirement, lane: Lane, captured: Captured) -> Judge:
-        machine = compiled.machine(self.engine)
-        judge = Judge(compiled, machine, lane.flow, self.ledger, captured)
-        lane.add_judge(judge)
-        return judge
-
-    def _start_captured(
+    def _captured_lane(
         self,
         parent: Lane,
         compiled: CompiledRequirement,
         captured: Captured,
-        instance: int,
-        source: FieldValue | None,
+        instance: Instance | None,
         t: int,
-        triggered: int,
-    ) -> None:
-        """Give an attempt a lane of its own, in which its captured values are constants."""
+    ) -> tuple[Lane, Judge]:
+        """A lane for one attempt, triggered at `t`, in which its captured values are constants."""
         own = dict(captured)
         for capture in compiled.requirement.captures:
             own[capture.name] = _capture(capture.value, parent.flow, own)
         graph = compiled.consequent_graph
-        instance_value = None if source is None else captured[_each_name(compiled)]
         if graph.stateful:
             lane = Lane(self._flow(graph, own))
-            self._replay(lane, source, instance_value)
+            self._replay(lane, instance)
             lane.through(t)
         else:
             lane = Lane(parent.flow.fork(graph, own, occurring=True))
-        judge = self._judge(compiled, lane, own)
-        self.ledger.started(instance, judge, judge.begin(t, triggered))
-        self._lanes.append((lane, source, instance_value))
+        return lane, self._judge(compiled, lane, own)
 
-    def _replay(self, lane: Lane, source: FieldValue | None, own: Scalar) -> None:
+    def _replay(self, lane: Lane, instance: Instance | None) -> None:
         """Let a new lane see the samples so far."""
         for t, values in self._history or ():
             lane.through(t - 1)
-            lane.sample(t, values if source is None else seen_by(source, own, values))
+            lane.sample(t, seen_by(instance, values))
 
     def _make_instances(
-        self, compiled: CompiledRequirement, t: int, values: Mapping[str, Value]
+        self, compiled: CompiledRequirement, each: ForEach, t: int, values: Mapping[str, Value]
     ) -> None:
-        each = compiled.requirement.for_each
-        assert each is not None
-        for own in values_in(each.value, values):
-            key = (compiled.requirement.id, own)
-            if key in self._instances:
-                continue
-            rank = self._instances[key] = len(self._instances) + 1
-            captured = {each.name: own}
-            if _needs_history(compiled):
-                lane = Lane(self._flow(compiled.shared_graph, captured))
-                starter = self._seat(lane, compiled, captured, rank, each.value)
-                start, starter.start = starter.start, _never
-                self._replay(lane, each.value, own)
-                lane.through(t - 1)
-                starter.start = start
-            else:
-                flow = self.main.flow.fork(compiled.shared_graph, captured, occurring=False)
-                lane = Lane(flow)
-                for taken, waiting in self.main.waiting:
-                    lane.sample(taken, seen_by(each.value, own, waiting))
-                self._seat(lane, compiled, captured, rank, each.value)
-            self._lanes.append((lane, each.value, own))
+        """Make the instances whose value occurs for the first time in a sample."""
+        known = self._instances.setdefault(compiled.requirement.id, {})
+        for value in values_in(each.value, values):
+            if value not in known:
+                known[value] = instance = Instance(len(known) + 1, each.value, value)
+                lane = self._instance_lane(compiled, {each.name: value}, instance, t)
+                self._lanes.append((lane, instance))
+
+    def _instance_lane(
+        self, compiled: CompiledRequirement, captured: Captured, instance: Instance, t: int
+    ) -> Lane:
+        """A lane for an instance, as of just before the sample at `t`."""
+        graph = compiled.shared_graph
+        if _needs_history(compiled):
+            lane = Lane(self._flow(graph, captured))
+            starter = self._seat(lane, compiled, captured, instance)
+            # No attempt starts before the value has occurred.
+            start, starter.start = starter.start, _never
+            self._replay(lane, instance)
+            lane.through(t - 1)
+            starter.start = start
+            return lane
+        lane = Lane(self.main.flow.fork(graph, captured, occurring=False))
+        for taken, seen in self.main.waiting:
+            lane.sample(taken, seen_by(instance, seen))
+        self._seat(lane, compiled, captured, instance)
+        return lane
 
 
 def _capture(value: Numeric, flow: Flow, captured: Captured) -> Scalar:
@@ -222,12 +231,6 @@ def _needs_history(compiled: CompiledRequirement) -> bool:
         return True
     remembers = bool(compiled.shared_graph.stateful) or not requirement.pulse
     return requirement.for_each is not None and remembers
-
-
-def _each_name(compiled: CompiledRequirement) -> str:
-    each = compiled.requirement.for_each
-    assert each is not None
-    return each.name
 
 
 def _never(t: int, triggered: int) -> None:

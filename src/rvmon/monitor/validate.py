@@ -69,8 +69,8 @@ class Validator:
         if isinstance(value, tuple | list):
             if len(value) > 1 and name in self._single:
                 raise TraceError(
-                    f"sample at {format_ticks(t)}: {len(value)} payloads of `{name}`: a requirement "
-                    "that is not `for each` reads its fields and could see only one"
+                    f"sample at {format_ticks(t)}: {len(value)} payloads of `{name}`: only "
+                    "`for each` can tell them apart, and not all that reads its fields has it"
                 )
             return tuple(self._payload(name, payload, t) for payload in value)
         raise TraceError(
