@@ -5,22 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import pymunk
-
 from handover.world import parameters as p
+from handover.world.grasp import Grasp
 from handover.world.limb import Limb
 from handover.world.measures import contact_force, seen_piece
 from handover.world.scene import Scene
 
-Point = tuple[float, float]
-
 
 class Human:
-    """Follows intentions after a reaction time; what it achieves, the physics decides.
+    """Acts on intentions after a reaction time; what comes of it, the physics decides.
+
+    Args:
+        scene: where the bodies are.
+        wake: called with the seconds for which something is going to move.
+        after: calls a function so many seconds later.
 
     Attributes:
-        gaze_taken_up, location_taken_up, pressure_taken_up: whether the human has begun to take
-            part in that respect, so that trackers have locked on to it.
+        gaze_taken_up: whether the human has begun to look, so that trackers know the head.
+        location_taken_up: whether the human has begun to reach, so that trackers know the hand.
+        pressure_taken_up: whether the human has opened or closed the hand for the piece.
     """
 
     def __init__(
@@ -37,12 +40,10 @@ class Human:
         self._after = after
         self._head = Limb(scene.head, turns=True)
         self._arm = Limb(scene.hand_target, turns=False)
-        self._gaze: tuple[float, float, float] | None = None
-        self._place: Point | None = None
+        self._place: tuple[float, float] | None = None
         self._near = False
         self._closed = False
-        self._grasp: tuple[pymunk.PivotJoint, pymunk.GearJoint] | None = None
-        self._held_at: pymunk.Vec2d | None = None
+        self._grasp: Grasp | None = None
 
     def look(self, offset: float, distance: float, angle: float) -> None:
         """Intend to look at the piece from beside it.
@@ -52,8 +53,7 @@ class Human:
             distance: of the head from the piece along x, m.
             angle: between the line of sight and the direction to the piece, degrees.
         """
-        self._gaze = (offset, distance, angle)
-        self._after(p.REACTION_S, self._start_to_look)
+        self._after(p.REACTION_S, lambda: self._start_to_look(offset, distance, angle))
 
     def reach(self, dx: float, dz: float, *, near: bool) -> None:
         """Intend to have the hand beside the piece.
@@ -63,73 +63,72 @@ class Human:
             dz: m above the piece.
             near: this is a place from which the piece can be taken.
         """
-        self._place, self._near = (dx, dz), near
-        self._after(p.REACTION_S, self._start_to_reach)
+        self._after(p.REACTION_S, lambda: self._start_to_reach((dx, dz), near=near))
 
     def grasp(self, *, closed: bool) -> None:
         """Intend to hold the piece if the hand is near it, or to let go of it."""
-        self._closed = closed
-        self._after(p.REACTION_S, self._start_to_grasp)
+        self._after(p.REACTION_S, lambda: self._start_to_grasp(closed=closed))
 
     def control(self) -> None:
-        """Move head and arm on, take hold where the closed hand touches the piece."""
+        """Move head and arm on; take hold where the closed hand touches the piece."""
         self._head.control()
         self._arm.control()
         if self._grasp is not None:
-            if not self._wants_hold() or self._has_slipped():
+            if self._grasp.has_slipped():
                 self._let_go()
-        elif self._wants_hold() and self._touches():
-            self._take_hold()
+        elif self._wants_hold() and contact_force(self._scene.hand, self._scene.piece) > 0.0:
+            self._grasp = Grasp(self._scene)
 
     def is_moving(self) -> tuple[bool, bool]:
         """Whether head and hand are moving, so that trackers give no reading."""
         hand = self._arm.is_moving() or self._scene.hand.velocity.length > p.STILL_SPEED
         return self._head.is_moving(), hand
 
-    def grasp_force(self) -> float:
-        """N that the closed hand exchanges with the piece through its grasp."""
-        if self._grasp is None:
-            return 0.0
-        return self._grasp[0].impulse / (p.STEP_NS / p.NS)
+    def holding_force(self) -> float:
+        """N between hand and piece, by grasp and by touch."""
+        grasp = 0.0 if self._grasp is None else self._grasp.force()
+        return grasp + contact_force(self._scene.hand, self._scene.piece)
 
-    def _start_to_look(self) -> None:
-        assert self._gaze is not None  # noqa: S101  # set by look(), which enters this call
-        offset, distance, angle = self._gaze
+    def _start_to_look(self, offset: float, distance: float, angle: float) -> None:
         piece_x, piece_z = seen_piece(self._scene)
         x, z = piece_x + distance, piece_z + offset
         towards = math.atan2(piece_z - z, piece_x - x) % math.tau
         self.gaze_taken_up = True
         self._wake(self._head.start((x, z, towards - math.radians(angle))))
 
-    def _start_to_reach(self) -> None:
+    def _start_to_reach(self, place: tuple[float, float], *, near: bool) -> None:
         self.location_taken_up = True
+        self._place, self._near = place, near
         self._move_hand()
 
-    def _start_to_grasp(self) -> None:
+    def _start_to_grasp(self, *, closed: bool) -> None:
         self.pressure_taken_up = True
+        self._closed = closed
         if self._near:
             self._move_hand()
-
-    def _move_hand(self) -> None:
-        if self._place is None:
-            return
-        if not self._wants_hold():
-            self._let_go()
-        if self._grasp is None:
-            goal = self._hold_point() if self._wants_hold() else self._beside()
-            self._wake(self._arm.start(goal))
 
     def _wants_hold(self) -> bool:
         return self._closed and self._near
 
-    def _beside(self) -> Point:
-        assert self._place is not None  # noqa: S101  # _move_hand() has checked it
+    def _move_hand(self) -> None:
+        if not self._wants_hold():
+            self._let_go()
+        if self._place is not None and self._grasp is None:
+            goal = self._hold_point() if self._wants_hold() else self._beside(*self._place)
+            self._wake(self._arm.start(goal))
+
+    def _let_go(self) -> None:
+        if self._grasp is not None:
+            self._grasp.let_go()
+            self._grasp = None
+
+    def _beside(self, dx: float, dz: float) -> tuple[float, float]:
         piece_x, piece_z = seen_piece(self._scene)
-        x, z = piece_x + self._place[0], piece_z + self._place[1]
+        x, z = piece_x + dx, piece_z + dz
         above_table = p.TABLE[0] <= x <= p.TABLE[1] + p.HAND_RADIUS and piece_z > 0
         return (x, max(z, p.HAND_RADIUS)) if above_table else (x, z)
 
-    def _hold_point(self) -> Point:
+    def _hold_point(self) -> tuple[float, float]:
         """People lift a thing from a table by its top, and take a held one by its free end."""
         x, z = seen_piece(self._scene)
         width, height = p.PIECE_SIZE
@@ -138,29 +137,3 @@ class Human:
         if stands_on_table:
             return x, z + height / 2 + reach
         return x + width / 2 + reach, z - 0.3 * height
-
-    def _touches(self) -> bool:
-        return contact_force(self._scene.hand, self._scene.piece) > 0.0
-
-    def _take_hold(self) -> None:
-        hand, piece = self._scene.hand, self._scene.piece
-        pivot = pymunk.PivotJoint(hand, piece, hand.position)
-        gear = pymunk.GearJoint(hand, piece, piece.angle - hand.angle, 1.0)
-        pivot.max_force = p.GRASP_FORCE
-        gear.max_force = p.GRASP_FORCE * p.HAND_RADIUS
-        pivot.collide_bodies = False
-        self._scene.space.add(pivot, gear)
-        self._scene.hand_pull.max_force = p.HOLD_FORCE
-        self._grasp = (pivot, gear)
-        self._held_at = piece.world_to_local(hand.position)
-
-    def _has_slipped(self) -> bool:
-        assert self._held_at is not None  # noqa: S101  # set with the grasp
-        held = self._scene.piece.local_to_world(self._held_at)
-        return (held - self._scene.hand.position).length > p.GRASP_SLIP
-
-    def _let_go(self) -> None:
-        if self._grasp is not None:
-            self._scene.space.remove(*self._grasp)
-            self._scene.hand_pull.max_force = p.HAND_FORCE
-            self._grasp = self._held_at = None

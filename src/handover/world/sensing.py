@@ -106,8 +106,7 @@ class Sensors:
         """Whether robot and human both hold the piece, by the forces between them and it."""
         piece = self._scene.piece
         by_robot = min(contact_force(piece, finger) for finger in self._scene.fingers)
-        by_human = self._human.grasp_force() + contact_force(piece, self._scene.hand)
-        return min(by_robot, by_human) >= p.PRESSURE_MIN
+        return min(by_robot, self._human.holding_force()) >= p.PRESSURE_MIN
 
     def _noise(self) -> float:
         sd = self._faults.noise_m

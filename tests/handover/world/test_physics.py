@@ -71,9 +71,9 @@ class Stage:
 
 
 def strap(stage: Stage, newtons: float) -> None:
-    """Hold the hand back where it rests, with at most this force."""
+    """Hold the hand back where it is now, with at most this force."""
     scene = stage.world.scene
-    band = pymunk.PivotJoint(scene.space.static_body, scene.hand, p.HAND_REST)
+    band = pymunk.PivotJoint(scene.space.static_body, scene.hand, scene.hand.position)
     band.max_force = newtons
     scene.space.add(band)
 
@@ -167,6 +167,37 @@ def test_no_reading_before_and_during_a_motion() -> None:
 
     stage.play(program, 2)
     assert stage.readings == [Reading(gaze=None, pressure=None, location=None)] * 2
+
+
+def test_hand_opens_after_its_reaction_time() -> None:
+    """The human who decides to let go still holds for the reaction time, then no longer."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield from fetch_offer_sense(stage)
+        stage.world.human.grasp(closed=False)
+        yield p.REACTION_S - 0.05
+        stage.sense()
+        yield 1.5
+        stage.sense()
+
+    stage.play(program, 25)
+    assert [reading.pressure for reading in stage.readings] == [True, True, False]
+
+
+def test_grasp_slips_when_it_is_overcome() -> None:
+    """A hand that cannot follow loses the piece to the robot that pulls it away."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield from fetch_offer_sense(stage)
+        strap(stage, 500.0)
+        yield from stage.go(0.05, 0.25)
+        stage.sense()
+
+    stage.play(program, 30)
+    assert [reading.pressure for reading in stage.readings] == [True, False]
+    assert stage.piece == pytest.approx((0.05, 0.23), abs=0.03)
 
 
 def test_released_piece_stays_in_the_human_hand() -> None:
