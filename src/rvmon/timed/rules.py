@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span
+from rvmon.diagnostics.render import render_full
 from rvmon.errors import ModelError
 
 RULES = {
@@ -29,6 +30,7 @@ RULES = {
     "TA019": "too-large",
     "TA020": "query-not-supported",
     "TA021": "no-automaton",
+    "TA022": "unreadable-file",
 }
 """Name of each code."""
 
@@ -57,23 +59,8 @@ def model_error(
 def refusal(*findings: Diagnostic) -> ModelError:
     """All findings as one `ModelError`, in order of place."""
     ordered = sorted(findings, key=_place)
-    return ModelError(ordered, "\n".join(map(_render, ordered)))
+    return ModelError(ordered, render_full(ordered))
 
 
 def _place(diagnostic: Diagnostic) -> int:
     return diagnostic.spans[0].span.start if diagnostic.spans else -1
-
-
-def _render(diagnostic: Diagnostic) -> str:
-    lines = [
-        f"{diagnostic.severity}[{diagnostic.code} {diagnostic.name}]: {diagnostic.message}",
-        *map(_render_label, diagnostic.spans),
-    ]
-    if diagnostic.help:
-        lines.append(f"help: {diagnostic.help}")
-    return "\n".join(lines)
-
-
-def _render_label(label: Label) -> str:
-    span = label.span
-    return f"  --> {span.source.name}:{span.line}:{span.column} {label.text}".rstrip()

@@ -1,0 +1,39 @@
+"""Models from files and texts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rvmon.diagnostics import Source
+from rvmon.timed.elaborate import elaborate
+from rvmon.timed.model import Network
+from rvmon.timed.parse import parse_document
+from rvmon.timed.rules import model_error
+
+
+def load_network(path: str | Path) -> Network:
+    """Read a model from a `.ta` file.
+
+    Raises:
+        ModelError: the file cannot be read, or is no model; it has all findings.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise model_error("TA022", f"{path}: {error.strerror}", None) from None
+    except UnicodeDecodeError:
+        mend = "save it as UTF-8 text"
+        raise model_error("TA022", f"{path} is no text", None, mend) from None
+    return loads_network(text, name=str(path))
+
+
+def loads_network(text: str, *, name: str = "<string>") -> Network:
+    """Read a model from a text.
+
+    Raises:
+        ModelError: the text is no model; it has all findings.
+
+    >>> loads_network("automaton a { location l start l }").automata[0].locations[0].name
+    'l'
+    """
+    return elaborate(parse_document(Source(name, text)))
