@@ -19,7 +19,7 @@ NS: Final = 1_000_000_000
 """Nanoseconds in a second: all instants are integer nanoseconds."""
 
 STEP_NS: Final = 5_000_000
-"""Physics step: at 5 ms with 20 iterations a gripped piece keeps still to 1 µm over 20 s."""
+"""Physics step: at 5 ms with 20 iterations a gripped piece keeps still to 0.1 mm over 20 s."""
 
 ITERATIONS: Final = 20
 """Solver iterations: with 10, the piece slips out of the gripper while it is lifted."""
@@ -36,7 +36,7 @@ SETTLE_S: Final = 0.3
 """Physics goes on for this long after the last planned motion before it may be called rest."""
 
 REST_SPEED: Final = 1e-3
-"""m/s (and rad/s ÷ 10): slower than this is at rest, once all planned motion is over."""
+"""m/s, and ten times as many rad/s: what is slower is at rest, once planned motion is over."""
 
 # --- scene ----------------------------------------------------------------------------------
 GRAVITY: Final = 9.81

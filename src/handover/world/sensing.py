@@ -56,12 +56,12 @@ class Sensors:
             return self._past[0][1]
         return Reading(gaze=None, pressure=None, location=None)
 
-    def distance(self) -> float | None:
-        """Metres between the mass centres of hand and gripper; `None`: the sensor is dead."""
-        if "distance" in self._faults.dropout:
+    def hand_offset(self) -> tuple[float, float] | None:
+        """Metres between the mass centres of hand and gripper on each axis; `None`: unknown."""
+        if self.is_dead("distance"):
             return None
         x, z = hand_offset(self._scene)
-        return abs(math.hypot(x, z) + self._noise())
+        return abs(x + self._noise()), abs(z + self._noise())
 
     def is_dead(self, sensor: str) -> bool:
         """Whether a sensor drops out."""

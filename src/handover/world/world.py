@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable
 
@@ -12,7 +13,7 @@ from handover.world.bus import Bus, Value
 from handover.world.faults import SensorFaults
 from handover.world.film import Film
 from handover.world.human import Human
-from handover.world.measures import hand_offset, seen_piece, tool_speed
+from handover.world.measures import seen_piece, tool_speed
 from handover.world.poses import Poses
 from handover.world.reading import Reading
 from handover.world.recorder import Recorder, SampleValue
@@ -39,7 +40,6 @@ class World:
         jump: `False` steps the physics over rest, too.
         record_poses: keep a frame at 10 Hz while something moves.
         observer: called with each whole sample.
-
     """
 
     def __init__(
@@ -150,17 +150,18 @@ class World:
             self._film.take(t_ns)
 
     def _measure_hand(self, t_ns: int) -> None:
-        distance = self.sensors.distance()
-        value = None if distance is None else round(distance, 4)
-        self.recorder.refresh(t_ns, "hand_distance", value)
+        """Publish how far the hand is from the gripper, to 0.1 mm."""
+        offset = self.sensors.hand_offset()
+        x, z = (None, None) if offset is None else (round(offset[0], 4), round(offset[1], 4))
+        distance = None if offset is None else round(math.hypot(*offset), 4)
+        self.recorder.refresh(t_ns, "hand_distance", distance)
+        self.recorder.signal(t_ns, "hand_offset_x", x)
+        self.recorder.signal(t_ns, "hand_offset_z", z)
 
     def _record(self, topic: str, value: Value) -> None:
         now = self.schedule.now_ns
         if topic in CLOSINGS and value is not False:
             self._measure_hand(now)
-            x, z = hand_offset(self.scene)
-            self.recorder.signal(now, "hand_offset_x", round(x, 4))
-            self.recorder.signal(now, "hand_offset_z", round(z, 4))
         if value is None:
             self.recorder.event(now, topic)
         elif isinstance(value, str):
