@@ -15,6 +15,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, Contest, ask_peer, random_question, shrink
@@ -59,7 +60,7 @@ def campaign(
             for own, other in zip(ours, theirs, strict=True):
                 tally.ticks[f"{_word(own)} / {_word(other)}"] += 1
             if _disagree(ours, theirs):
-                small = shrink(question, lambda q, j=judge: _differs(contest, peer, j, q))
+                small = shrink(question, partial(_differs, contest, peer, judge))
                 shown = _show(contest, small, answers(small, judge), ask_peer(contest, peer, small))
                 tally.disagreements.append(f"pair {number}, {name}\n{shown}")
     return tally

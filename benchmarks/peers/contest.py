@@ -10,7 +10,7 @@ from benchmarks.peers import dialects
 from benchmarks.peers.client import Peer
 from benchmarks.peers.core import UntranslatableError
 from benchmarks.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
-from benchmarks.peers.positions import Question
+from benchmarks.peers.positions import Cell, Question
 
 from rvmon.spec.checked import (
     Binary,
@@ -214,7 +214,7 @@ def ask_peer(contest: Contest, peer: Peer, question: Question) -> list[bool | No
         UntranslatableError: it cannot be asked.
     """
     ticks = question.ticks
-    columns: dict[str, list[bool | float]] = {
+    columns: dict[str, list[Cell]] = {
         spelling(name): list(column) for name, column in question.columns.items()
     }
     columns[spelling("start")] = [tick == 0 for tick in range(ticks)]
@@ -250,6 +250,6 @@ def _smaller(question: Question) -> Iterator[Question]:
     for name, column in question.columns.items():
         for tick in range(question.ticks):
             if column[tick]:
-                quiet = type(column[tick])(0)
+                quiet = 0.0 if isinstance(column[tick], float) else False
                 changed = [*column[:tick], quiet, *column[tick + 1 :]]
                 yield replace(question, columns={**question.columns, name: changed})

@@ -289,3 +289,12 @@ MSTLO = Dialect(
     split=True,
     weakened=True,
 )
+
+LTLF = Dialect(
+    "ltlf2dfa",
+    lambda name: name,
+    None,
+    ("(!({0}))", "(({0}) & ({1}))", "(({0}) | ({1}))"),
+    {UnaryOp.NEXT: "(X({0}))", UnaryOp.EVENTUALLY: "(F({0}))", UnaryOp.ALWAYS: "(G({0}))"},
+    {BinaryOp.UNTIL: "(({0}) U ({1}))"},
+)

@@ -25,7 +25,8 @@ from rvmon.verdict.verdict import Verdict
 ROW = "row"
 """The event of every sample, which starts an attempt."""
 
-Columns = Mapping[str, Sequence[bool | float]]
+Cell = bool | float | None
+Columns = Mapping[str, Sequence[Cell]]
 """The value of each name at each tick, from tick 0 on; of an event, whether it occurs."""
 
 
@@ -92,7 +93,7 @@ def _spec(question: Question) -> CheckedSpec:
     signals = {}
     for name, column in question.columns.items():
         if name not in question.events:
-            kind = Kind.BOOL if isinstance(column[0], bool) else Kind.REAL
+            kind = Kind.REAL if any(type(cell) is float for cell in column) else Kind.BOOL
             signals[name] = Signal(name, Type(kind))
     requirement = Requirement("R", Mode.UPON, EventAtom(ROW), question.formula, pulse=True)
     events = {name: Event(name) for name in (*sorted(question.events), ROW)}

@@ -17,9 +17,13 @@ class Peer:
         self._rows: list[dict[str, Any]] = []
 
     def judge(self, formula: str, kind: str, columns: dict[str, list[Any]]) -> dict[str, Any]:
-        """The verdict, or with `robustness` in the kind the robustness, at every tick."""
+        """The verdict, or with `robustness` in the kind the robustness, at every tick.
+
+        `dense sparse` tells reelay of changes only.
+        """
         time_model, _, semantics = kind.partition(" ")
-        semantics = semantics or "boolean"
+        sparse = semantics == "sparse"
+        semantics = "boolean" if sparse or not semantics else semantics
         ticks = len(next(iter(columns.values())))
         number = float if semantics == "robustness" else lambda value: value
         rows = [{name: number(column[i]) for name, column in columns.items()} for i in range(ticks)]
@@ -33,7 +37,8 @@ class Peer:
         # Every tick, also without a change: of a longer stretch that starts and ends true, with
         # false at its beginning, the Python package does not print the changes.
         for tick, row in enumerate([*rows, rows[-1]]):
-            changes += monitor.update({"time": tick, **row})
+            if not sparse or row != rows[tick - 1] or tick in (0, ticks):
+                changes += monitor.update({"time": tick, **row})
         return {"values": _per_tick(changes, ticks)}
 
     def load(

@@ -27,6 +27,8 @@ class Peer:
             numbers = {name: [float(v) for v in column] for name, column in columns.items()}
             answer = spec.evaluate({"time": list(range(ticks)), **numbers})
             return {"values": [_finite(value) for _, value in answer]}
+        if kind == "dense online":
+            return {"values": _online(formula, columns, ticks)}
         spec = _specified(rtamt.StlDenseTimeSpecification(), formula, list(columns))
         signals = [[name, _steps(column)] for name, column in columns.items()]
         return {"values": _per_tick(spec.evaluate(*signals), ticks)}
@@ -66,6 +68,17 @@ def _specified(spec: Any, formula: str, names: list[str]) -> Any:
     spec.spec = formula
     spec.parse()
     return spec
+
+
+def _online(formula: str, columns: dict[str, list[Any]], ticks: int) -> list[Any]:
+    """Dense time sample by sample: rtamt answers for an instant that lies its horizon back."""
+    spec = _specified(rtamt.StlDenseTimeOnlineSpecification(), formula, list(columns))
+    spec.pastify()
+    changes: list[list[float]] = []
+    for tick in range(ticks):
+        signals = [[name, [[tick, float(column[tick])]]] for name, column in columns.items()]
+        changes += spec.update(*signals)
+    return _per_tick(changes, ticks)
 
 
 def _steps(column: list[Any]) -> list[list[float]]:
