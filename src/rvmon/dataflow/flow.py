@@ -31,6 +31,7 @@ class Flow:
         values: per node of the graph.
         origin: the first position; `None` before it.
         position: the position that `values` were evaluated at last.
+        since: per node, the position from which on it has had its value.
     """
 
     def __init__(
@@ -41,8 +42,10 @@ class Flow:
         self.gap = gap
         self.captured = captured
         self.values = [UNKNOWN] * len(graph.nodes)
+        self.since = [0] * len(graph.nodes)
         self.origin: int | None = None
         self.position = 0
+        self._until: dict[tuple[int, int], int] = {}
         self._last = 0
         self._dirty: set[int] = set()
         self._fading: list[int] = []
@@ -96,6 +99,7 @@ class Flow:
         dirty = self._dirty
         if self.origin is None:
             self.origin = t
+            self.since = [t] * len(self.values)
             dirty.update(range(len(self.values)))
         elif self.gap is None:
             dirty.update(self.graph.stateful)
@@ -122,6 +126,8 @@ class Flow:
             new = self._evaluate[place](t)
             if new == values[place]:
                 continue
+            self._until[place, values[place]] = self._last
+            self.since[place] = t
             values[place] = new
             changed.append(place)
             for parent in parents[place]:
@@ -129,6 +135,10 @@ class Flow:
                     dirty.add(parent)
                     heappush(queue, parent)
         return changed, dirty
+
+    def last_with(self, place: int, value: int, t: int) -> int | None:
+        """The last position up to `t`, not before the present one, at which a node had a value."""
+        return t if self.values[place] == value else self._until.get((place, value))
 
     @property
     def next_change(self) -> int:

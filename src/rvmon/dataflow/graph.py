@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from rvmon.dataflow.leaves import Reads, captured_names, reads
 from rvmon.formula.state import Elapsed, State, StateOp
+from rvmon.spec.checked import Constant
+from rvmon.spec.printer import format_formula
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,6 +36,15 @@ class Graph:
     stateful: tuple[int, ...]
     captured: frozenset[str]
     remembers_captured: bool
+
+
+def leaf_texts(graph: Graph) -> tuple[tuple[State, str], ...]:
+    """The leaves that are read off the input, with their text."""
+    return tuple(
+        (state, format_formula(state.leaf))
+        for state in graph.nodes
+        if state.leaf is not None and not isinstance(state.leaf, Elapsed | Constant)
+    )
 
 
 def graph_of(roots: Iterable[State]) -> Graph:

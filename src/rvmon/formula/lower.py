@@ -96,6 +96,8 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
         over = factory.literal(trigger, Sense.KNOWN_FALSE)
         implied = lowering.join([requirement.trigger], False, [requirement.consequent], True)
         owed = factory.release(over, implied, 0, None)
+        for node in (implied, owed):
+            lowering.origins[node] = Origin(requirement.consequent, True)
     return Obligation(trigger, owed, lowering.origins)
 
 

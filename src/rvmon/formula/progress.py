@@ -126,6 +126,16 @@ class _Step:
                 assert_never(node)
 
 
+def instance(node: Core, read: ReadLiteral) -> Residual:
+    """What a formula that is instantiated at a position owes after it.
+
+    Args:
+        node: the formula.
+        read: what a literal is at this position.
+    """
+    return _Step((), read, None).instance(node)
+
+
 def _opened(node: Until | Release, clock: int) -> Atom:
     """What is left of an opened window: its start matters no more, and without an end no age."""
     return node.opened or node, NO_CLOCK if node.high is None else clock

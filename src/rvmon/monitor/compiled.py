@@ -10,11 +10,13 @@ from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.table import TableMachine
-from rvmon.dataflow.graph import Graph, graph_of
+from rvmon.dataflow.graph import Graph, graph_of, leaf_texts
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import Obligation, lower
+from rvmon.formula.state import State
+from rvmon.monitor.wording import Words
 from rvmon.spec.checked import CheckedSpec, Requirement
 
 ENGINES = ("auto", "automaton", "progression")
@@ -92,6 +94,17 @@ class CompiledRequirement:
         trigger = [] if self.obligation.trigger is None else [self.obligation.trigger]
         owed = () if self.requirement.captures else self.alphabet.propositions
         return graph_of([*trigger, *owed])
+
+    @cached_property
+    def leaves(self) -> tuple[tuple[State, str], ...]:
+        """What it reads of the input, with its text."""
+        trigger = [] if self.obligation.trigger is None else [self.obligation.trigger]
+        return leaf_texts(graph_of([*trigger, *self.alphabet.propositions]))
+
+    @cached_property
+    def words(self) -> Words:
+        """Names its parts."""
+        return Words(self.obligation.origins)
 
     @cached_property
     def consequent_graph(self) -> Graph:

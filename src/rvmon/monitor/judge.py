@@ -9,9 +9,10 @@ from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import INFINITY, Machine, Token
 from rvmon.automaton.stretch import next_cut, run, settle
 from rvmon.dataflow.flow import Flow
+from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.trace.sample import Scalar
-from rvmon.trace.time import TIME_LIMIT
+from rvmon.trace.time import TIME_LIMIT, format_ticks
 
 Drive = Callable[[Token, int], tuple[Token, int]]
 """Takes a token on under a letter; gives it with the instant of its decision, or when it is due."""
@@ -25,10 +26,11 @@ class Open:
         triggered: the instant of its trigger.
         token: of the run that takes the unknown for the worse.
         better: of the run that takes it for the better; `None` as long as both are the same.
-        seen: the values of the flow's nodes at the trigger.
+        seen: the values of the judge's leaves at the trigger.
+        doubt: when and why the two runs parted; empty if they did not.
     """
 
-    __slots__ = ("better", "number", "seen", "token", "triggered")
+    __slots__ = ("better", "doubt", "number", "seen", "token", "triggered")
 
     def __init__(self, triggered: int, token: Token, seen: tuple[int, ...]) -> None:
         self.number = 0
@@ -36,6 +38,7 @@ class Open:
         self.token = token
         self.better: Token | None = None
         self.seen = seen
+        self.doubt = ""
 
 
 class Clerk(Protocol):
@@ -58,6 +61,7 @@ class Judge:
         clerk: hears of decisions.
         captured: values of `let` and `for each`.
         places: of the propositions in the flow.
+        leaves: place and text of what is read of the input.
         letters: of the position read last, the unknown taken for the worse and for the better.
         attempts: the undecided ones, oldest first; also those that only the end can settle.
         due: an instant before which, the letters staying, no attempt can be decided.
@@ -79,6 +83,8 @@ class Judge:
         self.clerk = clerk
         self.captured = captured
         self.places = tuple(flow.graph.index[state] for state in alphabet.propositions)
+        index = flow.graph.index
+        self.leaves = tuple((index[leaf], text) for leaf, text in compiled.leaves if leaf in index)
         self._worse = tuple(zip(self.places, alphabet.pessimistic, strict=True))
         self._better = tuple(zip(self.places, alphabet.optimistic, strict=True))
         self.letters = (0, 0)
@@ -99,12 +105,18 @@ class Judge:
         """Start an attempt at the position `t`, which the flow is at."""
         if self.position < t:
             self.visit(t)
-        attempt = Open(triggered, self.machine.start, tuple(self.flow.values))
+        attempt = Open(triggered, self.machine.start, self.seen)
         due = self._drive(attempt, self._stepping(t))
         if due is not None:
             self.attempts.append(attempt)
             self.due = min(self.due, due)
         return attempt
+
+    @property
+    def seen(self) -> tuple[int, ...]:
+        """The values of the leaves now."""
+        values = self.flow.values
+        return tuple([values[place] for place, _ in self.leaves])
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, which the flow is at."""
@@ -175,7 +187,9 @@ class Judge:
                 return None
             attempt.token = token
             return t
-        better = better or worse
+        if better is None:
+            better = worse
+            attempt.doubt = self._doubt()
         due = INFINITY
         moved, moved_better = worse, better
         if worse[0] != FAILED:
@@ -193,3 +207,10 @@ class Judge:
         attempt.token = moved
         attempt.better = None if moved == moved_better else moved_better
         return due
+
+    def _doubt(self) -> str:
+        values = self.flow.values
+        unknown = [text for place, text in self.leaves if values[place] == UNKNOWN]
+        return (
+            f"{', '.join(f'`{text}`' for text in unknown)} unknown at {format_ticks(self.position)}"
+        )

@@ -8,10 +8,18 @@ from dataclasses import replace
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.formula.progress import after, holds_at_end
+from rvmon.formula.state import TRUE, UNKNOWN
+from rvmon.monitor.explain import Explanation, explain_decision, explain_open
 from rvmon.monitor.judge import Judge, Open
+from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.end import settle_at_end
 from rvmon.verdict.verdict import Verdict
+
+_SETTLED = {
+    Decision.HELD_TO_END: "held to the end of the trace",
+    Decision.POLICY: "settled by `at end: {policy}`",
+}
 
 
 class Ledger:
@@ -34,13 +42,14 @@ class Ledger:
     def decided(self, judge: Judge, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """See `rvmon.monitor.judge.Clerk`."""
         upon_end = judge.compiled.obligation.trigger is None
-        record = Attempt(
-            judge.compiled.requirement.id,
-            0,
-            attempt.triggered,
+        why = explain_decision(judge, attempt, verdict, t, before)
+        record = _record(
+            judge,
+            attempt,
             attempt.triggered if upon_end else t,
             Verdict.PASS if verdict else Verdict.FAIL,
-            captured=judge.captured,
+            Decision.PREFIX,
+            why,
         )
         self._decided.append((judge, attempt, record))
 
@@ -55,28 +64,18 @@ class Ledger:
             cannot_pass=location == FAILED,
             cannot_fail=attempt.better is not None and attempt.better[0] == PASSED,
         )
-        record = Attempt(
-            requirement.id,
-            0,
-            attempt.triggered,
-            None if decision is Decision.OPEN else end,
-            verdict,
-            decision,
-            captured=judge.captured,
-        )
+        why = explain_open(judge, attempt)
+        if decision is not Decision.OPEN:
+            reason = _SETTLED[decision].format(policy=requirement.at_end)
+            why = replace(why, reason=reason)
+        decided = None if decision is Decision.OPEN else end
+        record = _record(judge, attempt, decided, verdict, decision, why)
         self._decided.append((judge, attempt, record))
 
     def open_record(self, judge: Judge, attempt: Open) -> Attempt:
         """The record of an attempt that is still running."""
-        return Attempt(
-            judge.compiled.requirement.id,
-            attempt.number,
-            attempt.triggered,
-            None,
-            Verdict.INCONCLUSIVE,
-            Decision.OPEN,
-            captured=judge.captured,
-        )
+        why = explain_open(judge, attempt)
+        return _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
@@ -97,6 +96,37 @@ class Ledger:
         records = [record for _, record in made]
         self.attempts += records
         return records
+
+
+def _record(
+    judge: Judge,
+    attempt: Open,
+    decided: int | None,
+    verdict: Verdict,
+    decision: Decision,
+    why: Explanation,
+) -> Attempt:
+    return Attempt(
+        judge.compiled.requirement.id,
+        attempt.number,
+        attempt.triggered,
+        decided,
+        verdict,
+        decision,
+        why.reason,
+        why.deadline,
+        _values(judge, attempt.seen),
+        {} if decided is None else _values(judge, judge.seen),
+        why.owed,
+        judge.captured,
+        why.blame,
+    )
+
+
+def _values(judge: Judge, seen: tuple[int, ...]) -> dict[str, Scalar]:
+    """The propositions concerned by their text; `None` is unknown."""
+    pairs = zip(judge.leaves, seen, strict=True)
+    return {text: None if truth == UNKNOWN else truth == TRUE for (_, text), truth in pairs}
 
 
 def _order(rank: int, record: Attempt) -> tuple[bool, int, int, int]:

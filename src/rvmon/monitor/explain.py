@@ -1,0 +1,69 @@
+"""The sentences and details of a record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.automaton.location import FAILED, PASSED
+from rvmon.automaton.machine import Token
+from rvmon.automaton.stretch import run
+from rvmon.formula.progress import after, value
+from rvmon.formula.state import UNKNOWN
+from rvmon.monitor.cause import CauseFinder
+from rvmon.monitor.judge import Judge, Open
+from rvmon.monitor.wording import deadline
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Blame
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What a record says beside the verdict; see `rvmon.verdict.attempt.Attempt`."""
+
+    reason: str = ""
+    owed: str = ""
+    deadline: int | None = None
+    blame: Blame | None = None
+
+
+def explain_decision(
+    judge: Judge, attempt: Open, verdict: bool, t: int, before: Token
+) -> Explanation:
+    """Why an attempt was decided at `t`; see `rvmon.monitor.judge.Clerk.decided`."""
+    words = judge.compiled.words
+    letter = judge.letters[0 if verdict else 1]
+    location, anchors = _just_before(judge, before, letter, t)
+    residual = judge.machine.residual(location)
+    by_time = value(after(residual, [t - anchor for anchor in anchors])) != UNKNOWN
+    cells = judge.compiled.alphabet.cells_of(letter)
+    finder = CauseFinder(cells, t, attempt.triggered, verdict=verdict, by_time=by_time)
+    cause = finder.of(residual, anchors)
+    if cause is None:
+        return Explanation("nothing was owed" if verdict else "it can never hold")
+    return Explanation(
+        words.reason(cause, verdict, t, judge.flow),
+        deadline=deadline(residual, anchors),
+        blame=None if verdict else words.blame(cause, t, judge.flow),
+    )
+
+
+def _just_before(judge: Judge, token: Token, letter: int, t: int) -> Token:
+    """The token as it stood at the last position before `t`."""
+    gap, position = judge.flow.gap, judge.position
+    if gap is None or position + gap > t - 1:
+        return token
+    return run(judge.machine, token, letter, position + gap, t - 1, gap)[0]
+
+
+def explain_open(judge: Judge, attempt: Open) -> Explanation:
+    """What an undecided attempt waits for, or why it can wait no more."""
+    token = attempt.token if attempt.token[0] != FAILED else attempt.better
+    if token is None or token[0] <= PASSED:
+        return Explanation(f"left open by the input: {attempt.doubt}")
+    location, anchors = token
+    residual = judge.machine.residual(location)
+    owed = judge.compiled.words.owed(residual, anchors)
+    last = deadline(residual, anchors)
+    until = "" if last is None else f", until {format_ticks(last)}"
+    doubt = f"; {attempt.doubt}" if attempt.doubt else ""
+    return Explanation(f"still owed: {owed}{until}{doubt}", owed, last)

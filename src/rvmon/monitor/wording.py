@@ -1,0 +1,167 @@
+"""Causes and obligations in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rvmon.dataflow.flow import Flow
+from rvmon.formula.core import Constant, Core, Literal, Release, Sense, Until
+from rvmon.formula.lower import Origin
+from rvmon.formula.residual import NO_CLOCK, Residual
+from rvmon.formula.state import FALSE, TRUE
+from rvmon.monitor.cause import Cause
+from rvmon.spec.checked import Formula, Unary, UnaryOp
+from rvmon.spec.printer import format_duration, format_formula
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Blame
+
+
+class Words:
+    """Names the parts of one requirement as its text does.
+
+    Args:
+        origins: where its core formulas come from.
+    """
+
+    def __init__(self, origins: Mapping[Core, Origin]) -> None:
+        self._origins = dict(origins)
+        for node, origin in origins.items():
+            opened = node.opened if isinstance(node, Until | Release) else None
+            if opened is not None:
+                self._origins.setdefault(opened, origin)
+        self._windows = {
+            node.opened: node
+            for node in origins
+            if isinstance(node, Until | Release) and node.opened and node.opened not in origins
+        }
+
+    def formula(self, node: Core) -> Formula | None:
+        """The formula of the spec that a node stands for; `None` if none does."""
+        origin = self._origins.get(node)
+        if origin is None:
+            return None
+        return origin.formula if origin.positive else Unary(UnaryOp.NOT, origin.formula)
+
+    def text(self, node: Core) -> str:
+        """A node as text of the spec."""
+        formula = self.formula(node)
+        return "what is owed" if formula is None else format_formula(formula)
+
+    def window(self, node: Until | Release, start: int) -> tuple[int, int | None]:
+        """The window of a node that was instantiated at `start`; an opened one as it was before."""
+        whole = self._windows.get(node, node)
+        return start + whole.low, None if whole.high is None else start + whole.high
+
+    def reason(self, cause: Cause, verdict: bool, t: int, flow: Flow) -> str:
+        """One sentence about a decision at `t`."""
+        node = cause.node
+        if isinstance(node, Literal):
+            return f"{self._named(node, verdict)} at {format_ticks(t)}"
+        if cause.over:
+            return self._window_over(node, cause.start, t, flow)
+        if cause.literal is None:
+            return f"`{self.text(node)}` {_decided(verdict)} at {format_ticks(t)}"
+        named = self._named(cause.literal, verdict)
+        if isinstance(node, Until):
+            if verdict:
+                return f"{named} {format_ticks(t - cause.start)} after {format_ticks(cause.start)}"
+            return f"{named} at {format_ticks(t)}, before `{self.text(node.right)}`"
+        if verdict:
+            return f"{named} at {format_ticks(t)}, which ends what was owed"
+        if not isinstance(node.left, Constant):
+            return f"{named} at {format_ticks(t)}"
+        return f"{named} {format_ticks(t - cause.start)} into {self._kept(node, cause)}"
+
+    def _kept(self, node: Release, cause: Cause) -> str:
+        """What was to be kept up, in two words: `never-for-2 s`, `always`."""
+        origin = self._origins.get(cause.literal) if cause.literal else None
+        never = origin is not None and not self._is_positive(origin)
+        first, last = self.window(node, cause.start)
+        if last is None:
+            return "never" if never else "always"
+        span = f"for-{format_duration(last - cause.start)}"
+        if first > cause.start:
+            span = f"from-{format_duration(first - cause.start)}-{span}"
+        return f"never-{span}" if never else span
+
+    def _is_positive(self, origin: Origin) -> bool:
+        formula, positive = origin.formula, origin.positive
+        while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
+            formula, positive = formula.operand, not positive
+        return positive
+
+    def _named(self, literal: Literal, verdict: bool) -> str:
+        """The proposition that decided, with its truth where that is not plain."""
+        origin = self._origins.get(literal)
+        if origin is None:
+            return "a proposition"
+        formula, positive = origin.formula, origin.positive
+        while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
+            formula, positive = formula.operand, not positive
+        return f"`{format_formula(formula)}`" + ("" if positive is verdict else " false")
+
+    def _window_over(self, node: Until | Release, start: int, t: int, flow: Flow) -> str:
+        first, last = self.window(node, start)
+        window = f"window [{format_ticks(first)}, {format_ticks(last or t)}]"
+        if isinstance(node, Release):
+            return f"{window} over, `{self.text(node.right)}` throughout"
+        right = node.right
+        if not isinstance(right, Literal):
+            return f"{window} closed without `{self.text(right)}`"
+        value = TRUE if right.sense is Sense.TRUE else FALSE
+        seen = flow.last_with(flow.graph.index[right.proposition], value, t)
+        when = "never" if seen is None else format_ticks(seen)
+        return f"{window} closed, `{self.text(right)}` last true: {when}"
+
+    def blame(self, cause: Cause, t: int, flow: Flow) -> Blame:
+        """What failed at `t`."""
+        node = cause.node
+        formula = self.formula(node)
+        span = None if formula is None else formula.span
+        if span is None and isinstance(formula, Unary):
+            span = formula.operand.span
+        window: tuple[int, int | None] = (t, t)
+        if isinstance(node, Until | Release):
+            window = self.window(node, cause.start)
+        at: tuple[int, ...] = ()
+        if cause.literal is not None:
+            at = (flow.since[flow.graph.index[cause.literal.proposition]],)
+        start, end = (0, 0) if span is None else (span.start, span.end)
+        return Blame(self.text(node), start, end, window, at)
+
+    def owed(self, residual: Residual, anchors: Sequence[int]) -> str:
+        """What a residual still asks for, as text of the spec."""
+        clauses = []
+        for clause in sorted(residual, key=lambda c: (len(c), sorted(n.id for n, _ in c))):
+            parts = [
+                self._with_deadline(node, anchors, clock)
+                for node, clock in sorted(clause, key=lambda atom: (atom[1], atom[0].id))
+            ]
+            clauses.append(" and ".join(dict.fromkeys(parts)))
+        return ", or ".join(dict.fromkeys(clauses))
+
+    def _with_deadline(self, node: Core, anchors: Sequence[int], clock: int) -> str:
+        text = f"`{self.text(node)}`"
+        if clock == NO_CLOCK or not isinstance(node, Until | Release) or node.high is None:
+            return text
+        last = anchors[clock] + node.high
+        return f"{text} {'by' if isinstance(node, Until) else 'to'} {format_ticks(last)}"
+
+
+def deadline(residual: Residual, anchors: Sequence[int]) -> int | None:
+    """The last instant at which what is owed can be met; `None` if nothing bounds it."""
+    ends: list[int] = []
+    for clause in residual:
+        own = [
+            anchors[clock] + node.high
+            for node, clock in clause
+            if clock != NO_CLOCK and isinstance(node, Until | Release) and node.high is not None
+        ]
+        if not own:
+            return None
+        ends.append(min(own))
+    return max(ends, default=None)
+
+
+def _decided(verdict: bool) -> str:
+    return "came true" if verdict else "came false"
