@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +14,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
     from rvmon.session import Spec
+    from rvmon.trace.sample import Sample
     from rvmon.verdict.report import Report
 
 
@@ -114,7 +116,14 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, reports: Sequence[Re
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
 
-        write_run_pages(Path(arguments.report), spec, reports)
+        def read(trace: str) -> list[Sample]:
+            # What came over standard input is gone: its page has the verdicts, not the signals.
+            return [] if trace == "-" else list(spec.recording(trace))
+
+        def command(trace: str) -> str:
+            return shlex.join(["rvmon", "run", arguments.spec, trace])
+
+        write_run_pages(Path(arguments.report), spec.checked, reports, read, command)
 
 
 def _constant(text: str) -> tuple[str, str]:

@@ -7,6 +7,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
 from importlib import resources
 
+from rvmon.report.style import verdict_colours
+
 Child = ET.Element | str | None
 
 _UNSAFE_IN_SCRIPT = {"<": r"\u003c", ">": r"\u003e", "&": r"\u0026"}
@@ -67,7 +69,7 @@ def page(
         e("meta", {"name": "viewport", "content": "width=device-width, initial-scale=1"}),
         e("meta", {"name": "color-scheme", "content": "light dark"}),
         e("title", None, title),
-        *(e("style", None, asset(name)) for name in styles),
+        e("style", None, verdict_colours(), *(asset(name) for name in styles)),
     )
     content = e("body", None, *body, *(e("script", None, asset(name)) for name in scripts))
     return "<!DOCTYPE html>\n" + to_html(e("html", {"lang": "en"}, head, content)) + "\n"

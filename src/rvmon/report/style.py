@@ -39,6 +39,13 @@ MARKS = {
 """The look of each verdict; the contrast with the page is at least 4.5 to 1."""
 
 
+def verdict_colours() -> str:
+    """The colours as CSS variables named by the verdicts' letters, for light and dark pages."""
+    light = "".join(f"--{verdict.value}:{mark.light};" for verdict, mark in MARKS.items())
+    dark = "".join(f"--{verdict.value}:{mark.dark};" for verdict, mark in MARKS.items())
+    return f":root{{{light}}}@media(prefers-color-scheme:dark){{:root{{{dark}}}}}"
+
+
 def verdict_text(verdict: Verdict) -> Text:
     """A verdict as styled text for the terminal: its letter, then its sign."""
     from rich.text import Text

@@ -1,0 +1,31 @@
+"""One attempt, or a requirement without any, ready to be drawn: data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.report.timeline import Ghost
+from rvmon.report.tracks import Track
+from rvmon.report.view import View
+from rvmon.verdict.attempt import Attempt
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """What a page shows of one attempt.
+
+    Attributes:
+        id: of the element on the page, and its address behind `#`.
+        requirement: its id.
+        attempt: `None` if the requirement was never triggered.
+        view: the stretch of time that is shown.
+        tracks: of the signals and events concerned.
+        ghost: the nearest passing attempt, for a failed one.
+    """
+
+    id: str
+    requirement: str
+    attempt: Attempt | None
+    view: View
+    tracks: tuple[Track, ...]
+    ghost: Ghost | None

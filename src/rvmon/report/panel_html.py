@@ -1,0 +1,172 @@
+"""One attempt on the page of a run: sentence, spec line, timeline, values."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping, Sequence
+
+from rvmon.report.headline import headline
+from rvmon.report.markup import Child, e, with_code
+from rvmon.report.panel import Panel
+from rvmon.report.run_page import RunPage
+from rvmon.report.spec_html import spec_lines
+from rvmon.report.style import MARKS
+from rvmon.report.timeline import timeline
+from rvmon.report.tracks import Track, TrackKind
+from rvmon.report.view import View, moment
+from rvmon.trace.sample import Scalar
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
+
+
+def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET.Element:
+    """Draw a panel.
+
+    Args:
+        panel: what to draw.
+        panels: all of the page, for links between them.
+        content: of the page.
+    """
+    report = content.run.report
+    requirement = content.spec.requirements[panel.requirement]
+    verdict = Verdict.NOT_TRIGGERED if panel.attempt is None else panel.attempt.verdict
+    sentence = headline(content.run.name, panel.requirement, panel.attempt, report)
+    end = report.origin if report.end is None else report.end
+    drawing = timeline(
+        panel.attempt, panel.tracks, panel.view, origin=report.origin, end=end, ghost=panel.ghost
+    )
+    return e(
+        "section",
+        {"id": panel.id, "data-verdict": verdict.value},
+        e("h1", None, _badge(verdict), e("span", None, *with_code(sentence))),
+        e("p", {"class": "requirement"}, requirement.text) if requirement.text else None,
+        spec_lines(requirement, panel.attempt.blame if panel.attempt else None),
+        drawing,
+        _cursor_controls(panel, report.origin),
+        _legend(panel),
+        _values(panel.attempt),
+        _siblings(panel, panels, content),
+    )
+
+
+def _badge(verdict: Verdict) -> ET.Element:
+    return e(
+        "span",
+        {"class": "badge", "data-verdict": verdict.value},
+        f"{verdict.value} {MARKS[verdict].sign}",
+    )
+
+
+def _cursor_controls(panel: Panel, origin: int) -> ET.Element:
+    attempt = panel.attempt
+    start = panel.view.start if attempt is None else attempt.decided or attempt.triggered
+    slider = {
+        "type": "range",
+        "min": 0,
+        "max": 1000,
+        "value": round(panel.view.fraction(start) * 1000),
+        "aria-label": "instant shown",
+    }
+    return e(
+        "div",
+        {"class": "controls"},
+        e("div", {"class": "name"}, e("button", {"class": "play", "type": "button"}, "▶ play")),
+        e("div", {"class": "plot"}, e("input", slider)),
+        e("output", {"class": "instant"}, moment(start, origin)),
+    )
+
+
+def _legend(panel: Panel) -> ET.Element | None:
+    parts: list[Child] = []
+    if panel.ghost is not None:
+        decided = ""
+        if panel.attempt is not None and panel.ghost.decided is not None:
+            after = moment(panel.ghost.decided - panel.attempt.triggered, 0)
+            decided = f", decided {after} after its trigger"
+        parts.append(
+            e(
+                "span",
+                None,
+                e("i", {"class": "key ghost"}),
+                f"nearest passing attempt: {panel.ghost.name}, attempt {panel.ghost.number}",
+                decided,
+            )
+        )
+    if any(_has_unknown(track, panel.view) for track in panel.tracks):
+        parts.append(e("span", None, e("i", {"class": "key unknown"}), "unknown"))
+    return e("p", {"class": "legend"}, *parts) if parts else None
+
+
+def _has_unknown(track: Track, view: View) -> bool:
+    if track.absent:
+        return True
+    inside = any(value is None and view.start <= t <= view.end for t, value in track.changes)
+    return inside or (track.kind is not TrackKind.EVENT and track.value_at(view.start) is None)
+
+
+def _values(attempt: Attempt | None) -> ET.Element | None:
+    """The propositions at trigger and decision, and what was captured or is still owed."""
+    if attempt is None:
+        return None
+    names = dict.fromkeys((*attempt.at_trigger, *attempt.at_decision))
+    rows = [
+        e(
+            "tr",
+            None,
+            e("th", {"scope": "row"}, e("code", None, name)),
+            e("td", None, _shown(attempt.at_trigger, name)),
+            e("td", None, _shown(attempt.at_decision, name)),
+        )
+        for name in names
+    ]
+    details: list[Child] = []
+    if rows:
+        head = e("tr", None, e("th"), e("th", None, "at the trigger"), e("th", None, "at the end"))
+        details.append(e("table", {"class": "values"}, head, *rows))
+    details.extend(
+        e("p", None, e("code", None, name), f" = {_scalar(value)} (captured at the trigger)")
+        for name, value in attempt.captured.items()
+    )
+    if attempt.owed:
+        details.append(e("p", None, "still owed: ", e("code", None, attempt.owed)))
+    if attempt.robustness is not None:
+        details.append(e("p", None, f"robustness: {attempt.robustness:.4g}"))
+    if not details:
+        return None
+    return e("details", None, e("summary", None, "values at trigger and decision"), *details)
+
+
+def _siblings(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET.Element | None:
+    """Links to the other attempts of the requirement, and how many are not shown."""
+    if panel.attempt is None:
+        return None
+    own = [one for one in panels if one.requirement == panel.requirement and one.attempt]
+    links = [
+        e(
+            "a",
+            {
+                "href": f"#{one.id}",
+                "data-verdict": one.attempt.verdict.value,
+                "aria-current": "true" if one is panel else None,
+            },
+            f"{one.attempt.number} {MARKS[one.attempt.verdict].sign}",
+        )
+        for one in own
+        if one.attempt is not None
+    ]
+    counts = content.run.report.counts[panel.requirement]
+    rest = sum(counts.values()) - len(links)
+    if rest <= 0 and len(links) == 1:
+        return None
+    more = [f" and {rest} more"] if rest > 0 else []
+    return e("p", {"class": "siblings"}, f"attempts of {panel.requirement}: ", *links, *more)
+
+
+def _shown(values: Mapping[str, Scalar], name: str) -> str:
+    return _scalar(values[name]) if name in values else ""
+
+
+def _scalar(value: Scalar) -> str:
+    if value is None:
+        return "unknown"
+    return str(value).lower() if isinstance(value, bool) else str(value)

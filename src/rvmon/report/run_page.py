@@ -1,0 +1,51 @@
+"""A judged run with all that its page shows: data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rvmon.report.scene import Scene
+from rvmon.spec.checked import CheckedSpec
+from rvmon.trace.sample import Sample
+from rvmon.verdict.report import Report
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRun:
+    """A run with its verdicts.
+
+    Attributes:
+        name: what people call it, such as a test's name or a file's.
+        report: the verdicts.
+        samples: that were judged, in time order.
+    """
+
+    name: str
+    report: Report
+    samples: Sequence[Sample]
+
+
+@dataclass(frozen=True, slots=True)
+class RunPage:
+    """What the page of a run is made of.
+
+    Attributes:
+        run: the one that the page is about.
+        spec: that judged it.
+        command: replays it.
+        others: runs by the same spec, whose passing attempts a failed one can be held against.
+        facts: more about the run, as pairs of name and value.
+        scene: what the robot did, if it is known.
+        focus: the requirement to open on if none failed.
+        back: address of the page that links here.
+    """
+
+    run: JudgedRun
+    spec: CheckedSpec
+    command: str
+    others: Sequence[JudgedRun] = ()
+    facts: Sequence[tuple[str, str]] = ()
+    scene: Scene | None = None
+    focus: str = ""
+    back: str = ""
