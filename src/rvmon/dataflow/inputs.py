@@ -20,6 +20,7 @@ class Slot:
     Attributes:
         value: as seen now; `None` if unknown, also because it is stale.
         updates: how often it was updated, counted to two.
+        first_at: the instant of the first update; `None` before it.
         last: the value of the last update; `None` if that was unknown.
         at: the instant of the last update.
         before: the value of the update before; `None` if it was unknown or there was none.
@@ -32,6 +33,7 @@ class Slot:
         "at",
         "before",
         "before_at",
+        "first_at",
         "last",
         "stale_after",
         "stale_at",
@@ -42,6 +44,7 @@ class Slot:
     def __init__(self, stale_after: int | None) -> None:
         self.value: Scalar = None
         self.updates = 0
+        self.first_at: int | None = None
         self.last: Scalar = None
         self.at = 0
         self.before: Scalar = None
@@ -67,6 +70,7 @@ class Slot:
         if self.stale_after is not None:
             self.stale_at = t + self.stale_after + 1
         if first:
+            self.first_at = t
             return FALSE
         if value is None or self.before is None:
             return UNKNOWN
@@ -85,6 +89,7 @@ class Inputs:
         updated: the names that were updated for this position.
         changed: by signal, whether an update for this position brought another value.
         absent: names without a source.
+        expired: by signal how often it became stale, and the first instant of that.
     """
 
     def __init__(self, spec: CheckedSpec, sources: frozenset[str] | None) -> None:
@@ -93,6 +98,7 @@ class Inputs:
         self.absent = frozenset() if sources is None else frozenset(names - sources)
         self.occurrences: dict[str, list[Reported]] = {}
         self.updated: set[str] = set()
+        self.expired: dict[str, tuple[int, int]] = {}
         self.changed: dict[str, int] = {}
         self._perishable = [
             (name, slot) for name, slot in self.slots.items() if slot.stale_after is not None
@@ -122,6 +128,7 @@ class Inputs:
         made.absent = self.absent
         made.occurrences = {name: list(values) for name, values in self.occurrences.items()}
         made.updated = set(self.updated)
+        made.expired = dict(self.expired)
         made.changed = dict(self.changed)
         made._perishable = [(name, made.slots[name]) for name, _ in self._perishable]
         return made
@@ -135,6 +142,8 @@ class Inputs:
         """Make stale what is so at `t`; returns the names."""
         expired = [name for name, slot in self._perishable if slot.stale_at <= t]
         for name in expired:
+            count, first = self.expired.get(name, (0, self.slots[name].stale_at))
+            self.expired[name] = (count + 1, first)
             self.slots[name].value = None
             self.slots[name].stale_at = NEVER
         return expired

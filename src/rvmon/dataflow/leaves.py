@@ -8,7 +8,7 @@ from itertools import product
 from typing import assert_never
 
 from rvmon.dataflow.inputs import Inputs, payloads_of
-from rvmon.dataflow.numbers import COMPARE, captured_of, events_of, names_of, reader
+from rvmon.dataflow.numbers import COMPARE, captured_of, events_of, inputs_of, reader
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf
 from rvmon.spec.checked import (
     BoundAtom,
@@ -52,9 +52,7 @@ def reads(leaf: Leaf) -> Reads:
         case ProbeAtom(probe=probe, name=name):
             return Reads(frozenset({name}), probe is not Probe.KNOWN)
         case Compare(left=left, right=right):
-            events = events_of(leaf)
-            names = names_of(left) | names_of(right)
-            return Reads(frozenset(names) | frozenset(events), bool(events))
+            return Reads(inputs_of(left, right), bool(events_of(left, right)))
         case _:
             assert_never(leaf)
 
@@ -62,7 +60,7 @@ def reads(leaf: Leaf) -> Reads:
 def captured_names(leaf: Leaf) -> frozenset[str]:
     """The captured values that a leaf compares with."""
     if isinstance(leaf, Compare):
-        return frozenset(captured_of(leaf.left) | captured_of(leaf.right))
+        return captured_of(leaf.left, leaf.right)
     return frozenset()
 
 
@@ -119,7 +117,7 @@ def _compare(leaf: Compare, inputs: Inputs, captured: Mapping[str, Scalar]) -> E
     operation = COMPARE[leaf.op]
     left = reader(leaf.left, inputs, captured)
     right = reader(leaf.right, inputs, captured)
-    events = events_of(leaf)
+    events = events_of(leaf.left, leaf.right)
 
     def truth(payloads: Mapping[str, Mapping[str, Scalar]]) -> int:
         first, second = left(payloads), right(payloads)

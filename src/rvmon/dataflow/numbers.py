@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, assert_never
 
 from rvmon.dataflow.inputs import Inputs, Slot
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
-    Compare,
     CompareOp,
     FieldValue,
     Literal,
@@ -123,42 +122,30 @@ def _finite(operation: Callable[..., float], values: list[Scalar]) -> float | No
         return None
 
 
-def events_of(compare: Compare) -> tuple[str, ...]:
-    """The events whose fields a comparison reads, each once."""
-    found: dict[str, None] = {}
-
-    def visit(expression: Numeric) -> None:
-        match expression:
-            case FieldValue(event=event):
-                found[event] = None
-            case Arithmetic(args=args):
-                for arg in args:
-                    visit(arg)
-            case _:
-                pass
-
-    visit(compare.left)
-    visit(compare.right)
-    return tuple(found)
-
-
-def names_of(expression: Numeric) -> set[str]:
-    """The signals that an expression reads."""
+def operands(expression: Numeric) -> Iterator[Numeric]:
+    """What an expression is made of, without the operations."""
     match expression:
-        case SignalValue(name=name) | UpdateValue(name=name):
-            return {name}
         case Arithmetic(args=args):
-            return set().union(*(names_of(arg) for arg in args))
+            for arg in args:
+                yield from operands(arg)
         case _:
-            return set()
+            yield expression
 
 
-def captured_of(expression: Numeric) -> set[str]:
-    """The captured values that an expression reads."""
-    match expression:
-        case Captured(name=name):
-            return {name}
-        case Arithmetic(args=args):
-            return set().union(*(captured_of(arg) for arg in args))
-        case _:
-            return set()
+def inputs_of(*expressions: Numeric) -> frozenset[str]:
+    """The signals and events that expressions read."""
+    parts = [part for expression in expressions for part in operands(expression)]
+    signals = {part.name for part in parts if isinstance(part, SignalValue | UpdateValue)}
+    return frozenset(signals) | frozenset(events_of(*expressions))
+
+
+def events_of(*expressions: Numeric) -> tuple[str, ...]:
+    """The events whose fields expressions read, each once."""
+    parts = [part for expression in expressions for part in operands(expression)]
+    return tuple(dict.fromkeys(part.event for part in parts if isinstance(part, FieldValue)))
+
+
+def captured_of(*expressions: Numeric) -> frozenset[str]:
+    """The captured values that expressions read."""
+    parts = [part for expression in expressions for part in operands(expression)]
+    return frozenset(part.name for part in parts if isinstance(part, Captured))

@@ -11,13 +11,14 @@ from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.table import TableMachine
 from rvmon.dataflow.graph import Graph, graph_of, leaf_texts
+from rvmon.dataflow.numbers import events_of, inputs_of
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import Obligation, lower
 from rvmon.formula.state import State
 from rvmon.monitor.wording import Words
-from rvmon.spec.checked import CheckedSpec, Requirement
+from rvmon.spec.checked import CheckedSpec, Compare, Requirement
 
 ENGINES = ("auto", "automaton", "progression")
 
@@ -100,6 +101,26 @@ class CompiledRequirement:
         """What it reads of the input, with its text."""
         trigger = [] if self.obligation.trigger is None else [self.obligation.trigger]
         return leaf_texts(graph_of([*trigger, *self.alphabet.propositions]))
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The signals and events that it reads."""
+        graph = graph_of(state for state, _ in self.leaves)
+        return frozenset(graph.by_name) | frozenset(
+            name for capture in self.requirement.captures for name in inputs_of(capture.value)
+        )
+
+    @cached_property
+    def single_payloads(self) -> frozenset[str]:
+        """The events of which it can judge one payload at an instant only."""
+        own = self.requirement.for_each
+        read = {
+            event
+            for state, _ in self.leaves
+            if isinstance(state.leaf, Compare)
+            for event in events_of(state.leaf.left, state.leaf.right)
+        }
+        return frozenset(read) - frozenset([own.value.event] if own else [])
 
     @cached_property
     def words(self) -> Words:

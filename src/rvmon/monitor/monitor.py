@@ -8,10 +8,13 @@ from typing import Any
 from rvmon.automaton.machine import INFINITY
 from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.health import HealthLog
+from rvmon.monitor.intake import Intake
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.validate import Validator
 from rvmon.spec.checked import TimeModel
+from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT, format_ticks, ticks_of_seconds
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
@@ -30,13 +33,16 @@ class Monitor:
         compiled: CompiledSpec,
         requirements: Sequence[CompiledRequirement],
         engine: str,
+        settle: str,
         sources: frozenset[str] | None,
     ) -> None:
         self._compiled = compiled
         self._requirements = requirements
         self._engine = engine
         self._sources = sources
-        self._validator = Validator(compiled.checked, sources, frozenset())
+        self._settle = settle
+        single = frozenset().union(*(one.single_payloads for one in requirements))
+        self._validator = Validator(compiled.checked, sources, single)
         self.reset()
 
     def reset(self) -> None:
@@ -45,6 +51,10 @@ class Monitor:
         self._lanes = Lanes(
             self._compiled.checked, self._requirements, self._engine, self._sources, self._ledger
         )
+        delay = self._compiled.checked.max_delay or 0
+        holds_back = delay or self._settle == "next"
+        self._intake = Intake(delay, self._compiled.checked.events) if holds_back else None
+        self._health = HealthLog()
         self._last: int | None = None
         self._reached: int | None = None
         self._report: Report | None = None
@@ -72,6 +82,9 @@ class Monitor:
                 monitor is as it was.
         """
         self._check_time(t_ns)
+        if self._intake is not None:
+            ready = self._intake.take(t_ns, self._validator.check(t_ns, values))
+            return self._settled(ready, self._intake.floor)
         if self._last is not None and t_ns <= self._last:
             raise TimeOrderError(
                 f"sample at {format_ticks(t_ns)} is not after the one at "
@@ -83,10 +96,20 @@ class Monitor:
                 f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) said "
                 "that none before would come: advance later, or drop the sample"
             )
-        plain = self._validator.check(t_ns, values)
-        self._lanes.through(t_ns - 1)
-        self._lanes.sample(t_ns, plain)
-        self._last = self._reached = t_ns
+        self._judge(t_ns, self._validator.check(t_ns, values))
+        return self._ledger.flush()
+
+    def _judge(self, t: int, values: Mapping[str, Value]) -> None:
+        self._health.note(t, values)
+        self._lanes.through(t - 1)
+        self._lanes.sample(t, values)
+        self._last = self._reached = t
+
+    def _settled(self, samples: Sequence[Sample], floor: int) -> Sequence[Attempt]:
+        """Judge samples that were held back, then let time come to `floor`."""
+        for sample in samples:
+            self._judge(sample.t, sample.values)
+        self._pass_to(floor)
         return self._ledger.flush()
 
     def advance(self, t: float) -> Sequence[Attempt]:
@@ -99,14 +122,14 @@ class Monitor:
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
         self._check_time(t_ns)
-        if self._reached is None or t_ns > self._reached:
-            self._pass_to(t_ns)
-            self._reached = t_ns
-        return self._ledger.flush()
+        held_back = () if self._intake is None else self._intake.settle(t_ns)
+        return self._settled(held_back, t_ns)
 
     def _pass_to(self, t: int) -> None:
-        self._lanes.through(t - 1)
-        self._lanes.reach(t)
+        if self._reached is None or t > self._reached:
+            self._lanes.through(t - 1)
+            self._lanes.reach(t)
+            self._reached = t
 
     def _check_time(self, t: int) -> None:
         if self._report is not None:
@@ -131,6 +154,8 @@ class Monitor:
             return self._report
         if t_ns is not None:
             self._check_time(t_ns)
+        for sample in () if self._intake is None else self._intake.close():
+            self._judge(sample.t, sample.values)
         end = self._end(t_ns)
         if end is not None:
             reached = max(end, self._reached or end)
@@ -140,6 +165,10 @@ class Monitor:
         self._report = report_of(
             [compiled.requirement.id for compiled in self._requirements],
             self._ledger.attempts,
+            health=self._health.report(
+                self._requirements, self._lanes.main.flow.inputs, self._intake
+            ),
+            origin=self._health.began or 0,
             end=end,
         )
         return self._report
@@ -185,15 +214,16 @@ def build_monitor(
         compiled: from `compile_spec`; any number of monitors can share it.
         only: ids of the requirements to judge; default all.
         engine: `auto`, `automaton` or `progression`.
-        settle: `now` judges each sample at once.
+        settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
+            each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
 
     Raises:
         UnknownNameError: `only`, `engine` or `settle` names what does not exist.
         RvmonError: the engine was asked for by name and cannot judge a requirement.
     """
-    if settle not in ("now",):
-        raise UnknownNameError(f"no way to settle `{settle}`: there is now")
+    if settle not in ("now", "next"):
+        raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
     wanted = None if only is None else frozenset(only)
     unknown = sorted((wanted or frozenset()) - compiled.requirements.keys())
     if unknown:
@@ -206,4 +236,5 @@ def build_monitor(
     ]
     for requirement in chosen:
         requirement.machine(engine)
-    return Monitor(compiled, chosen, engine, None if sources is None else frozenset(sources))
+    given = None if sources is None else frozenset(sources)
+    return Monitor(compiled, chosen, engine, settle, given)

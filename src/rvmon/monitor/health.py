@@ -1,0 +1,95 @@
+"""Input health of a run: what was not known, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from rvmon.dataflow.inputs import Inputs, payloads_of
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.intake import Intake
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Scalar, Value
+from rvmon.trace.time import format_ticks
+
+
+class HealthLog:
+    """Counts unknown values as they come.
+
+    Attributes:
+        began: the instant of the first sample; `None` before it.
+    """
+
+    def __init__(self) -> None:
+        self.began: int | None = None
+        self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
+
+    def note(self, t: int, values: Mapping[str, Value]) -> None:
+        """Look through a sample that was taken."""
+        if self.began is None:
+            self.began = t
+        for name, value in values.items():
+            if isinstance(value, Mapping | tuple):
+                for payload in payloads_of(value):
+                    for field, scalar in (payload or {}).items():
+                        self._look(f"{name}.{field}", name, scalar, t)
+            else:
+                self._look(name, name, value, t)
+
+    def _look(self, shown: str, name: str, value: Scalar, t: int) -> None:
+        if value is not None and value == value:
+            return
+        key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
+        count, first = self._seen.get(key, (0, t))
+        self._seen[key] = (count + 1, first)
+
+    def report(
+        self,
+        requirements: Sequence[CompiledRequirement],
+        inputs: Inputs,
+        intake: Intake | None,
+    ) -> list[Health]:
+        """All findings of the run.
+
+        Args:
+            requirements: that were judged.
+            inputs: of the run, at its end.
+            intake: of the run, if samples were held back.
+        """
+        readers: dict[str, tuple[str, ...]] = {}
+        for compiled in requirements:
+            for name in compiled.reads:
+                readers[name] = (*readers.get(name, ()), compiled.requirement.id)
+        found = [
+            Health(kind, shown, count, first, readers.get(name, ()))
+            for (kind, shown, name), (count, first) in self._seen.items()
+        ]
+        found += self._unfed(readers, inputs)
+        found += [
+            Health(HealthKind.STALE, name, count, first, readers.get(name, ()))
+            for name, (count, first) in inputs.expired.items()
+        ]
+        if intake is not None:
+            found += [
+                replace(one, requirements=readers.get(one.name, ()))
+                for one in intake.conflicts.health()
+            ]
+            if intake.late is not None:
+                count, first = intake.late
+                found.append(Health(HealthKind.LATE, "samples", count, first, remark="left out"))
+        return sorted(found, key=lambda one: (one.name, one.kind))
+
+    def _unfed(self, readers: Mapping[str, tuple[str, ...]], inputs: Inputs) -> list[Health]:
+        """Names without a source, and signals that were unknown at first."""
+        found = []
+        for name, ids in readers.items():
+            slot = inputs.slots.get(name)
+            if name in inputs.absent:
+                found.append(Health(HealthKind.ABSENT, name, 1, None, ids))
+            elif slot is not None and self.began is not None and slot.first_at != self.began:
+                since = "no value" if slot.first_at is None else "first value at "
+                when = "" if slot.first_at is None else format_ticks(slot.first_at)
+                found.append(
+                    Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since + when)
+                )
+        return found

@@ -1,0 +1,66 @@
+"""Samples that cannot be judged as they come: equal stamps, and what may be late."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+from heapq import heappop, heappush
+
+from rvmon.errors import TimeOrderError
+from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.time import TIME_LIMIT, format_ticks
+
+
+class Intake:
+    """Holds samples back until no other can come at their instant or before (SEMANTICS 6).
+
+    Args:
+        delay: how much later than the newest sample one may come, ticks.
+        events: the names that are events.
+
+    Attributes:
+        floor: no sample before this instant is taken any more.
+        conflicts: signals that got two values at one instant.
+        late: samples that came after their instant was settled: how many, and the first's instant.
+    """
+
+    def __init__(self, delay: int, events: Container[str]) -> None:
+        self.delay = delay
+        self.events = events
+        self.floor = -TIME_LIMIT
+        self.conflicts = Conflicts()
+        self.late: tuple[int, int] | None = None
+        self._held: list[tuple[int, int, Mapping[str, Value]]] = []
+        self._taken = 0
+
+    def take(self, t: int, values: Mapping[str, Value]) -> list[Sample]:
+        """Take a sample; returns those that are settled by it, in order.
+
+        Raises:
+            TimeOrderError: it comes before the floor, and no delay is allowed; nothing changed.
+        """
+        if t < self.floor:
+            if not self.delay:
+                raise TimeOrderError(
+                    f"sample at {format_ticks(t)}, but time has come to "
+                    f"{format_ticks(self.floor)}: sort the samples, or allow a `max delay`"
+                )
+            count, first = self.late or (0, t)
+            self.late = (count + 1, first)
+            return []
+        self._taken += 1
+        heappush(self._held, (t, self._taken, values))
+        return self.settle(t - self.delay)
+
+    def settle(self, t: int) -> list[Sample]:
+        """Learn that no sample before `t` will come; returns those that are settled, in order."""
+        self.floor = max(self.floor, t)
+        ready = []
+        while self._held and self._held[0][0] < self.floor:
+            instant, _, values = heappop(self._held)
+            ready.append(Sample(instant, values))
+        return list(coalesce(ready, self.events, self.conflicts))
+
+    def close(self) -> list[Sample]:
+        """Learn that no sample will come; returns all that are held, in order."""
+        return self.settle(TIME_LIMIT)
