@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import UnknownNameError
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
@@ -58,10 +58,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge, show, and return the exit code."""
+    from rvmon.cli.constants import constants_of
     from rvmon.cli.judging import Options, judge_all
     from rvmon.session import load
 
-    constants = dict(_constant(text) for text in arguments.const)
+    constants = constants_of(arguments.const)
     spec = load(arguments.spec, const=constants)
     _show_warnings(spec)
     options = Options(
@@ -124,13 +125,6 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, reports: Sequence[Re
             return shlex.join(["rvmon", "run", arguments.spec, trace])
 
         write_run_pages(Path(arguments.report), spec.checked, reports, read, command)
-
-
-def _constant(text: str) -> tuple[str, str]:
-    name, sign, value = text.partition("=")
-    if not sign or not name.strip() or not value.strip():
-        raise RvmonError(f"--const {text}: expected NAME=VALUE, such as T=2s")
-    return name.strip(), value.strip()
 
 
 def _ids(listed: str | None, spec: Spec) -> tuple[str, ...] | None:

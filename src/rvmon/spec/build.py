@@ -13,28 +13,38 @@ from lark.visitors import v_args
 
 from rvmon.spec.build_expressions import Children, ExpressionBuilder, first_of, unquoted
 from rvmon.spec.checked import Mode, Role, TimeModel
+from rvmon.spec.goals import BinKind
 from rvmon.spec.items import (
     AtEndClause,
     Bare,
+    BinSyntax,
     ConstItem,
+    CoverItem,
+    CoverpointItem,
+    CrossItem,
     DefineItem,
     DelayItem,
     EventItem,
     EventSyntax,
     FieldSyntax,
     ForEachClause,
+    GoalClause,
     Header,
+    ImportItem,
     LetClause,
     PropertyClause,
     PropertyItem,
     RequirementItem,
     ResponseMonitor,
+    SampledClause,
+    ScopeClause,
     SignalItem,
     TagsClause,
     TextClause,
     TimeItem,
     Triggered,
     TypeSyntax,
+    UnwantedClause,
 )
 from rvmon.spec.syntax import Ident, Name
 
@@ -60,6 +70,10 @@ class Builder(ExpressionBuilder):
 
     def delay(self, meta: Meta, children: Children) -> DelayItem:
         return DelayItem(children[-1], self.span(meta))
+
+    def import_item(self, meta: Meta, children: Children) -> ImportItem:
+        target = children[1]
+        return ImportItem(_string(target), target.type == "NAME", self.span(meta))
 
     def names(self, meta: Meta, children: Children) -> tuple[Ident, ...]:
         return tuple(map(self.ident, children))
@@ -155,6 +169,50 @@ class Builder(ExpressionBuilder):
 
     def owned_property(self, meta: Meta, children: Children) -> PropertyClause:
         return PropertyClause(children[1], self.span(meta))
+
+    def scope_before(self, meta: Meta, children: Children) -> ScopeClause:
+        return ScopeClause(None, children[-1], True, self.span(meta))
+
+    def scope_after(self, meta: Meta, children: Children) -> ScopeClause:
+        return ScopeClause(children[-1], None, False, self.span(meta))
+
+    def scope_after_until(self, meta: Meta, children: Children) -> ScopeClause:
+        return ScopeClause(children[2], children[-1], False, self.span(meta))
+
+    def scope_between(self, meta: Meta, children: Children) -> ScopeClause:
+        return ScopeClause(children[2], children[-1], True, self.span(meta))
+
+    # Goals.
+
+    def cover(self, meta: Meta, children: Children) -> CoverItem:
+        return CoverItem(self.ident(children[1]), children[2], self.span(meta))
+
+    def bin(self, meta: Meta, children: Children) -> BinSyntax:
+        kinds = [BinKind(str(t)) for t in _of(Token, children) if t.type == "UNWANTED"]
+        names = [token for token in _of(Token, children) if token.type == "NAME"]
+        values = first_of([child for child in children if not isinstance(child, Token)])
+        kind = kinds[0] if kinds else BinKind.GOAL
+        return BinSyntax(self.ident(names[0]), values, kind, self.span(meta))
+
+    def sampled(self, meta: Meta, children: Children) -> SampledClause:
+        return SampledClause(children[1], self.span(meta))
+
+    def goal(self, meta: Meta, children: Children) -> GoalClause:
+        return GoalClause(self.number(meta, children[1:]), self.span(meta))
+
+    def unwanted(self, meta: Meta, children: Children) -> UnwantedClause:
+        return UnwantedClause(BinKind(str(children[0])), children[1], self.span(meta))
+
+    def coverpoint(self, meta: Meta, children: Children) -> CoverpointItem:
+        _, name, *rest = children
+        bins = tuple(_of(BinSyntax, rest))
+        expression = None if isinstance(rest[0], BinSyntax) else rest[0]
+        clauses = tuple(rest[len(bins) + (expression is not None) :])
+        return CoverpointItem(self.ident(name), expression, bins, clauses, self.span(meta))
+
+    def cross(self, meta: Meta, children: Children) -> CrossItem:
+        _, name, points, *clauses = children
+        return CrossItem(self.ident(name), points, tuple(clauses), self.span(meta))
 
 
 def _of(kind: type[_T], children: Iterable[Any]) -> list[_T]:

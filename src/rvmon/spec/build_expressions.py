@@ -212,7 +212,7 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         return Path(token[0] == "A", op, operand, first_of(window), reaching, *spans)
 
     def quantified(self, meta: Meta, children: Children) -> Quantified:
-        token, _, path, _ = children
+        token, path = children
         return Quantified(token == "A", path, self.span(meta))
 
     def leads_to(self, meta: Meta, children: Children) -> LeadsTo:

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.spec.checked import CheckedSpec, Event, Requirement, Signal, TimeModel, Type
+from rvmon.spec.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.cycles import find_cycles
 from rvmon.spec.expressions import Checker, Reported
 from rvmon.spec.items import TypeSyntax
 from rvmon.spec.macros import check_unused
-from rvmon.spec.reads import names_in, names_read
+from rvmon.spec.properties import checked_property
+from rvmon.spec.reads import names_of_spec
 from rvmon.spec.requirements import check_clauses, checked_requirement
 from rvmon.spec.resolved import DeclaredEvent, DeclaredSignal, ResolvedSpec
 from rvmon.spec.rules import names as name_rules
@@ -55,6 +57,25 @@ def check(spec: ResolvedSpec) -> tuple[CheckedSpec, list[Diagnostic]]:
         if requirement is not None:
             requirements[name] = requirement
     check_unused(checker, spec)
+    properties = {name: r.ctl for name, r in requirements.items() if r.ctl is not None}
+    for name, alone in spec.properties.items():
+        if found := checked_property(checker, name, alone.formula):
+            properties[name] = found
+    covers = {
+        name: cover
+        for name, syntax in spec.covers.items()
+        if (cover := checked_cover(checker, syntax))
+    }
+    coverpoints = {
+        name: point
+        for name, syntax in spec.coverpoints.items()
+        if (point := checked_coverpoint(checker, syntax))
+    }
+    crosses = {
+        name: cross
+        for name, syntax in spec.crosses.items()
+        if (cross := checked_cross(checker, syntax, coverpoints, spec.coverpoints))
+    }
     checked = CheckedSpec(
         spec.header.name.text if spec.header else "spec",
         spec.header.title if spec.header else "",
@@ -64,7 +85,11 @@ def check(spec: ResolvedSpec) -> tuple[CheckedSpec, list[Diagnostic]]:
         requirements,
         period,
         delay,
-        spec.source,
+        spec.sources[0],
+        properties,
+        covers,
+        coverpoints,
+        crosses,
     )
     return checked, findings
 
@@ -145,13 +170,8 @@ def _duration(checker: Checker, expression: Expression) -> int | None:
 
 
 def never_read(spec: CheckedSpec) -> list[Diagnostic]:
-    """A finding for each signal and event that no requirement reads."""
-    read: set[str] = set()
-    for requirement in spec.requirements.values():
-        read.update(names_read(requirement.trigger))
-        read.update(names_read(requirement.consequent))
-        for capture in requirement.captures:
-            read.update(names_in(capture.value))
+    """A finding for each signal and event of the main file that nothing reads."""
+    read = frozenset(names_of_spec(spec))
     kinds: tuple[tuple[str, Mapping[str, Signal | Event]], ...] = (
         ("signal", spec.signals),
         ("event", spec.events),
@@ -160,5 +180,5 @@ def never_read(spec: CheckedSpec) -> list[Diagnostic]:
         trigger_rules.never_read(declared.span, kind)
         for kind, names in kinds
         for name, declared in names.items()
-        if name not in read and declared.span is not None
+        if name not in read and declared.span is not None and declared.span.source is spec.source
     ]

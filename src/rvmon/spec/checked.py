@@ -10,9 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.span import Source, Span
 from rvmon.trace.schema import Kind
+
+if TYPE_CHECKING:
+    from rvmon.spec.ctl import Property
+    from rvmon.spec.goals import Cover, Coverpoint, Cross
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,6 +330,8 @@ class Requirement:
         at_end: policy for undecided attempts.
         pulse: whether the trigger is a pulse (SEMANTICS 3): it starts an attempt wherever it holds.
         property: the CTL property's text, if it has one.
+        ctl: the same, checked.
+        scope: the `scope` clause as written; trigger and consequent have it worked in.
         span: of the whole item.
     """
 
@@ -343,6 +350,8 @@ class Requirement:
     tags: tuple[str, ...] = ()
     property: str = ""
     span: Span | None = None
+    ctl: Property | None = None
+    scope: str = ""
 
 
 class TimeModel(StrEnum):
@@ -361,6 +370,10 @@ class CheckedSpec:
         period: the D of `sampled every D`, ticks; `None` in the other time models.
         max_delay: the watermark of `max delay D`, ticks.
         source: the text it came from.
+        properties: the CTL properties, of requirements (under their id) and alone.
+        covers: the cover goals by id.
+        coverpoints: by name.
+        crosses: by name.
     """
 
     name: str
@@ -372,3 +385,7 @@ class CheckedSpec:
     period: int | None = None
     max_delay: int | None = None
     source: Source | None = None
+    properties: Mapping[str, Property] = field(default_factory=dict)
+    covers: Mapping[str, Cover] = field(default_factory=dict)
+    coverpoints: Mapping[str, Coverpoint] = field(default_factory=dict)
+    crosses: Mapping[str, Cross] = field(default_factory=dict)

@@ -11,7 +11,8 @@ from rvmon.diagnostics.span import Source
 from rvmon.errors import SpecError
 from rvmon.spec.check import check, never_read
 from rvmon.spec.checked import CheckedSpec
-from rvmon.spec.parse import parse_spec
+from rvmon.spec.constants import overridden
+from rvmon.spec.load import load_files
 from rvmon.spec.resolve import resolve
 
 
@@ -40,24 +41,25 @@ def compile_text(
     >>> spec.requirements["R"].pulse, warnings
     (True, ())
     """
-    parsed, findings = parse_spec(Source(name, text))
-    resolved, doubles = resolve(parsed)
+    source = Source(name, text)
+    files, findings = load_files(source, directory)
+    files, unknown = overridden(files, constants or {})
+    resolved, doubles = resolve(files)
     checked, wrong = check(resolved)
-    found = _once([*findings, *doubles, *wrong])
+    found = _once([*findings, *unknown, *doubles, *wrong], source)
     if any(finding.severity is Severity.ERROR for finding in found):
         raise SpecError(found, render_full(found))
-    found = _once([*found, *never_read(checked)])
-    return checked, tuple(found)
+    return checked, tuple(_once([*found, *never_read(checked)], source))
 
 
-def _once(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """In order of place, and what was found several times (in a macro) once."""
-    unique = {(finding.code, _place(finding)): finding for finding in reversed([*findings])}
-    return sorted(unique.values(), key=_place)
+def _once(findings: Iterable[Diagnostic], main: Source) -> list[Diagnostic]:
+    """In order of place, the main file first; what was found several times (in a macro) once."""
+    unique = {(finding.code, _place(finding, main)): finding for finding in reversed([*findings])}
+    return sorted(unique.values(), key=lambda finding: _place(finding, main))
 
 
-def _place(finding: Diagnostic) -> tuple[str, int, int]:
+def _place(finding: Diagnostic, main: Source) -> tuple[bool, str, int, int]:
     if not finding.spans:
-        return ("", 0, 0)
+        return (False, "", 0, 0)
     span = finding.spans[0].span
-    return (span.source.name, span.start, span.end)
+    return (span.source is not main, span.source.name, span.start, span.end)

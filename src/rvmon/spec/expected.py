@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import difflib
 import re
+from contextlib import suppress
 from typing import Any
 
 import lark
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
-from lark.parsers.lalr_interactive_parser import InteractiveParser
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
@@ -65,7 +65,7 @@ _MEND = {
 
 
 def explain_unexpected(
-    error: UnexpectedInput, parser: lark.Lark, source: Source, start: int, end: int
+    error: UnexpectedInput, parser: lark.Lark, source: Source, start: int, end: int, rule: str
 ) -> Diagnostic:
     """Say what was found and what could have stood there.
 
@@ -75,9 +75,10 @@ def explain_unexpected(
         source: the file.
         start: where the text given to the parser starts in it.
         end: where it ends.
+        rule: the start rule.
     """
     place = _place(error, source, start, end)
-    accepted = _accepted(error, parser)
+    accepted = _accepted(parser, source.text[start:end], rule)
     found = place.text
     if found in RESERVED and "NAME" in accepted and not accepted >= _OPERAND:
         return names.reserved(place)
@@ -100,13 +101,12 @@ def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span
     return Span(source, last, last)
 
 
-def _accepted(error: UnexpectedInput, parser: lark.Lark) -> set[str]:
-    """The terminals with which the text could really go on; the parser's own list is too long."""
-    state: Any = getattr(error, "state", None)
-    if state is None:
-        return set()
-    interactive: Any = InteractiveParser
-    return set(interactive(parser.parser.parser, state, None).accepts())
+def _accepted(parser: lark.Lark, text: str, rule: str) -> set[str]:
+    """The terminals with which the text could really go on; the error's own list is too long."""
+    interactive: Any = parser.parse_interactive(text, start=rule)
+    with suppress(UnexpectedInput):
+        interactive.exhaust_lexer()
+    return set(interactive.accepts())
 
 
 def _in_words(accepted: set[str], parser: lark.Lark) -> str:

@@ -364,7 +364,7 @@ def _formula_of(value: Value, span: Span) -> Formula:
         case Quantity(node=SignalValue(name=name), truth=True):
             return SignalAtom(name, span)
         case Quantity(node=node, truth=True) if node is not None:
-            return Compare(CompareOp.EQ, node, Literal(1), span)
+            return Compare(CompareOp.EQ, node, Literal(True), span)
         case Quantity(labels=labels):
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
         case Age():

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.checked import Mode, Role, TimeModel
-from rvmon.spec.syntax import Expression, Ident, Name
+from rvmon.spec.goals import BinKind
+from rvmon.spec.syntax import Expression, Ident, Name, Number, Window
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,15 @@ class DelayItem:
     """`max delay D`."""
 
     delay: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ImportItem:
+    """`import "file.rv"` or `import library`."""
+
+    target: str
+    library: bool
     span: Span
 
 
@@ -184,7 +194,26 @@ class PropertyClause:
     span: Span
 
 
-Clause = TextClause | TagsClause | LetClause | ForEachClause | AtEndClause | PropertyClause
+@dataclass(frozen=True, slots=True)
+class ScopeClause:
+    """`scope before (φ)`, `after (φ)`, `between (φ) and (ψ)`, `after (φ) until (ψ)`.
+
+    Attributes:
+        opening: what opens the scope; `None`: it is open from the start.
+        closing: what closes the scope; `None`: nothing does.
+        must_close: whether nothing is owed unless the scope is closed.
+        span: of the clause.
+    """
+
+    opening: Expression | None
+    closing: Expression | None
+    must_close: bool
+    span: Span
+
+
+Clause = (
+    TextClause | TagsClause | LetClause | ForEachClause | AtEndClause | PropertyClause | ScopeClause
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,16 +227,88 @@ class RequirementItem:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class CoverItem:
+    """`cover ID = formula`."""
+
+    name: Ident
+    formula: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class BinSyntax:
+    """A bin: its values are those of a window, an expression, or a label of its own name."""
+
+    name: Ident
+    values: Window | Expression | None
+    kind: BinKind
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SampledClause:
+    """`upon φ` of a coverpoint or cross."""
+
+    trigger: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class GoalClause:
+    """`goal N`."""
+
+    count: Number
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class UnwantedClause:
+    """`ignore φ` or `illegal φ` of a cross, over its coverpoints."""
+
+    kind: BinKind
+    condition: Expression
+    span: Span
+
+
+GoalClauses = SampledClause | GoalClause | UnwantedClause
+
+
+@dataclass(frozen=True, slots=True)
+class CoverpointItem:
+    """`coverpoint NAME = expression {bins}`."""
+
+    name: Ident
+    expression: Expression | None
+    bins: tuple[BinSyntax, ...]
+    clauses: tuple[GoalClauses, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class CrossItem:
+    """`cross NAME = points`."""
+
+    name: Ident
+    points: tuple[Ident, ...]
+    clauses: tuple[GoalClauses, ...]
+    span: Span
+
+
 Item = (
     Header
     | TimeItem
     | DelayItem
+    | ImportItem
     | SignalItem
     | EventItem
     | DefineItem
     | ConstItem
     | PropertyItem
     | RequirementItem
+    | CoverItem
+    | CoverpointItem
+    | CrossItem
 )
 
 

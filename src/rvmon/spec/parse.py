@@ -61,7 +61,7 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
             return None, [rules.too_deep(place, DEEPEST)]
         return builder.transform(tree), builder.findings
     except UnexpectedInput as error:
-        return None, [explain_unexpected(error, grammar(), source, start, end)]
+        return None, [explain_unexpected(error, grammar(), source, start, end, rule)]
     except VisitError as error:
         if isinstance(error.orig_exc, Refusal):
             return None, [error.orig_exc.finding]

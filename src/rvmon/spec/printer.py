@@ -119,6 +119,8 @@ def _formula(formula: Formula, level: int) -> str:
             return f"{probe}({_name(name)})"
         case BoundAtom(bound=bound):
             return str(bound)
+        case Compare(left=left, right=Literal(value=True)) if formula.right.value is True:
+            return format_numeric(left)
         case Compare(op=op, left=left, right=right):
             return f"{format_numeric(left)} {op} {format_numeric(right)}"
         case Unary():

@@ -19,6 +19,8 @@ from rvmon.spec.checked import (
     Mode,
     Requirement,
 )
+from rvmon.spec.coverage import present
+from rvmon.spec.ctl import Property
 from rvmon.spec.expressions import Checker, Reported
 from rvmon.spec.items import (
     AtEndClause,
@@ -29,15 +31,20 @@ from rvmon.spec.items import (
     PropertyClause,
     RequirementItem,
     ResponseMonitor,
+    ScopeClause,
     TagsClause,
     TextClause,
     Triggered,
 )
 from rvmon.spec.normalise import normalised
+from rvmon.spec.properties import checked_property
 from rvmon.spec.quantities import node_of
+from rvmon.spec.response import derived_response
+from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import triggers as rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.scopes import scoped_consequent, scoped_trigger
 from rvmon.spec.syntax import Expression, Group, Immediately
 from rvmon.spec.tense import end_part, future_part, is_pulse, is_timeless, mixed_disjunction
 from rvmon.spec.unit import PLAIN
@@ -46,22 +53,27 @@ from rvmon.trace.schema import Kind
 
 _C = TypeVar("_C", bound=Clause)
 
+Parts = tuple[Mode, Formula, Formula]
+"""Mode, trigger and consequent."""
+
 
 def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement | None:
     """Check a requirement; `None` if it is wrong, and then that is reported."""
     try:
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
-        parts = _parts(checker, item, outer, inner)
+        ctl = _property(checker, item)
+        mode, trigger, consequent = _scoped(
+            checker, item, outer, _parts(checker, item, outer, inner, ctl)
+        )
         policy = _policy(item)
     except Refusal as refusal:
         checker.report(refusal.finding)
         return None
     except Reported:
         return None
-    mode, trigger, consequent = parts
     texts = {clause.word: clause.text for clause in _clauses(item, TextClause)}
-    properties = [clause.formula.span.text for clause in _clauses(item, PropertyClause)]
+    scopes = [clause.span.text for clause in _clauses(item, ScopeClause)]
     return Requirement(
         item.name.text,
         mode,
@@ -76,8 +88,10 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         rationale=texts.get("rationale", ""),
         severity=texts.get("severity", ""),
         tags=tuple(tag for clause in _clauses(item, TagsClause) for tag in clause.tags),
-        property=properties[0] if properties else "",
+        property=ctl.text if ctl else "",
         span=item.span,
+        ctl=ctl,
+        scope=scopes[0] if scopes else "",
     )
 
 
@@ -94,8 +108,8 @@ def check_clauses(checker: Checker, item: RequirementItem) -> None:
 
 
 def _parts(
-    checker: Checker, item: RequirementItem, outer: Scope, inner: Scope
-) -> tuple[Mode, Formula, Formula]:
+    checker: Checker, item: RequirementItem, outer: Scope, inner: Scope, ctl: Property | None
+) -> Parts:
     match item.body:
         case Bare(formula=expression):
             formula = checker.top(expression, inner)
@@ -106,13 +120,38 @@ def _parts(
             return normalised(formula)
         case Triggered():
             return _triggered(checker, item.body, outer, inner)
-        case ResponseMonitor():
-            raise NotImplementedError
+        case ResponseMonitor(within=within, span=span):
+            ticks = checker.duration(within, EVERYWHERE)
+            if ctl is None:
+                raise Refusal(property_rules.no_property(span))
+            return Mode.UPON, *derived_response(checker.table, ctl, ticks, span)
 
 
-def _triggered(
-    checker: Checker, body: Triggered, outer: Scope, inner: Scope
-) -> tuple[Mode, Formula, Formula]:
+def _property(checker: Checker, item: RequirementItem) -> Property | None:
+    for clause in _clauses(item, PropertyClause):
+        found = checked_property(checker, item.name.text, clause.formula)
+        if found is None:
+            raise Reported
+        return found
+    return None
+
+
+def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts) -> Parts:
+    """Trigger and consequent with the `scope` clause worked in."""
+    mode, trigger, consequent = parts
+    for clause in _clauses(item, ScopeClause):
+        ends = [
+            None if expression is None else present(checker.formula(expression, outer))
+            for expression in (clause.opening, clause.closing)
+        ]
+        if end_part(trigger):
+            raise Refusal(rules.end_in_scope(clause.span))
+        owed = scoped_consequent(consequent, ends[1], must_close=clause.must_close)
+        return mode, scoped_trigger(trigger, *ends), owed
+    return parts
+
+
+def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) -> Parts:
     trigger = checker.top(body.trigger, outer)
     consequent = checker.top(body.consequent, inner)
     if trigger is None or consequent is None:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from typing import assert_never
+from collections.abc import Sequence
+from typing import TypeVar, assert_never
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.spec.items import (
     ConstItem,
+    CoverItem,
+    CoverpointItem,
+    CrossItem,
     DefineItem,
     DelayItem,
     EventItem,
     Header,
+    ImportItem,
     Item,
     ParsedSpec,
     PropertyItem,
@@ -23,26 +28,34 @@ from rvmon.spec.rules import names as rules
 from rvmon.spec.syntax import Ident
 from rvmon.spec.words import FUNCTIONS
 
+_K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 
-def resolve(parsed: ParsedSpec) -> tuple[ResolvedSpec, list[Diagnostic]]:
-    """Gather the declarations of a file.
+
+def resolve(parsed: Sequence[ParsedSpec]) -> tuple[ResolvedSpec, list[Diagnostic]]:
+    """Gather the declarations of a file and of those it imports.
+
+    Args:
+        parsed: the main file first.
 
     Returns:
         The specification with the first declaration of every name, and the findings.
     """
     resolver = _Resolver()
-    for item in parsed.items:
-        resolver.add(item)
+    for number, file in enumerate(parsed):
+        for item in file.items:
+            if number == 0 or not isinstance(item, Header):
+                resolver.add(item)
     once = resolver.once
     spec = ResolvedSpec(
-        parsed.source,
-        once.get(Header),  # type: ignore[arg-type]
-        once.get(TimeItem),  # type: ignore[arg-type]
-        once.get(DelayItem),  # type: ignore[arg-type]
+        tuple(file.source for file in parsed),
+        *(once.get(Header), once.get(TimeItem), once.get(DelayItem)),  # type: ignore[arg-type]
         resolver.declared,
         resolver.requirements,
         resolver.properties,
-        parsed.doubtful,
+        resolver.covers,
+        resolver.coverpoints,
+        resolver.crosses,
+        frozenset().union(*(file.doubtful for file in parsed)),
     )
     return spec, resolver.findings
 
@@ -54,6 +67,9 @@ class _Resolver:
         self.declared: dict[str, Declared] = {}
         self.requirements: dict[str, RequirementItem] = {}
         self.properties: dict[str, PropertyItem] = {}
+        self.covers: dict[str, CoverItem] = {}
+        self.coverpoints: dict[str, CoverpointItem] = {}
+        self.crosses: dict[str, CrossItem] = {}
         self._first: dict[tuple[str, str], Ident] = {}
 
     def add(self, item: Item) -> None:
@@ -72,13 +88,23 @@ class _Resolver:
             case DefineItem() | ConstItem():
                 self._declare(item)
             case RequirementItem():
-                if self._is_new("requirement", item.name):
-                    self.requirements[item.name.text] = item
+                self._keep(self.requirements, item)
             case PropertyItem():
-                if self._is_new("requirement", item.name):
-                    self.properties[item.name.text] = item
+                self._keep(self.properties, item)
+            case CoverItem():
+                self._keep(self.covers, item)
+            case CoverpointItem():
+                self._keep(self.coverpoints, item)
+            case CrossItem():
+                self._keep(self.crosses, item)
+            case ImportItem():
+                pass  # its file is among those given
             case _:
                 assert_never(item)
+
+    def _keep(self, kept: dict[str, _K], item: _K) -> None:
+        if self._is_new("requirement", item.name):
+            kept[item.name.text] = item
 
     def _declare(self, declared: Declared) -> None:
         name = declared.name

@@ -9,6 +9,9 @@ from rvmon.diagnostics.span import Source
 from rvmon.spec.checked import Role
 from rvmon.spec.items import (
     ConstItem,
+    CoverItem,
+    CoverpointItem,
+    CrossItem,
     DefineItem,
     DelayItem,
     EventSyntax,
@@ -48,21 +51,27 @@ class ResolvedSpec:
     """All items of a specification, each under its name.
 
     Attributes:
-        source: the main file.
+        sources: the main file, then those it imports.
         header: its `spec` line, if it has one.
         time: its `time` line, if it has one.
         delay: its `max delay` line, if it has one.
         declared: signals, events, macros and constants by name, in order.
         requirements: by id, in order.
         properties: that stand alone, by id, in order.
+        covers: by id, in order.
+        coverpoints: by name, in order.
+        crosses: by name, in order.
         doubtful: words of items that could not be read.
     """
 
-    source: Source
+    sources: tuple[Source, ...]
     header: Header | None
     time: TimeItem | None
     delay: DelayItem | None
     declared: Mapping[str, Declared]
     requirements: Mapping[str, RequirementItem]
     properties: Mapping[str, PropertyItem]
+    covers: Mapping[str, CoverItem]
+    coverpoints: Mapping[str, CoverpointItem]
+    crosses: Mapping[str, CrossItem]
     doubtful: frozenset[str]

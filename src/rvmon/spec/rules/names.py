@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Sequence
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
 from rvmon.diagnostics.span import Span
@@ -175,6 +176,12 @@ def double(name: str, kind: str, here: Span, first: Span) -> Diagnostic:
 def unknown(span: Span, name: str, close: str) -> Diagnostic:
     """A name that stands for nothing; `close` describes one that is alike, or is empty."""
     return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, mend=close)
+
+
+def unknown_constant(name: str, known: Sequence[str]) -> Diagnostic:
+    """A constant that is overridden and does not exist."""
+    listed = f"there are {', '.join(known)}" if known else "the file declares none"
+    return finding(UNKNOWN_NAME, f"no constant named `{name}` to override", mend=listed)
 
 
 def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:

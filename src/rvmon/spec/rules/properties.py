@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
@@ -29,7 +31,71 @@ requirement R1
 """,
 )
 
-RULES = (PATH_OUTSIDE,)
+BARE_TIME = Rule(
+    "RV051",
+    "time-without-quantifier",
+    Severity.ERROR,
+    "In a property an operator of time stands without `A` or `E`.",
+    "Properties are written in CTL: each operator of time says whether it means all paths or some "
+    "path.",
+    """spec demo
+signal a, b : bool
+
+property P1: A[] (a -> eventually b)
+""",
+    """spec demo
+signal a, b : bool
+
+property P1: A[] (a -> AF b)
+""",
+)
+
+FOREIGN_NAME = Rule(
+    "RV052",
+    "name-of-a-model",
+    Severity.WARNING,
+    "A property reads a name that the spec does not declare and that is like one it does.",
+    "Properties may read clocks and locations of a model, so an unknown name is no error there; "
+    "one that is almost a signal probably is a slip.",
+    """spec demo
+signal released : bool
+
+property P1: E<> relased
+""",
+    """spec demo
+signal released : bool
+
+property P1: E<> released
+""",
+)
+
+NO_RESPONSE = Rule(
+    "RV053",
+    "role-split",
+    Severity.ERROR,
+    "`monitor as response` cannot split the property into what the environment gives and what "
+    "the system owes.",
+    "The derived monitor is triggered by the `input` part of `E<> (p and q and …)` and awaits the "
+    "`output` part. Each conjunct has to belong to one side, and something has to be owed.",
+    """spec demo
+signal ready : bool input
+event released output
+
+requirement R1
+  monitor as response within 3 s
+  property E<> (ready or released)
+""",
+    """spec demo
+signal ready : bool input
+event released output
+
+requirement R1
+  monitor as response within 3 s
+  property E<> (ready and released)
+""",
+)
+
+RULES = (PATH_OUTSIDE, BARE_TIME, FOREIGN_NAME, NO_RESPONSE)
 
 
 def path_outside(span: Span) -> Diagnostic:
@@ -39,4 +105,92 @@ def path_outside(span: Span) -> Diagnostic:
         f"`{short(span.text)}` speaks of several runs and belongs into a `property`",
         span,
         mend="for one run write `always` or `eventually`",
+    )
+
+
+def bare_time(span: Span) -> Diagnostic:
+    """An operator of time without a path quantifier."""
+    return finding(
+        BARE_TIME,
+        f"`{short(span.text)}` says neither on all paths nor on some path",
+        span,
+        mend="write `AF`, `AG`, `EF`, `EG`, `A[φ U ψ]` or `E[φ U ψ]`",
+    )
+
+
+def next_window(span: Span) -> Diagnostic:
+    """`AX` or `EX` with an interval."""
+    return finding(BARE_TIME, "`AX` and `EX` take no interval", span)
+
+
+def no_path_formula(span: Span) -> Diagnostic:
+    """`A[...]` with something else than an until."""
+    return finding(
+        BARE_TIME,
+        f"`{short(span.text)}` is no path formula",
+        span,
+        mend="`A[ ]` and `E[ ]` hold `φ U ψ`; for the others write `A[] φ`, `AF φ`, `E<> φ`",
+    )
+
+
+def path_in_number(span: Span) -> Diagnostic:
+    """A path quantifier inside a comparison or call."""
+    return finding(PATH_OUTSIDE, f"a path quantifier stands inside `{short(span.text)}`", span)
+
+
+def foreign_name(span: Span, name: str, close: str) -> Diagnostic:
+    """A name that may be a slip."""
+    return finding(
+        FOREIGN_NAME,
+        f"`{name}` is no name of this file and is taken for a clock or location of a model",
+        span,
+        mend=close,
+    )
+
+
+def no_property(span: Span) -> Diagnostic:
+    """`monitor as response` without a property."""
+    return finding(
+        NO_RESPONSE,
+        "there is no property to derive the monitor from",
+        span,
+        mend="add a clause `property E<> (…)`",
+    )
+
+
+def no_response(span: Span) -> Diagnostic:
+    """A property that is no `E<> (conjunction)`."""
+    return finding(
+        NO_RESPONSE,
+        "a response monitor is derived from `E<> (p and q and …)` over the names of this file",
+        span,
+        mend="write the requirement with `upon` and `then`",
+    )
+
+
+def mixed_roles(span: Span, roles: Mapping[str, str]) -> Diagnostic:
+    """A conjunct that reads inputs and outputs, or nothing at all."""
+    listed = ", ".join(f"`{name}` is {role}" for name, role in roles.items())
+    text = short(span.text)
+    message = f"`{text}` mixes roles: {listed}" if roles else f"`{text}` reads no signal"
+    return finding(NO_RESPONSE, message, span, mend="write the requirement with `upon` and `then`")
+
+
+def no_role(span: Span, name: str) -> Diagnostic:
+    """A name without a role."""
+    return finding(
+        NO_RESPONSE,
+        f"`{name}` is declared neither `input` nor `output`",
+        span,
+        mend="declare its role",
+    )
+
+
+def no_output(span: Span) -> Diagnostic:
+    """A property over inputs only."""
+    return finding(
+        NO_RESPONSE,
+        "the property reads no output: nothing is owed by the system",
+        span,
+        mend="declare what the system sets as `output`",
     )

@@ -205,6 +205,16 @@ def end_not_alone(span: Span) -> Diagnostic:
     )
 
 
+def end_in_scope(span: Span) -> Diagnostic:
+    """A scope around `upon end`."""
+    return finding(
+        END_NOT_ALONE,
+        "`upon end` takes no scope: the end of the run may lie outside of it",
+        span,
+        mend="say in the consequent what has to hold at the end",
+    )
+
+
 def one_instant(span: Span) -> Diagnostic:
     """A consequent without a word of time."""
     text = short(span.text)

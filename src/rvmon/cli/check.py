@@ -1,0 +1,92 @@
+"""`rvmon check`: find what is wrong in specifications."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rvmon.diagnostics.diagnostic import Diagnostic
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "check",
+        help="find what is wrong in specifications",
+        description="Find what is wrong in specifications: all errors and warnings of each file.",
+        epilog="example: rvmon check specs/*.rv --format concise",
+    )
+    parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
+    parser.add_argument(
+        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
+    )
+    parser.add_argument(
+        "--format",
+        choices=("text", "concise", "json"),
+        default="text",
+        help="how to print findings: in full, one line each, or JSON (default: text)",
+    )
+    parser.add_argument("--strict", action="store_true", help="exit with 1 if there are warnings")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Check, print the findings, and return the exit code."""
+    from rvmon.cli.constants import constants_of
+
+    constants = constants_of(arguments.const)
+    findings: list[Diagnostic] = []
+    unreadable = broken = 0
+    for name in arguments.specs:
+        try:
+            text = sys.stdin.read() if name == "-" else Path(name).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
+            print(f"error: {name}: {reason}", file=sys.stderr)
+            unreadable += 1
+            continue
+        found, wrong = _findings(text, name, constants)
+        findings += found
+        broken += wrong
+    _show(arguments.format, findings)
+    if arguments.format == "text":
+        _summary(len(arguments.specs), unreadable + broken, len(findings))
+    if unreadable or broken:
+        return 2
+    return int(arguments.strict and bool(findings))
+
+
+def _findings(text: str, name: str, constants: dict[str, str]) -> tuple[list[Diagnostic], bool]:
+    """What is to be said about a file, and whether it is unfit for use."""
+    from rvmon.errors import SpecError
+    from rvmon.spec import compile_text
+
+    directory = None if name == "-" else Path(name).parent
+    shown = "<stdin>" if name == "-" else name
+    try:
+        _, warnings = compile_text(text, name=shown, constants=constants, directory=directory)
+    except SpecError as error:
+        return list(error.diagnostics), True
+    return list(warnings), False
+
+
+def _show(form: str, findings: list[Diagnostic]) -> None:
+    from rvmon.diagnostics.render import render_concise, render_full, render_json
+
+    match form:
+        case "json":
+            print(render_json(findings))
+        case "concise" if findings:
+            print(render_concise(findings), file=sys.stderr)
+        case "text" if findings:
+            print(render_full(findings), file=sys.stderr)
+
+
+def _summary(files: int, broken: int, findings: int) -> None:
+    def counted(count: int, noun: str) -> str:
+        return f"{count} {noun}{'' if count == 1 else 's'}"
+
+    state = "fine" if not broken else f"{broken} of them unfit for use"
+    print(f"{counted(files, 'file')}: {state}, {counted(findings, 'finding')}")

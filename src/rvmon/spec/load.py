@@ -1,0 +1,105 @@
+"""A file and all that it imports, each read once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.span import Source
+from rvmon.spec.items import ImportItem, ParsedSpec
+from rvmon.spec.parse import parse_spec
+from rvmon.spec.rules import imports as rules
+from rvmon.spec.rules.rule import Refusal
+
+LIBRARIES = ("patterns",)
+"""Folders of this package with specifications that can be imported by name."""
+
+
+def load_files(source: Source, directory: Path | None) -> tuple[list[ParsedSpec], list[Diagnostic]]:
+    """Read a file and those it imports.
+
+    Args:
+        source: the main file.
+        directory: its folder; default the current one.
+
+    Returns:
+        The main file, then the imported ones in the order of their first import; and what is
+        wrong with how they are written or imported.
+    """
+    loader = _Loader()
+    loader.read(source, directory or Path(), _key(Path(source.name)), ())
+    return loader.files, loader.findings
+
+
+class _Loader:
+    def __init__(self) -> None:
+        self.files: list[ParsedSpec] = []
+        self.findings: list[Diagnostic] = []
+        self._seen: set[str] = set()
+
+    def read(
+        self, source: Source, directory: Path, key: str, path: tuple[tuple[str, ImportItem], ...]
+    ) -> None:
+        """Read a file; `path` are the files that are being read, with the imports in them."""
+        self._seen.add(key)
+        parsed, findings = parse_spec(source)
+        self.files.append(parsed)
+        self.findings += findings
+        for item in parsed.items:
+            if isinstance(item, ImportItem):
+                self._import(item, directory, (*path, (key, item)))
+
+    def _import(
+        self, item: ImportItem, directory: Path, path: tuple[tuple[str, ImportItem], ...]
+    ) -> None:
+        try:
+            for source, folder, key in _sources(item, directory):
+                circle = [step for _, step in path[_index(path, key) :]]
+                if circle:
+                    self.findings.append(rules.circle(item.span, circle[0].span))
+                elif len(path) > rules.DEEPEST:
+                    raise Refusal(rules.too_deep(item.span))
+                elif key not in self._seen:
+                    self.read(source, folder, key, path)
+        except Refusal as refusal:
+            self.findings.append(refusal.finding)
+
+
+def _index(path: tuple[tuple[str, ImportItem], ...], key: str) -> int:
+    keys = [step for step, _ in path]
+    return keys.index(key) if key in keys else len(keys)
+
+
+def _sources(item: ImportItem, directory: Path) -> Iterator[tuple[Source, Path, str]]:
+    """The texts that an import means, each with its folder and a key of its own."""
+    if not item.library:
+        path = directory / item.target
+        yield Source(str(path), _text(path, item)), path.parent, _key(path)
+        return
+    if item.target not in LIBRARIES:
+        raise Refusal(rules.unknown_library(item.span, item.target, LIBRARIES))
+    folder = resources.files("rvmon.spec") / item.target
+    for file in sorted(folder.iterdir(), key=lambda entry: entry.name):
+        if file.name.endswith(".rv"):
+            name = f"{item.target}/{file.name}"
+            yield Source(name, _text(file, item)), Path(), f"library {name}"
+
+
+def _text(file: Traversable, item: ImportItem) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except OSError as error:
+        reason = error.strerror or str(error)
+    except UnicodeDecodeError:
+        reason = "it is not UTF-8 text"
+    except ValueError as error:  # a null character in the name
+        reason = str(error)
+    raise Refusal(rules.unreadable(item.span, item.target, reason))
+
+
+def _key(path: Path) -> str:
+    return os.path.abspath(path)

@@ -1,0 +1,138 @@
+"""Rules on cover goals, coverpoints and crosses."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.diagnostics.span import Span
+from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules.syntax import short
+
+MOST_COMBINATIONS = 100_000
+"""Crosses with more combinations are refused."""
+
+BIN = Rule(
+    "RV060",
+    "bin",
+    Severity.ERROR,
+    "The values of a bin do not fit its coverpoint.",
+    "A bin is a value, a range or a formula of the present and past; without values it is the "
+    "label of its own name.",
+    """spec demo
+signal state : {idle, moving}
+
+coverpoint phase = state {idle, driving}
+""",
+    """spec demo
+signal state : {idle, moving}
+
+coverpoint phase = state {idle, driving: moving}
+""",
+)
+
+CROSS = Rule(
+    "RV061",
+    "cross",
+    Severity.ERROR,
+    "A cross names what is no coverpoint, or has a clause that does not fit.",
+    "A cross combines the bins of coverpoints; what it ignores is said over their bins.",
+    """spec demo
+signal gaze_ok, pressure_ok : bool
+
+coverpoint gaze = gaze_ok {yes: true, no: false}
+cross both = gaze, pressure_ok
+""",
+    """spec demo
+signal gaze_ok, pressure_ok : bool
+
+coverpoint gaze = gaze_ok {yes: true, no: false}
+coverpoint pressure = pressure_ok {yes: true, no: false}
+cross both = gaze, pressure
+""",
+)
+
+RULES = (BIN, CROSS)
+
+
+def bin_without_values(span: Span) -> Diagnostic:
+    """A bin that has to say what it holds."""
+    return finding(
+        BIN,
+        f"bin `{short(span.text)}` does not say which values it holds",
+        span,
+        mend="write `name: value`, `name: [low, high)` or `name: formula`",
+    )
+
+
+def bin_needs_expression(span: Span) -> Diagnostic:
+    """A value or range in a coverpoint without an expression."""
+    return finding(
+        BIN,
+        f"`{short(span.text)}` is no formula, and the coverpoint has no expression",
+        span,
+        mend="write `coverpoint NAME = expression {…}`",
+    )
+
+
+def bin_kind(span: Span, needed: str) -> Diagnostic:
+    """Values of the wrong kind; `needed` says which are possible."""
+    return finding(BIN, f"`{short(span.text)}` does not fit: expected {needed}", span)
+
+
+def looks_ahead(span: Span) -> Diagnostic:
+    """A formula of the future in a bin or sampling clause."""
+    return finding(
+        BIN,
+        f"`{short(span.text)}` speaks of the future, and bins are looked at on the spot",
+        span,
+        mend="use `once`, `historically`, `since`",
+    )
+
+
+def bad_goal(span: Span) -> Diagnostic:
+    """A goal that is no count."""
+    return finding(BIN, f"`{short(span.text)}` is no count of hits", span, mend="write `goal 3`")
+
+
+def unwanted_in_point(span: Span) -> Diagnostic:
+    """`ignore φ` behind the bins of a coverpoint."""
+    return finding(
+        BIN,
+        "a coverpoint marks its bins inside the brackets",
+        span,
+        mend="write `{ignore name: values}`",
+    )
+
+
+def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
+    """A cross over something else."""
+    close = difflib.get_close_matches(name, known, 1, 0.6)
+    mend = f"did you mean `{close[0]}`?" if close else "declare it with `coverpoint`"
+    return finding(CROSS, f"no coverpoint named `{name}`", span, mend=mend)
+
+
+def same_point(span: Span, name: str) -> Diagnostic:
+    """A cross that names a coverpoint twice."""
+    return finding(CROSS, f"`{name}` stands twice in one cross", span)
+
+
+def too_many_combinations(span: Span, count: int) -> Diagnostic:
+    """A cross that is too large."""
+    return finding(
+        CROSS,
+        f"{count:,} combinations are more than {MOST_COMBINATIONS:,}",
+        span,
+        mend="cross fewer coverpoints, or give them fewer bins",
+    )
+
+
+def bad_condition(span: Span) -> Diagnostic:
+    """A condition of a cross that is more than bins and connectives."""
+    return finding(
+        CROSS,
+        f"`{short(span.text)}` is no condition on bins",
+        span,
+        mend="write comparisons of coverpoints with their bins: `gaze == no and location != yes`",
+    )

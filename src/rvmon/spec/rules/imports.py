@@ -1,0 +1,69 @@
+"""Rules on imports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.span import Span
+from rvmon.spec.rules.rule import Rule, finding
+
+DEEPEST = 20
+"""Longer chains of imports are refused."""
+
+IMPORT = Rule(
+    "RV016",
+    "import",
+    Severity.ERROR,
+    "An imported file cannot be read, or files import each other in a circle.",
+    "Imports are looked up beside the file they stand in; `import patterns` without quotes takes "
+    "the library.",
+    """spec demo
+import "no_such_file.rv"
+""",
+    """spec demo
+import patterns
+event asked, released
+
+requirement R1
+  response(asked, released)
+""",
+)
+
+RULES = (IMPORT,)
+
+
+def unreadable(span: Span, target: str, reason: str) -> Diagnostic:
+    """A file that cannot be read."""
+    return finding(
+        IMPORT,
+        f"cannot read `{target}`: {reason}",
+        span,
+        mend="the path is relative to the file that imports",
+    )
+
+
+def unknown_library(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
+    """A library that does not exist."""
+    return finding(
+        IMPORT,
+        f"no library named `{name}`",
+        span,
+        mend=f'there is {", ".join(known)}; a file is imported as "{name}.rv", in quotes',
+    )
+
+
+def circle(here: Span, first: Span) -> Diagnostic:
+    """Files that import each other."""
+    return finding(
+        IMPORT,
+        "files import each other in a circle",
+        here,
+        Label(first, "it starts here"),
+        mend="move what both need into a third file",
+    )
+
+
+def too_deep(span: Span) -> Diagnostic:
+    """A chain of imports that is too long."""
+    return finding(IMPORT, f"imports are nested more than {DEEPEST} levels deep", span)
