@@ -91,6 +91,10 @@ class RegionGraph:
         """The region of the initial configuration."""
         return Region(initial_configuration(self._network), Fraction(0))
 
+    def region_of(self, now: Configuration) -> Region:
+        """The region of any configuration."""
+        return self._canonical(now, Fraction(0))
+
     def restarted(self, region: Region) -> Region:
         """The same region with the timer at 0."""
         return self._canonical(region.now, Fraction(0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import product
 
 from rvmon.diagnostics import Span
@@ -169,7 +170,7 @@ def _update(written: syntax.UpdateText, scope: Scope, resolver: Resolver) -> Upd
         return Reset(clock, value, written.span)
     match resolver.symbol(written.target, scope):
         case VariableSymbol(slot) if len(slot.indices) == len(slot.sizes):
-            return Assignment(slot, value)
+            return Assignment(replace(slot, span=written.target.span), value)
         case _:
             mend = "only variables and clocks can be set"
             raise model_error("TA004", "this cannot be set", written.target.span, mend)

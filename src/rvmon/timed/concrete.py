@@ -165,7 +165,7 @@ def replay(network: Network, run: Run) -> list[Configuration]:
     visited = [now]
     for step in run.steps:
         if step.delay not in step.window:
-            raise InvalidRunError(f"a wait of {step.delay} is outside {step.window}")
+            raise InvalidRunError(f"a wait of {step.delay} lies outside its window")
         now = wait(network, now, step.delay)
         visited.append(now)
         if step.action is not None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from math import prod
 
 from rvmon.diagnostics import Severity
@@ -12,7 +13,7 @@ from rvmon.timed.declare import Findings, Parts, declare
 from rvmon.timed.instantiate import processes_of
 from rvmon.timed.model import Automaton, Expression, LeadsToFormula, Network, Query
 from rvmon.timed.parse import parse_query
-from rvmon.timed.resolve import Resolver
+from rvmon.timed.resolve import Resolver, suggest
 from rvmon.timed.rules import finding, refusal
 from rvmon.timed.scope import AutomatonKey, AutomatonSymbol, Names, Scope
 
@@ -20,13 +21,18 @@ MAX_EDGES = 100_000
 """The most edges that a network may have once templates and selections are unrolled."""
 
 
-def elaborate(document: syntax.Document) -> Network:
+def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = None) -> Network:
     """Make the network that a model describes.
+
+    Args:
+        document: the model as written.
+        constants: other values for constants that it declares outside its automata.
 
     Raises:
         ModelError: with everything that is wrong with the model.
     """
     findings, parts = Findings(), Parts()
+    document = _with_constants(document, constants or {}, findings)
     resolver = Resolver(open_ints=document.open_ints)
     top = Scope()
     declare(document.declarations, top, parts, resolver, findings)
@@ -60,6 +66,27 @@ def elaborate(document: syntax.Document) -> Network:
         tuple(findings.found.values()),
         names,
     )
+
+
+def _with_constants(
+    document: syntax.Document, constants: Mapping[str, int], findings: Findings
+) -> syntax.Document:
+    known = {
+        item.name
+        for item in document.declarations
+        if isinstance(item, syntax.Declaration) and item.type.const and not item.sizes
+    }
+    for name in constants.keys() - known:
+        mend = suggest(name, sorted(known))
+        findings.add(finding("TA002", f"no constant `{name}` to set", None, mend))
+    changed: list[syntax.Declared] = []
+    for item in document.declarations:
+        if isinstance(item, syntax.Declaration) and item.name in constants.keys() & known:
+            value = syntax.Number(constants[item.name], item.span)
+            changed.append(replace(item, initial=value))
+        else:
+            changed.append(item)
+    return replace(document, declarations=tuple(changed))
 
 
 def query_on(network: Network, text: str) -> Query:

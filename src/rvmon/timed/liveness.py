@@ -172,6 +172,7 @@ def time_passes(head: Stand, strides: Sequence[tuple[Stride, StaySite]], dim: in
 
 
 def _longest(head: Stand, steps: Sequence[TimedStep]) -> float:
+    """The longest time that steps can take, rounded up to whole units."""
     timing = timing_of(steps, head.zone)
     assert timing is not None  # noqa: S101 - a loop of symbolic states can be gone round
-    return float(timing.bounds[0, len(steps)]) / timing.scale
+    return -(-float(timing.bounds[0, len(steps)]) // timing.scale)

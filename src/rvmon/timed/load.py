@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from rvmon.diagnostics import Source
@@ -11,8 +12,12 @@ from rvmon.timed.parse import parse_document
 from rvmon.timed.rules import model_error
 
 
-def load_network(path: str | Path) -> Network:
+def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None) -> Network:
     """Read a model from a `.ta` file.
+
+    Args:
+        path: of the file.
+        constants: other values for constants of the model.
 
     Raises:
         ModelError: the file cannot be read, or is no model; it has all findings.
@@ -24,11 +29,18 @@ def load_network(path: str | Path) -> Network:
     except UnicodeDecodeError:
         mend = "save it as UTF-8 text"
         raise model_error("TA022", f"{path} is no text", None, mend) from None
-    return loads_network(text, name=str(path))
+    return loads_network(text, name=str(path), constants=constants)
 
 
-def loads_network(text: str, *, name: str = "<string>") -> Network:
+def loads_network(
+    text: str, *, name: str = "<string>", constants: Mapping[str, int] | None = None
+) -> Network:
     """Read a model from a text.
+
+    Args:
+        text: as in a `.ta` file.
+        name: what findings call it.
+        constants: other values for constants of the model.
 
     Raises:
         ModelError: the text is no model; it has all findings.
@@ -36,4 +48,4 @@ def loads_network(text: str, *, name: str = "<string>") -> Network:
     >>> loads_network("automaton a { location l start l }").automata[0].locations[0].name
     'l'
     """
-    return elaborate(parse_document(Source(name, text)))
+    return elaborate(parse_document(Source(name, text)), constants)

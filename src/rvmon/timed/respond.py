@@ -143,13 +143,14 @@ class BoundedResponse:
         """Where the bound is over, or is just met while time goes on."""
         if not isinstance(site, StaySite):
             return None
-        late: Piece = ((self.timer, 0, -self._bound - STRICT),)
+        late: Piece = (*site.piece, (self.timer, 0, -self._bound - STRICT))
         if meets(zone, self.dim, late):
             return late
         if site.piece == EVERYWHERE or not site.state.delays:
             return None
         # `right` comes as soon as the bound is over: too late, if time can go on at the bound.
         due: Piece = (
+            *site.piece,
             (self.timer, 0, -float(self._bound)),
             *((0, clock, _below(bound)) for clock, bound in site.state.invariant),
         )

@@ -18,12 +18,6 @@ class Window:
     low_strict: bool = False
     high_strict: bool = False
 
-    def __str__(self) -> str:
-        left = "(" if self.low_strict else "["
-        if self.high is None:
-            return f"{left}{self.low}, ∞)"
-        return f"{left}{self.low}, {self.high}{')' if self.high_strict else ']'}"
-
     def __contains__(self, duration: Fraction | int) -> bool:
         above = duration > self.low if self.low_strict else duration >= self.low
         if self.high is None:

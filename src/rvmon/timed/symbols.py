@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import assert_never
 
 from rvmon.diagnostics import Span
@@ -36,7 +37,7 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
         case ConstantSymbol(int(value)):
             return Constant(value)
         case VariableSymbol(slot) if len(slot.indices) == len(slot.sizes):
-            return VariableValue(slot)
+            return VariableValue(replace(slot, span=span))
         case ChosenSymbol(values, index):
             return Lookup(values, index, span)
         case ClockSymbol():

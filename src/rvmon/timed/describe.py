@@ -1,0 +1,136 @@
+"""Runs and answers in words, and as plain data for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Any
+
+from rvmon.timed.model import Network, Variable
+from rvmon.timed.outcome import Outcome
+from rvmon.timed.run import Action, Ending, Position, Run, RunStep, Window
+from rvmon.trace.time import TICKS_PER_SECOND
+
+
+def action_text(network: Network, action: Action | None) -> str:
+    """The edges of an action, each with its automaton; the sender first."""
+    if action is None:
+        return "(nothing is done)"
+    return ", ".join(f"{network.automata[a].name}: {edge.text}" for a, edge in action.edges)
+
+
+def location_text(network: Network, position: Position) -> str:
+    """Where each automaton is."""
+    return ", ".join(
+        f"{automaton.name}.{automaton.locations[place].name}"
+        for automaton, place in zip(network.automata, position.locations, strict=True)
+    )
+
+
+def change_text(network: Network, before: Position, after: Position) -> str:
+    """The variables whose values changed."""
+    return ", ".join(
+        f"{variable.name} = {value_text(variable, new)}"
+        for variable, old, new in zip(network.variables, before.values, after.values, strict=True)
+        if old != new
+    )
+
+
+def value_text(variable: Variable, value: int) -> str:
+    """A value as the model's text would have it."""
+    return ("false", "true")[value] if variable.is_bool else str(value)
+
+
+def time_text(network: Network, units: Fraction | int) -> str:
+    """A time in seconds if the model has a unit, else as a number of units."""
+    if network.unit is None:
+        return f"{float(units):g}"
+    return f"{float(Fraction(units) * network.unit / TICKS_PER_SECOND):g} s"
+
+
+def window_text(network: Network, window: Window) -> str:
+    """A range of durations, in seconds if the model has a unit."""
+    left, right = "(" if window.low_strict else "[", ")" if window.high_strict else "]"
+    if window.high is None:
+        return f"{left}{time_text(network, window.low)}, ∞)"
+    return f"{left}{time_text(network, window.low)}, {time_text(network, window.high)}{right}"
+
+
+def run_lines(network: Network, run: Run) -> Iterator[str]:
+    """A run as lines: instant, window of the wait before, action, what changed."""
+    now, before = Fraction(0), run.start
+    yield f"{time_text(network, 0):>9}  start in {location_text(network, run.start)}"
+    for number, step in enumerate(run.steps):
+        if number == run.loop:
+            yield f"{'':>9}  from here for ever:"
+        now += step.delay
+        text = f"{time_text(network, now):>9}  {action_text(network, step.action)}"
+        if step.window.low or step.window.high != 0:
+            text += f"   (after {window_text(network, step.window)})"
+        changed = change_text(network, before, step.position)
+        yield text + (f"   {changed}" if changed else "")
+        before = step.position
+    match run.ending:
+        case Ending.REACHED:
+            pass
+        case Ending.DEADLOCK:
+            yield f"{'':>9}  no edge can be taken any more"
+        case Ending.TIME_LOCK:
+            yield f"{'':>9}  time stops here: no edge can be taken, and time may not pass"
+        case Ending.IDLE:
+            yield f"{'':>9}  it may stay here for ever"
+        case Ending.LOOP | Ending.ZENO_LOOP:
+            yield f"{'':>9}  and round again" + (
+                ", though time does not pass on (a Zeno loop)"
+                if run.ending is Ending.ZENO_LOOP
+                else ""
+            )
+
+
+def position_data(network: Network, position: Position) -> dict[str, Any]:
+    """Where a run is: locations by automaton, values by variable."""
+    return {
+        "locations": {
+            automaton.name: automaton.locations[place].name
+            for automaton, place in zip(network.automata, position.locations, strict=True)
+        },
+        "variables": {
+            variable.name: bool(value) if variable.is_bool else value
+            for variable, value in zip(network.variables, position.values, strict=True)
+        },
+    }
+
+
+def step_data(network: Network, step: RunStep) -> dict[str, Any]:
+    """A step: `delay` in units of the model, its `window`, `edge`, and the `state` behind."""
+    window = step.window
+    return {
+        "delay": float(step.delay),
+        "window": {
+            "low": window.low,
+            "high": window.high,
+            "low_strict": window.low_strict,
+            "high_strict": window.high_strict,
+        },
+        "edge": None if step.action is None else action_text(network, step.action),
+        "state": position_data(network, step.position),
+    }
+
+
+def outcome_data(network: Network, outcome: Outcome) -> dict[str, Any]:
+    """The answer to a query as plain data; `trace` is `None` if there is no run to show."""
+    run = outcome.run
+    return {
+        "id": outcome.query.id,
+        "query": outcome.query.text,
+        "holds": outcome.holds,
+        "remark": outcome.remark,
+        "policy": None if outcome.policy is None else str(outcome.policy),
+        "start": None if run is None else position_data(network, run.start),
+        "trace": None if run is None else [step_data(network, step) for step in run.steps],
+        "ending": None if run is None else str(run.ending),
+        "loop": None if run is None else run.loop,
+        "states": outcome.statistics.visited,
+        "stored": outcome.statistics.stored,
+        "seconds": round(outcome.statistics.seconds, 6),
+    }

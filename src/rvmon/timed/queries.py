@@ -1,0 +1,24 @@
+"""Which queries are meant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rvmon.timed.elaborate import query_on
+from rvmon.timed.model import Network, Query
+from rvmon.timed.rules import model_error
+
+
+def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]:
+    """The model's own queries, or those asked for by id or by text.
+
+    Raises:
+        ModelError: there is none, or a text is neither an id nor a query.
+    """
+    if asked is None:
+        if not network.queries:
+            mend = "give one with --query, or write `query: …` into the model"
+            raise model_error("TA020", "the model has no query", None, mend)
+        return list(network.queries)
+    by_id = {query.id: query for query in network.queries if query.id}
+    return [by_id.get(text) or query_on(network, text) for text in asked]

@@ -1,0 +1,53 @@
+"""The handover network: the seed's queries, the claims on all runs, and what it cannot say."""
+
+import pytest
+
+from handover.model import handover_network
+from rvmon.errors import ModelError
+from rvmon.testing.timed_runs import shows
+from rvmon.timed.verify import verify
+
+
+@pytest.fixture(scope="module")
+def network():
+    """The network, read once."""
+    return handover_network()
+
+
+def test_it_is_six_automata(network):
+    """Robot, workflow, the three postures and the sensors, nothing else, and nothing odd."""
+    names = [automaton.name for automaton in network.automata]
+    assert names == ["robot", "workflow", "gaze", "location", "pressure", "sensors"]
+    assert network.warnings == ()
+
+
+@pytest.mark.parametrize("requirement", ["R1", "R2", "R3", "R4"])
+def test_the_seeds_queries_hold(network, requirement):
+    """R1 to R4 have a witness, and it is a run that shows what it should."""
+    (query,) = (q for q in network.queries if q.id == requirement)
+    outcome = verify(network, query)
+    assert outcome.holds
+    assert shows(network, outcome)
+
+
+@pytest.mark.parametrize("claim", ["R2_all", "R4_all", "sound"])
+def test_claims_on_all_runs_hold(network, claim):
+    """No run releases on a bad reading, none goes on for ever, none gets stuck."""
+    (query,) = (q for q in network.queries if q.id == claim)
+    assert verify(network, query).holds
+
+
+def test_release_comes_within_ten_units_and_no_less(network):
+    """The bound of the claim R1 is exact: half a second holds, one unit less does not."""
+    (query,) = (q for q in network.queries if q.id == "R1_all")
+    tight = query.text.replace("60", "10")
+    assert verify(network, tight).holds
+    outcome = verify(network, query.text.replace("60", "9"))
+    assert outcome.holds is False
+    assert shows(network, outcome)
+
+
+def test_the_hands_distance_is_not_expressible(network):
+    """R5 speaks of a distance in space, which the network does not have."""
+    with pytest.raises(ModelError, match="no name `hand_distance`"):
+        verify(network, "A[] (hand_distance >= 5)")
