@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import json
+import shlex
+from dataclasses import replace
+from pathlib import Path
 
+from handover.campaign.pages import simulated_page
 from handover.checker import Checker, spec_path
 from handover.driver import run_test
 from handover.driver.run import Run
@@ -21,6 +26,10 @@ def run_replay(arguments: argparse.Namespace) -> int:
     spec = load(arguments.spec or spec_path(robot))
     run, report = play_again(test, robot, spec)
     _show(arguments.format, spec, run, report)
+    if arguments.out:
+        words = ["handover", "replay", arguments.test]
+        command = shlex.join([*words, "--legacy"] if arguments.legacy else words)
+        _write(Path(arguments.out), run, report, spec, command)
     return int(Verdict.FAIL in report.verdicts.values())
 
 
@@ -28,8 +37,6 @@ def play_again(
     test: AbstractTest, robot: str, spec: Spec, *, startup_loss: bool = True
 ) -> tuple[Run, Report]:
     """Play one test with the scene recorded, and judge it: the run that the campaign had."""
-    from dataclasses import replace
-
     checker = Checker(spec)
     run = run_test(
         test,
@@ -39,6 +46,15 @@ def play_again(
         observer=checker.observe,
     )
     return run, replace(checker.finish(run.end_ns), trace=test.name)
+
+
+def _write(folder: Path, run: Run, report: Report, spec: Spec, command: str) -> None:
+    """Write the page, and the bus messages as JSON lines, which `rvmon run` reads."""
+    folder.mkdir(parents=True, exist_ok=True)
+    page = simulated_page(run, report, spec, command=command)
+    lines = [json.dumps({"t_ns": t_ns, **values}) + "\n" for t_ns, values in run.samples]
+    (folder / f"{run.test.name}.html").write_text(page, encoding="utf-8")
+    (folder / f"{run.test.name}.jsonl").write_text("".join(lines), encoding="utf-8")
 
 
 def _show(form: str, spec: Spec, run: Run, report: Report) -> None:

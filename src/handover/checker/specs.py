@@ -16,4 +16,6 @@ def spec_path(robot: str) -> Path:
     """
     package = Path(__file__).parents[1]
     packaged = package / SPECS[robot]
-    return packaged if packaged.exists() else package.parents[1] / SPECS[robot]
+    path = packaged if packaged.exists() else package.parents[1] / SPECS[robot]
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path  # as people would write it

@@ -25,6 +25,7 @@ from rvmon.spec.checked import (
     Unary,
     UpdateValue,
 )
+from rvmon.verdict.attempt import Blame
 
 
 def concerned_names(requirement: Requirement) -> tuple[str, ...]:
@@ -36,6 +37,17 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
         for name in _names(atom)
     )
     return tuple(dict.fromkeys(names))
+
+
+def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
+    """The names that the failed part of a requirement reads; if it cannot be told, all it owed."""
+    owed = list(_atoms(requirement.consequent))
+    failed = [
+        atom
+        for atom in owed
+        if atom.span is not None and blame.start <= atom.span.start < blame.end
+    ]
+    return frozenset(name for atom in failed or owed for name in _names(atom))
 
 
 def thresholds(requirement: Requirement, name: str) -> tuple[Threshold, ...]:

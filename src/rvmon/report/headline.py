@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
+from rvmon.report.panel import Panel
 from rvmon.report.style import MARKS
 from rvmon.report.view import moment
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
 
-def headline(run: str, requirement: str, attempt: Attempt | None, report: Report) -> str:
-    """What became of a requirement in a run.
+def headline(run: str, panel: Panel, origin: int) -> str:
+    """What became of a requirement in a run, or of one attempt.
 
     Args:
         run: its name.
-        requirement: its id.
-        attempt: the one in question; `None` if there was none.
-        report: of the run.
+        panel: about the attempt.
+        origin: the instant from which people count seconds, ticks.
 
-    >>> from rvmon.verdict.assemble import report_of
+    >>> from rvmon.report.view import View
+    >>> from rvmon.verdict.attempt import Attempt
     >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
-    >>> headline("test 17", "R2", failed, report_of(["R2"], [failed]))
+    >>> view = View(0, 20_000_000_000)
+    >>> headline("test 17", Panel("R2-1", "R2", failed, view, (), None), 0)
     'R2 failed, test 17, 14.25 s: `released` too soon'
     """
+    attempt = panel.attempt
     if attempt is None:
-        return f"{requirement} {MARKS[Verdict.NOT_TRIGGERED].word}, {run}"
-    when = "" if attempt.decided is None else f", {moment(attempt.decided, report.origin)}"
+        return f"{panel.requirement} {MARKS[Verdict.NOT_TRIGGERED].word}, {run}"
+    when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
     reason = f": {attempt.reason}" if attempt.reason else ""
-    return f"{requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"
+    return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 
+from rvmon.report.concerned import blamed_names
 from rvmon.report.headline import headline
 from rvmon.report.markup import Child, e, with_code
 from rvmon.report.panel import Panel
@@ -30,17 +31,24 @@ def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET
     report = content.run.report
     requirement = content.spec.requirements[panel.requirement]
     verdict = Verdict.NOT_TRIGGERED if panel.attempt is None else panel.attempt.verdict
-    sentence = headline(content.run.name, panel.requirement, panel.attempt, report)
+    sentence = headline(content.run.name, panel, report.origin)
     end = report.origin if report.end is None else report.end
+    blame = None if panel.attempt is None else panel.attempt.blame
     drawing = timeline(
-        panel.attempt, panel.tracks, panel.view, origin=report.origin, end=end, ghost=panel.ghost
+        panel.attempt,
+        panel.tracks,
+        panel.view,
+        origin=report.origin,
+        end=end,
+        blamed=frozenset() if blame is None else blamed_names(requirement, blame),
+        ghost=panel.ghost,
     )
     return e(
         "section",
         {"id": panel.id, "data-verdict": verdict.value},
         e("h1", None, _badge(verdict), e("span", None, *with_code(sentence))),
         e("p", {"class": "requirement"}, requirement.text) if requirement.text else None,
-        spec_lines(requirement, panel.attempt.blame if panel.attempt else None),
+        spec_lines(requirement, blame),
         drawing,
         _cursor_controls(panel, report.origin),
         _legend(panel),
@@ -72,7 +80,7 @@ def _cursor_controls(panel: Panel, origin: int) -> ET.Element:
         {"class": "controls"},
         e("div", {"class": "name"}, e("button", {"class": "play", "type": "button"}, "▶ play")),
         e("div", {"class": "plot"}, e("input", slider)),
-        e("output", {"class": "instant"}, moment(start, origin)),
+        e("output", {"class": "instant"}, moment(start, origin, panel.view)),
     )
 
 
@@ -81,7 +89,7 @@ def _legend(panel: Panel) -> ET.Element | None:
     if panel.ghost is not None:
         decided = ""
         if panel.attempt is not None and panel.ghost.decided is not None:
-            after = moment(panel.ghost.decided - panel.attempt.triggered, 0)
+            after = moment(panel.ghost.decided, panel.attempt.triggered, panel.view)
             decided = f", decided {after} after its trigger"
         parts.append(
             e(

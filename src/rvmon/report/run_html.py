@@ -27,12 +27,12 @@ def run_page(content: RunPage) -> str:
     """
     panels = panels_of(content)
     requirement, attempt = opening(content.run.report, content.focus)
-    first = panel_id(requirement, attempt)
+    first = next(panel for panel in panels if panel.id == panel_id(requirement, attempt))
     sections = [panel_section(panel, panels, content) for panel in panels]
-    sentence = headline(content.run.name, requirement, attempt, content.run.report)
+    sentence = headline(content.run.name, first, content.run.report.origin)
     body = (
         _navigation(content, panels),
-        e("main", {"data-open": first}, *sections, _aside(content, attempt)),
+        e("main", {"data-open": first.id}, *sections, _aside(content, attempt)),
         data("run", script_data(content, panels)),
     )
     return page(sentence.replace("`", ""), body, styles=["base.css", "run.css"], scripts=["run.js"])

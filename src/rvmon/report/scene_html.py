@@ -55,8 +55,9 @@ def _shape(outline: Outline) -> ET.Element:
         case [(x, y)]:
             return e("circle", {"cx": x, "cy": y, "r": radius})
         case [(x1, y1), (x2, y2)]:
-            width = 2 * radius or None
-            return e("line", {"x1": x1, "y1": y1, "x2": x2, "y2": y2, "stroke-width": width})
+            width = 2 * radius
+            style = f"stroke-width:{width}" if width else None
+            return e("line", {"x1": x1, "y1": y1, "x2": x2, "y2": y2, "style": style})
         case _:
             points = " ".join(f"{x},{y}" for x, y in corners)
             return e("polygon", {"points": points})

@@ -19,7 +19,11 @@ def spec_lines(requirement: Requirement, blame: Blame | None) -> ET.Element | No
     last = span.start + len(text[span.start : span.end].rstrip())
     block = e("pre", {"class": "spec"})
     position = first
-    for number, line in enumerate(text[first:last].split("\n"), span.line):
+    lines = text[first:last].split("\n")
+    for number, line in enumerate(lines, span.line):
+        if number == span.line and len(lines) > 1 and line.endswith(f'"{requirement.text}"'):
+            position += len(line) + 1  # only id and text, which the page has already
+            continue
         content = _marked(line, position, blame)
         gutter = e("span", {"class": "gutter", "aria-hidden": "true"}, f"{number:>3}  ")
         block.append(e("span", {"class": "line"}, gutter, *content))

@@ -13,8 +13,8 @@ from rvmon.report.tracks import Track
 from rvmon.report.view import View, moment, round_instants
 from rvmon.verdict.attempt import Attempt
 
-CLOSEST = 0.2
-"""Labels closer than this share of the width stand in different rows: enough on a phone."""
+LABEL = 0.44
+"""Share of the width that a label takes on a phone: those that would meet there get a row each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +43,7 @@ def timeline(
     *,
     origin: int,
     end: int,
+    blamed: frozenset[str] = frozenset(),
     ghost: Ghost | None = None,
 ) -> ET.Element:
     """Draw a timeline.
@@ -53,20 +54,25 @@ def timeline(
         view: what is shown.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the run, ticks.
+        blamed: the names that the failed part of the requirement reads.
         ghost: drawn behind the tracks, dashed.
     """
     ghosts = {track.name: track for track in ghost.tracks} if ghost else {}
-    blamed = attempt.blame.at if attempt is not None and attempt.blame is not None else ()
     rows: list[Child] = []
     if attempt is not None:
         rows.append(_obligation(attempt, view, origin))
     for track in tracks:
+        offending = _offending(attempt) if track.name in blamed else ()
         other = ghosts.get(track.name)
-        rows.append(track_row(track, view, end, blamed, other, ghost.end if ghost else end))
+        rows.append(track_row(track, view, end, offending, other, ghost.end if ghost else end))
     rows.append(_axis(view, origin))
     guides = [] if attempt is None else _guides(attempt, view)
     overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
     return e("div", {"class": "timeline"}, *rows, overlay)
+
+
+def _offending(attempt: Attempt | None) -> tuple[int, ...]:
+    return attempt.blame.at if attempt is not None and attempt.blame is not None else ()
 
 
 def _obligation(attempt: Attempt, view: View, origin: int) -> ET.Element:
@@ -80,7 +86,7 @@ def _obligation(attempt: Attempt, view: View, origin: int) -> ET.Element:
     rows = 1 + max(row for _, row in labels)
     height = {"style": f"height:{rows * 1.35 + 0.9:g}rem"}
     plot = e("div", {"class": "plot owed", **height}, *(label for label, _ in labels), bar)
-    return e("div", {"class": "row"}, e("div", {"class": "name"}, "owed in"), plot)
+    return e("div", {"class": "row"}, e("div", {"class": "name"}, "window"), plot)
 
 
 def _window(attempt: Attempt) -> tuple[int, int | None]:
@@ -91,33 +97,38 @@ def _window(attempt: Attempt) -> tuple[int, int | None]:
 
 def _labels(attempt: Attempt, view: View, origin: int) -> list[tuple[ET.Element, int]]:
     """Labels of trigger, deadline and decision, each in the first row in which it has room."""
-    wanted = [(attempt.triggered, "trigger", "▼ trigger", "")]
+    wanted = [(attempt.triggered, "trigger", "▼", "trigger")]
     deadline = _window(attempt)[1]
     if deadline is not None and deadline != attempt.triggered:
-        wanted.append((deadline, "deadline", "▏deadline", ""))
+        wanted.append((deadline, "deadline", "|", "deadline"))
     if attempt.decided is not None:
         mark = MARKS[attempt.verdict]
-        verdict = f"{mark.sign} {mark.word}"
-        wanted.append((attempt.decided, "decision", verdict, attempt.verdict.value))
-    taken: list[list[float]] = []
+        wanted.append((attempt.decided, "decision", mark.sign, mark.word))
+    taken: list[list[tuple[float, float]]] = []
     labels = []
-    for instant, kind, text, verdict in wanted:
+    for instant, kind, sign, word in wanted:
         place = min(max(view.fraction(instant), 0.0), 1.0)
+        to_left = place > 1 - LABEL
+        left, right = (place - LABEL, place) if to_left else (place, place + LABEL)
         row = next(
-            (i for i, used in enumerate(taken) if all(abs(place - x) >= CLOSEST for x in used)),
+            (i for i, used in enumerate(taken) if all(right <= a or left >= b for a, b in used)),
             len(taken),
         )
         if row == len(taken):
             taken.append([])
-        taken[row].append(place)
-        side = " to-left" if place > 1 - CLOSEST else ""
+        taken[row].append((left, right))
+        side = " to-left" if to_left else ""
         attributes = {
             "class": f"label {kind}{side}",
-            "data-verdict": verdict or None,
+            "data-verdict": attempt.verdict.value,
             "style": f"left:{place:.2%};top:{row * 1.35:g}rem",
         }
-        when = e("span", {"class": "when"}, " " + moment(instant, origin))
-        labels.append((e("div", attributes, text, when), row))
+        text: list[Child] = [
+            f"{word} ",
+            e("span", {"class": "when"}, moment(instant, origin, view)),
+        ]
+        labelled = [*text, f" {sign}"] if to_left else [f"{sign} ", *text]
+        labels.append((e("div", attributes, *labelled), row))
     return labels
 
 
@@ -144,7 +155,7 @@ def _axis(view: View, origin: int) -> ET.Element:
         e(
             "span",
             {"class": "tick", "style": f"left:{view.fraction(instant):.2%}"},
-            moment(instant, origin).removesuffix(" s"),
+            moment(instant, origin, view).removesuffix(" s"),
         )
         for instant in round_instants(view, origin)
         if 0.01 <= view.fraction(instant) <= 0.99

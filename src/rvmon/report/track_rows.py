@@ -45,6 +45,9 @@ def track_row(
         _add_number(plot, track, view, end, blamed, ghost, ghost_end)
     else:
         _add_stretches(plot, stretches(track, view, end))
+        for instant in blamed:
+            if view.start <= instant <= view.end:
+                plot.append(_offending(view.fraction(instant)))
         if ghost is not None:
             _add_stretches(plot, stretches(ghost, view, ghost_end), " ghost")
     name = e("div", {"class": "name"}, e("code", None, track.name))
@@ -62,8 +65,9 @@ def _add_event(
     offending = {round(view.fraction(t), 9) for t in blamed}
     for place, value in occurrences(track, view):
         sign = "?" if value is None else "◆"
-        kind = "mark offending" if round(place, 9) in offending else "mark"
-        plot.append(e("span", {"class": kind, "style": f"left:{place:.2%}"}, sign))
+        plot.append(e("span", {"class": "mark", "style": f"left:{place:.2%}"}, sign))
+        if round(place, 9) in offending:
+            plot.append(_offending(place))
 
 
 def _add_stretches(plot: ET.Element, pieces: Sequence[Stretch], extra: str = "") -> None:
@@ -124,6 +128,11 @@ def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
     lowest, highest = min(values, default=0.0), max(values, default=1.0)
     edge = (highest - lowest) * EDGE or abs(highest) * EDGE or 1.0
     return lowest - edge, highest + edge
+
+
+def _offending(place: float) -> ET.Element:
+    """A ring around the sample that is to blame."""
+    return e("span", {"class": "mark offending", "style": f"left:{place:.2%}"})
 
 
 def _points(points: Sequence[tuple[float, float]]) -> str:

@@ -17,8 +17,8 @@ SMALLEST_MARGIN = TICKS_PER_SECOND
 
 STEPS = (1, 2, 5)
 
-FINE = 1_000_000
-"""Ticks below which every one of them is shown."""
+SHOWN_DIGITS = 4
+"""The last digit of an instant is between a thousandth and a ten-thousandth of the view."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,16 +75,17 @@ def round_instants(view: View, origin: int, count: int = 6) -> list[int]:
     return list(range(first, view.end + 1, step))
 
 
-def moment(instant: int, origin: int) -> str:
-    """An instant for people: seconds since the origin, to the microsecond if that is fine enough.
+def moment(instant: int, origin: int, view: View) -> str:
+    """An instant for people: seconds since the origin, as fine as it can be seen in a view.
 
     A missed deadline is decided one tick behind it; that tick is not shown.
 
-    >>> moment(3_000_000_001, 0), moment(17, 5)
-    ('3 s', '12 ns')
+    >>> moment(3_234_567_891, 0, View(0, 10_000_000_000)), moment(17, 5, View(0, 20))
+    ('3.235 s', '12 ns')
     """
+    digits = math.ceil(math.log10(view.end - view.start)) - SHOWN_DIGITS
     since = instant - origin
-    return format_ticks(since if abs(since) < FINE else round(since, -3))
+    return format_ticks(since if digits <= 0 else round(since, -digits))
 
 
 def _length(report: Report) -> int:
