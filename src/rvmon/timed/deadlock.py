@@ -6,7 +6,7 @@ from rvmon.timed.abstraction import extrapolate, largest
 from rvmon.timed.discrete import Move, State
 from rvmon.timed.federation import before, subtract_all, universe
 from rvmon.timed.successors import Space
-from rvmon.timed.zones import Zone, cut
+from rvmon.timed.zones import Zone, cut, normalise
 
 
 class Deadlocks:
@@ -50,7 +50,7 @@ def _before_move(state: State, move: Move, dim: int) -> Zone | None:
                 return None
         elif not cut(zone, dim, [(0, clock, bound)]):
             return None
-    return before(zone, dim) if state.delays else zone
+    return before(zone, dim) if state.delays else normalise(zone)
 
 
 def is_time_bounded(state: State) -> bool:

@@ -18,8 +18,8 @@ def universe(dim: int) -> Zone:
 
 
 def before(zone: Zone, dim: int) -> Zone:
-    """The valuations from which some delay leads into a zone."""
-    earlier = zone[:]
+    """The valuations from which some delay leads into a zone; normalised."""
+    earlier = normalise(zone)
     for clock in range(1, dim):
         row = zone[clock * dim + 1 : clock * dim + dim]
         earlier[clock * dim] = min(row)
@@ -36,7 +36,7 @@ def negated(bound: float) -> float:
 
 
 def subtract(zone: Zone, other: Zone, dim: int) -> list[Zone]:
-    """The part of a zone outside another, as disjoint zones."""
+    """The part of a zone outside another, as disjoint zones; both are normalised."""
     parts: list[Zone] = []
     rest = zone[:]
     for x in range(dim):
