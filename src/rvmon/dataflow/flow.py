@@ -105,13 +105,14 @@ class Flow:
             dirty.update(self.graph.stateful)
         self._last = self.position if self.gap is None else t - self.gap
         dirty.update(self._fading)
-        dirty.update(place for place, wake in self._wakes.items() if wake <= t)
-        for name in self.inputs.expire(t):
-            dirty.update(self.graph.by_name.get(name, ()))
+        if self._wakes:
+            dirty.update([place for place, wake in self._wakes.items() if wake <= t])
+        if self.inputs.next_expiry <= t:
+            for name in self.inputs.expire(t):
+                dirty.update(self.graph.by_name.get(name, ()))
         changed, evaluated = self._propagate(t, dirty)
-        self._fading = [
-            place for place in evaluated if place in self._momentary and self.values[place] != FALSE
-        ]
+        values = self.values
+        self._fading = [place for place in self._momentary & evaluated if values[place] != FALSE]
         self._dirty = set()
         self._left = True
         self.position = t
@@ -145,7 +146,9 @@ class Flow:
         """The first position after this one at which a value can change by time alone."""
         if self.gap is None or self.origin is None:
             return NEVER
-        found = min(min(self._wakes.values(), default=NEVER), self.inputs.next_expiry)
+        found = self.inputs.next_expiry
+        if self._wakes:
+            found = min(found, *self._wakes.values())
         if self._fading:
             found = min(found, self.position + self.gap)
         if found >= NEVER:

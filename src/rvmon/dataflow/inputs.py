@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.spec.checked import CheckedSpec
@@ -59,8 +60,8 @@ class Slot:
             setattr(made, name, getattr(self, name))
         return made
 
-    def update(self, t: int, value: Scalar) -> int:
-        """Take an update; returns whether it is one with another value (Kleene)."""
+    def update(self, t: int, value: Any) -> int:
+        """Take an update, a scalar; returns whether it is one with another value (Kleene)."""
         if value != value:
             value = None
         first = not self.updates
@@ -109,7 +110,7 @@ class Inputs:
         for name, value in values.items():
             self.updated.add(name)
             slot = self.slots.get(name)
-            if slot is None or isinstance(value, Mapping | tuple):
+            if slot is None:
                 self.occurrences.setdefault(name, []).append(value)
             else:
                 changed = slot.update(t, value)
@@ -136,7 +137,11 @@ class Inputs:
     @property
     def next_expiry(self) -> int:
         """The next instant at which a signal becomes stale."""
-        return min((slot.stale_at for _, slot in self._perishable), default=NEVER)
+        soonest = NEVER
+        for _, slot in self._perishable:
+            if slot.stale_at < soonest:
+                soonest = slot.stale_at
+        return soonest
 
     def expire(self, t: int) -> list[str]:
         """Make stale what is so at `t`; returns the names."""

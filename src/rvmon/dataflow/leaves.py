@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import assert_never
+from typing import Any, assert_never
 
-from rvmon.dataflow.inputs import Inputs, payloads_of
+from rvmon.dataflow.inputs import Inputs, Slot, payloads_of
 from rvmon.dataflow.numbers import COMPARE, captured_of, events_of, inputs_of, reader
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf
 from rvmon.spec.checked import (
@@ -15,9 +15,11 @@ from rvmon.spec.checked import (
     Compare,
     Constant,
     EventAtom,
+    Literal,
     Probe,
     ProbeAtom,
     SignalAtom,
+    SignalValue,
 )
 from rvmon.trace.sample import Scalar
 
@@ -138,4 +140,20 @@ def _compare(leaf: Compare, inputs: Inputs, captured: Mapping[str, Scalar]) -> E
             found = max(found, truth(payloads) if len(payloads) == len(events) else UNKNOWN)
         return found
 
-    return of_occurrences if events else lambda _: truth({})
+    if events:
+        return of_occurrences
+    match leaf:
+        case Compare(left=SignalValue(name=name), right=Literal(value=bound)):
+            return _against_constant(inputs.slots[name], operation, bound)
+        case _:
+            return lambda _: truth({})
+
+
+def _against_constant(slot: Slot, operation: Callable[[Any, Any], bool], bound: Scalar) -> Evaluate:
+    """The comparison of a signal with a literal, which is what most comparisons are."""
+
+    def against_constant(_: int) -> int:
+        value = slot.value
+        return UNKNOWN if value is None else TRUE if operation(value, bound) else FALSE
+
+    return against_constant

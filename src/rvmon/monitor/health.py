@@ -9,7 +9,7 @@ from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.intake import Intake
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Scalar, Value
+from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
 
 
@@ -29,16 +29,15 @@ class HealthLog:
         if self.began is None:
             self.began = t
         for name, value in values.items():
-            if isinstance(value, Mapping | tuple):
+            if value is None or value != value:
+                self._add(name, name, value, t)
+            elif type(value) is dict or type(value) is tuple:
                 for payload in payloads_of(value):
                     for field, scalar in (payload or {}).items():
-                        self._look(f"{name}.{field}", name, scalar, t)
-            else:
-                self._look(name, name, value, t)
+                        if scalar is None or scalar != scalar:
+                            self._add(f"{name}.{field}", name, scalar, t)
 
-    def _look(self, shown: str, name: str, value: Scalar, t: int) -> None:
-        if value is not None and value == value:
-            return
+    def _add(self, shown: str, name: str, value: object, t: int) -> None:
         key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
         count, first = self._seen.get(key, (0, t))
         self._seen[key] = (count + 1, first)

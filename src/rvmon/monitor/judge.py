@@ -141,6 +141,23 @@ class Judge:
 
         return drive
 
+    @property
+    def next_due(self) -> int:
+        """The next instant at which time alone can decide an attempt, as far as is known now."""
+        gap = self.flow.gap
+        if gap is None or self.due > self.position + gap:
+            return self.due
+        following = self.position + gap
+        found = INFINITY
+        for attempt in self.attempts:
+            runs = ((attempt.token, self.letters[0]), (attempt.better, self.letters[1]))
+            for token, letter in runs:
+                if token is not None and token[0] > PASSED:
+                    found = min(
+                        found, run(self.machine, token, letter, following, following, gap)[1]
+                    )
+        return found
+
     def pass_to(self, t: int) -> None:
         """Let time come to `t` with the letters as they are; positions up to there are stepped."""
         gap, position = self.flow.gap, self.position

@@ -6,17 +6,17 @@ attempt of a requirement with `let`, has a lane of its own, because its proposit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Reported
-from rvmon.monitor.judge import Judge
+from rvmon.monitor.judge import Judge, Open
 from rvmon.monitor.trigger import Trigger
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Starter:
     """What starts the attempts of one requirement in a lane.
 
@@ -31,14 +31,9 @@ class Starter:
     place: int
     start: Callable[[int, int], None]
 
-    @property
-    def repeats(self) -> bool:
-        """Whether it has to be asked at the next position, though nothing changes."""
-        return self.trigger is not None and self.trigger.repeats
-
 
 class Lane:
-    """One flow and its seats.
+    """One flow and the requirements that read it; a sample costs what it concerns.
 
     Attributes:
         flow: evaluates the propositions of its judges.
@@ -51,10 +46,14 @@ class Lane:
         self.flow = flow
         self.judges: list[Judge] = []
         self.starters: list[Starter] = []
+        self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
         nodes = flow.graph.nodes
         self._judges_at: list[list[Judge]] = [[] for _ in nodes]
         self._starters_at: list[list[Starter]] = [[] for _ in nodes]
-        self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
+        self._restless: dict[Judge, None] = {}
+        self._repeating: dict[Starter, None] = {}
+        self._soonest = INFINITY
+        """No judge is due before."""
         self._awaited = INFINITY
         """The next position at which samples that were taken will show."""
 
@@ -73,22 +72,41 @@ class Lane:
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`, positions there included, without a further sample."""
         while True:
-            position = min(self._awaited, self.flow.next_change, self._next_repeat())
-            self._run_due(min(position - 1, limit))
+            position = min(self._awaited, self.flow.next_change)
+            if self._repeating and self.flow.gap is not None:
+                position = min(position, self.flow.position + self.flow.gap)
+            self._pass_to(min(position - 1, limit))
             if position > limit:
                 return
             self._visit(position)
 
-    def _next_repeat(self) -> int:
-        gap = self.flow.gap
-        if gap is not None and any(starter.repeats for starter in self.starters):
-            return self.flow.position + gap
-        return INFINITY
-
-    def _run_due(self, limit: int) -> None:
+    def _pass_to(self, t: int) -> None:
+        if self._soonest > t:
+            return
         for judge in self.judges:
-            if judge.due <= limit:
-                judge.pass_to(limit)
+            if judge.due <= t:
+                judge.pass_to(t)
+        self._look_over()
+
+    def reach(self, t: int) -> None:
+        """Let time come to `t`, of which no position is known, from `t − 1`."""
+        if self._soonest > t:
+            return
+        for judge in self.judges:
+            if judge.due <= t:
+                judge.reach(t)
+        self._look_over()
+
+    def _look_over(self) -> None:
+        self._soonest = INFINITY
+        for judge in self.judges:
+            self._note(judge)
+
+    def _note(self, judge: Judge) -> None:
+        """Remember when a judge has to be seen to, after something was done to it."""
+        self._soonest = min(self._soonest, judge.due)
+        if judge.restless:
+            self._restless[judge] = None
 
     def sample(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take a sample; time has come to `t − 1` before."""
@@ -107,23 +125,45 @@ class Lane:
             self.flow.apply(taken, values)
         self.waiting.clear()
         changed = self.flow.evaluate(t)
-        letters = {judge for place in changed for judge in self._judges_at[place]}
-        for judge in self.judges:
-            if first or judge in letters or judge.due <= t or judge.restless:
-                judge.visit(t)
-        triggers = {id(starter) for place in changed for starter in self._starters_at[place]}
-        for starter in self.starters:
-            if starter.trigger is None:
-                continue
-            asked = first or id(starter) in triggers or starter.repeats
-            if asked and starter.trigger.starts(self.flow.values[starter.place]):
-                starter.start(t, t)
+        for judge in self.judges if first else self._concerned(changed, t):
+            judge.visit(t)
+            self._note(judge)
+        asked = dict(self._repeating)
+        if first:
+            asked = dict.fromkeys(self.starters)
+        for place in changed:
+            asked.update(dict.fromkeys(self._starters_at[place]))
+        for starter in asked:
+            self._ask(starter, t)
 
-    def reach(self, t: int) -> None:
-        """Let time come to `t`, of which no position is known, from `t − 1`."""
-        for judge in self.judges:
-            if judge.due <= t:
-                judge.reach(t)
+    def begin(self, judge: Judge, t: int, triggered: int) -> Open:
+        """Start an attempt of one of the judges at the position `t`, which the flow is at."""
+        attempt = judge.begin(t, triggered)
+        self._note(judge)
+        return attempt
+
+    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[Judge]:
+        """The judges that have to visit the position at `t`."""
+        concerned = self._restless
+        self._restless = {}
+        for place in changed:
+            for judge in self._judges_at[place]:
+                concerned[judge] = None
+        if self._soonest <= t:
+            concerned.update((judge, None) for judge in self.judges if judge.due <= t)
+        return concerned
+
+    def _ask(self, starter: Starter, t: int) -> None:
+        """Let a starter see the position at `t`."""
+        trigger = starter.trigger
+        if trigger is None:
+            return
+        if trigger.starts(self.flow.values[starter.place]):
+            starter.start(t, t)
+        if trigger.repeats:
+            self._repeating[starter] = None
+        else:
+            self._repeating.pop(starter, None)
 
     def last_position(self, end: int) -> int:
         """The last position at or before `end`, up to which time has come."""
@@ -135,5 +175,5 @@ class Lane:
     @property
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt or start one."""
-        due = min((judge.due for judge in self.judges), default=INFINITY)
-        return min(due, self.flow.next_change, self._awaited, self._next_repeat())
+        due = min((judge.next_due for judge in self.judges), default=INFINITY)
+        return min(due, self.flow.next_change, self._awaited)

@@ -138,14 +138,14 @@ class Lanes:
         if requirement.captures:
 
             def start(t: int, triggered: int) -> None:
-                own, judge = self._captured_lane(lane, compiled, captured, instance, t)
-                self.ledger.started(rank, judge, judge.begin(t, triggered))
-                self._lanes.append((own, instance))
+                new, own = self._captured_lane(lane, compiled, captured, instance, t)
+                self.ledger.started(rank, own, new.begin(own, t, triggered))
+                self._lanes.append((new, instance))
         else:
             judge = self._judge(compiled, lane, captured)
 
             def start(t: int, triggered: int) -> None:
-                self.ledger.started(rank, judge, judge.begin(t, triggered))
+                self.ledger.started(rank, judge, lane.begin(judge, t, triggered))
 
         formula = compiled.obligation.trigger
         if formula is None:
