@@ -1,0 +1,103 @@
+"""Formulas as specifications in our language, as a user would write them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import assert_never
+
+from rvmon.spec.checked import (
+    Binary,
+    BoundAtom,
+    Compare,
+    Constant,
+    EventAtom,
+    Formula,
+    Interval,
+    ProbeAtom,
+    SignalAtom,
+    Unary,
+    UnaryOp,
+)
+from rvmon.testing.show import show
+
+_CALLED = (UnaryOp.RISE, UnaryOp.FALL, UnaryOp.HELD)
+
+
+def specification(
+    requirements: Sequence[str], columns: Mapping[str, Sequence[bool | float]], time: str
+) -> str:
+    """A specification with one requirement per text.
+
+    Args:
+        requirements: what stands below `requirement R1`, `R2`, …
+        columns: the signals, Boolean or numbers.
+        time: `held` or `sampled`.
+    """
+    lines = ["spec benchmark", f"time {time}", ""]
+    for name, column in columns.items():
+        lines.append(f"signal {name} : {'bool' if isinstance(column[0], bool) else 'real'}")
+    for number, text in enumerate(requirements, start=1):
+        lines += ["", f"requirement R{number}", f"  {text}"]
+    return "\n".join(lines) + "\n"
+
+
+def text(formula: Formula) -> str:
+    """A formula in our language, every operand in brackets.
+
+    >>> from rvmon.testing.build import eventually, p, q, two
+    >>> text(two(p, "->", eventually(q, 0, 3)))
+    '((p) -> (F[0 ns, 3 ns] (q)))'
+    """
+    match formula:
+        case Unary(op=op) if op in _CALLED:
+            return show(formula)
+        case Unary(op=op, operand=operand, interval=interval):
+            return f"({op.value}{_window(interval)} {text(operand)})"
+        case Binary(op=op, left=left, right=right, interval=interval):
+            return f"({text(left)} {op.value}{_window(interval)} {text(right)})"
+        case Constant() | SignalAtom() | EventAtom() | Compare() | ProbeAtom() | BoundAtom():
+            return f"({show(formula)})"
+        case _:
+            assert_never(formula)
+
+
+def scaled(formula: Formula, factor: int) -> Formula:
+    """The formula with all its bounds so many times as large."""
+    match formula:
+        case Unary(operand=operand, interval=interval):
+            wider = _scaled_interval(interval, factor)
+            return replace(formula, operand=scaled(operand, factor), interval=wider)
+        case Binary(left=left, right=right, interval=interval):
+            wider = _scaled_interval(interval, factor)
+            return replace(
+                formula, left=scaled(left, factor), right=scaled(right, factor), interval=wider
+            )
+        case _:
+            return formula
+
+
+def _scaled_interval(interval: Interval | None, factor: int) -> Interval | None:
+    if interval is None:
+        return None
+    high = None if interval.high is None else interval.high * factor
+    return Interval(interval.low * factor, high)
+
+
+def _window(interval: Interval | None) -> str:
+    if interval is None or interval == Interval():
+        return ""
+    if interval.high is None:
+        return f"[{interval.low} ns, inf)"
+    return f"[{interval.low} ns, {interval.high} ns]"
+
+
+def always_text(formula: Formula) -> str:
+    """The bare formula that it holds at every position, as people write it.
+
+    >>> from rvmon.testing.build import eventually, p, q, two
+    >>> always_text(two(p, "->", eventually(q, 0, 3)))
+    'always ((p) -> (F[0 ns, 3 ns] (q)))'
+    """
+    inner = text(formula)
+    return f"always {inner}" if inner.startswith("(") else f"always ({inner})"

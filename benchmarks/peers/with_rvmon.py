@@ -1,0 +1,90 @@
+"""Ours, asked as the peers are: specifications as text, through the public interface."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import rvmon
+
+
+class Peer:
+    """Answers requests by rvmon's monitors."""
+
+    def __init__(self) -> None:
+        self._spec: Any = None
+        self._kind = ""
+        self._engine = "auto"
+        self._columns: dict[str, list[Any]] = {}
+        self._rows: list[tuple[int, dict[str, Any]]] = []
+        self._times: Any = None
+        self._period = 1
+
+    def load(
+        self,
+        spec: str,
+        kind: str,
+        columns: dict[str, list[Any]],
+        rows: int,
+        period: int = 1,
+        engine: str = "auto",
+    ) -> dict[str, Any]:
+        """Compile the specification and lay the rows out.
+
+        Args:
+            spec: the text; its requirements are answered for in order.
+            kind: `step` (every row whole), `changes` (what changed) or `evaluate` (columns).
+            columns: by name the value at each row.
+            rows: their number.
+            period: ticks from row to row.
+            engine: by name.
+        """
+        self._spec = rvmon.loads(spec)
+        self._kind, self._engine, self._period = kind, engine, period
+        if kind == "evaluate":
+            import numpy as np
+
+            self._columns = {"t_ns": np.arange(rows, dtype=np.int64) * period}
+            self._columns |= {name: np.array(column[:rows]) for name, column in columns.items()}
+            self._spec.monitor(engine=engine)
+            return {"rows": rows}
+        names = list(columns)
+        cells = zip(*(columns[name][:rows] for name in names), strict=True)
+        whole = [dict(zip(names, row, strict=True)) for row in cells]
+        self._rows = [(t * period, row) for t, row in enumerate(whole)]
+        if kind == "changes":
+            self._rows = [
+                (t, {n: v for n, v in row.items() if i == 0 or whole[i - 1][n] != v})
+                for i, (t, row) in enumerate(self._rows)
+            ]
+        self._spec.monitor(engine=engine)
+        return {"rows": rows}
+
+    def run(self) -> dict[str, Any]:
+        """One pass over the rows; the first row at which each requirement had failed."""
+        if self._kind == "evaluate":
+            began = time.process_time_ns()
+            report = self._spec.evaluate(self._columns, time="t_ns", engine=self._engine)
+            spent = time.process_time_ns() - began
+            return {"cpu_ns": spent, "violated": self._violated(report.attempts)}
+        monitor = self._spec.monitor(engine=self._engine)
+        step = monitor.step_ns
+        failed: list[Any] = []
+        began = time.process_time_ns()
+        for t, row in self._rows:
+            decided = step(t, row)
+            if decided:
+                failed += [attempt for attempt in decided if attempt.verdict == "F"]
+        failed += monitor.advance_ns(len(self._rows) * self._period)
+        spent = time.process_time_ns() - began
+        return {"cpu_ns": spent, "violated": self._violated(failed)}
+
+    def _violated(self, attempts: Any) -> list[int | None]:
+        """The row at which the failure was known: the first at or after its decision."""
+        firsts: dict[str, int | None] = dict.fromkeys(self._spec.requirements)
+        for attempt in attempts:
+            first = firsts[attempt.requirement]
+            if attempt.verdict == "F":
+                row = -(-attempt.decided // self._period)
+                firsts[attempt.requirement] = row if first is None else min(first, row)
+        return list(firsts.values())
