@@ -62,7 +62,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     parser.add_argument("--strict", action="store_true", help="exit with 1 unless all is well")
     parser.add_argument("--format", choices=("text", "json"), default="text")
     _add_common(parser)
-    parser.set_defaults(run=_run)
+    parser.set_defaults(run=_run, command="run")
 
 
 def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -77,7 +77,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "--tests", metavar="N", type=_positive, default=100, help="of each random strategy (100)"
     )
     _add_common(parser)
-    parser.set_defaults(run=_demo)
+    parser.set_defaults(run=_demo, command="demo")
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,6 +17,7 @@ from handover.campaign.strategies import STRATEGIES
 from handover.campaign.summarise import summarise
 from handover.campaign.summary import CampaignSummary
 from handover.campaign.text import print_summary
+from handover.campaign.write_pages import write_pages
 from rvmon.errors import UnknownNameError
 from rvmon.session import Spec, load
 from rvmon.verdict.verdict import Verdict
@@ -65,7 +67,18 @@ def _campaign(chosen: Plan, arguments: argparse.Namespace) -> tuple[CampaignSumm
         folder = Path(arguments.out)
         write_tables(folder, summary)
         write_tests(folder, results)
+        write_pages(folder, summary, results, specs, _again(arguments))
     return summary, results
+
+
+def _again(arguments: argparse.Namespace) -> str:
+    """The command that runs the same campaign."""
+    words = ["handover", arguments.command, "--tests", arguments.tests, "--seed", arguments.seed]
+    if arguments.command == "run":
+        words += ["--strategy", arguments.strategy]
+        words += ["--legacy"] if arguments.legacy else []
+        words += ["--spec", arguments.spec] if arguments.spec else []
+    return shlex.join(str(word) for word in (*words, "--out", arguments.out))
 
 
 def _texts(spec: Spec | None) -> Mapping[str, str]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from handover.generator.abstract_test import AbstractTest
 from handover.generator.files import directed
+from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 
 Strategy = Callable[[int, int], Sequence[AbstractTest]]
@@ -20,6 +21,7 @@ def _directed(_count: int, _seed: int) -> Sequence[AbstractTest]:
 STRATEGIES: Mapping[str, Strategy] = {
     "pseudorandom": pseudorandom,
     "constrained": constrained,
+    "model-based": model_based,
     "directed": _directed,
 }
 """In the order of the columns of a table."""

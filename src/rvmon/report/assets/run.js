@@ -15,7 +15,10 @@
   // --- one attempt at a time ----------------------------------------------------------------
 
   function show(id) {
-    const section = sections.find((one) => one.id === id) || sections.find((one) => one.id === main.dataset.open);
+    const section =
+      sections.find((one) => one.id === id) ||
+      sections.find((one) => requirement(one) === id) ||
+      sections.find((one) => one.id === main.dataset.open);
     stop();
     open = section;
     for (const one of sections) one.classList.toggle("open", one === section);

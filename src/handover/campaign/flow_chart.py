@@ -1,0 +1,132 @@
+"""The robot's states as a flow chart, each filled by the share of its statements that ran."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+
+from handover.campaign.summary import StrategySummary
+from handover.collector.statements import StatementCoverage
+from handover.collector.transitions import TRANSITIONS
+from handover.robot.handover import STATES
+from handover.robot.layout import COMMON
+from rvmon.report.markup import e
+from rvmon.report.percent import percent_text
+
+LEFT, BOX_WIDTH, BOX_HEIGHT, PITCH = 34, 178, 34, 54
+LANE = 13
+"""Units between two of the lines that lead past the other states to the last one."""
+
+RIGHT = LEFT + BOX_WIDTH
+CENTRE = LEFT + BOX_WIDTH / 2
+
+
+def flow_chart(figures: StrategySummary) -> ET.Element:
+    """Draw the chart of one strategy.
+
+    A line is dashed if no test took that transition; the number beside it is how many did.
+    """
+    exits = [
+        (source, target)
+        for source, target in TRANSITIONS
+        if target == STATES[-1] and _row(source) < len(STATES) - 2
+    ]
+    width = RIGHT + LANE * (len(exits) + 1) + 14
+    height = PITCH * (len(STATES) + 1) + 6
+    chart = e(
+        "svg",
+        {"viewBox": f"0 0 {width} {height}", "class": "flow", "role": "img"},
+        e("title", None, "Statement coverage by state of the robot"),
+    )
+    for transition in TRANSITIONS:
+        if transition in exits:
+            lane = len(exits) - exits.index(transition)
+            chart.append(_exit(transition, lane, figures))
+        elif transition[0] == transition[1]:
+            chart.append(_loop(transition, figures))
+        else:
+            chart.append(_step(transition, figures))
+    for state in STATES:
+        chart.append(_box(state, state, _top(state), figures.statements[state]))
+    shared = figures.statements[COMMON]
+    chart.append(_box("shared code", COMMON, PITCH * len(STATES) + 8, shared))
+    return chart
+
+
+def _box(label: str, state: str, top: float, coverage: StatementCoverage) -> ET.Element:
+    share = coverage.covered / coverage.statements if coverage.statements else 1.0
+    kind = "state shared" if state == COMMON else "state"
+    if coverage.covered == 0:
+        kind += " never"
+    missing = ", ".join(str(line) for line in coverage.missing)
+    told = f"{coverage.covered} of {coverage.statements} statements ran"
+    frame = {"x": LEFT, "y": top, "width": BOX_WIDTH, "height": BOX_HEIGHT, "rx": 6}
+    return e(
+        "g",
+        {"class": kind},
+        e("title", None, f"{told}; not run: lines {missing}" if missing else told),
+        e("rect", {"class": "frame", **frame}),
+        e("rect", {"class": "filled", **frame, "width": f"{BOX_WIDTH * share:.1f}"}),
+        e("rect", {"class": "edge", **frame}),
+        e("text", {"x": LEFT + 9, "y": top + 22}, label),
+        e(
+            "text",
+            {"x": RIGHT - 9, "y": top + 22, "class": "share"},
+            percent_text(coverage.covered, coverage.statements),
+        ),
+    )
+
+
+def _step(transition: tuple[str, str], figures: StrategySummary) -> ET.Element:
+    """A line to the next state below."""
+    start, end = _top(transition[0]) + BOX_HEIGHT, _top(transition[1])
+    path = f"M{CENTRE} {start}V{end - 5}"
+    return _edge(transition, path, f"{CENTRE} {end}", (CENTRE + 7, start + 14), figures)
+
+
+def _loop(transition: tuple[str, str], figures: StrategySummary) -> ET.Element:
+    """A line from a state's left side back to it."""
+    top = _top(transition[0])
+    path = f"M{LEFT} {top + 26}h-9q-8 0 -8 -9t8 -9h4"
+    return _edge(transition, path, None, (LEFT - 19, top + 21), figures, anchor="end")
+
+
+def _exit(transition: tuple[str, str], lane: int, figures: StrategySummary) -> ET.Element:
+    """A line past all other states to the last one; the first of them is the outermost."""
+    start = _top(transition[0]) + BOX_HEIGHT / 2
+    end = _top(transition[1]) + BOX_HEIGHT / 2
+    x = RIGHT + LANE * lane + 4
+    path = f"M{RIGHT} {start}H{x - 6}q6 0 6 6V{end - 6}q0 6 -6 6H{RIGHT + 5}"
+    return _edge(transition, path, None, (RIGHT + 4, start - 4), figures)
+
+
+def _edge(
+    transition: tuple[str, str],
+    path: str,
+    tip: str | None,
+    label: tuple[float, float],
+    figures: StrategySummary,
+    *,
+    anchor: str = "start",
+) -> ET.Element:
+    tests = figures.transitions.get(transition, 0)
+    source, target = transition
+    edge = e(
+        "g",
+        {"class": "edge taken" if tests else "edge"},
+        e("title", None, f"{source} → {target}: {tests} of {figures.tests} tests"),
+        e("path", {"d": path}),
+    )
+    if tip is not None:
+        edge.append(e("path", {"class": "tip", "d": f"M{tip}l-4 -7h8z"}))
+    if tests:
+        x, y = label
+        edge.append(e("text", {"x": x, "y": y, "text-anchor": anchor}, str(tests)))
+    return edge
+
+
+def _row(state: str) -> int:
+    return STATES.index(state)
+
+
+def _top(state: str) -> float:
+    return 4 + PITCH * _row(state)

@@ -1,0 +1,99 @@
+"""Tables of verdicts as HTML."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping
+
+from rvmon.report.markup import Child, e
+from rvmon.report.table import Counts, VerdictTable, checked_text
+from rvmon.verdict.verdict import Verdict
+
+Link = Callable[[str, str, Verdict], str | None]
+"""The address of an example behind a count, from group, requirement and verdict."""
+
+
+def table_html(
+    table: VerdictTable,
+    *,
+    beside: Mapping[str, VerdictTable] | None = None,
+    link: Link | None = None,
+) -> ET.Element:
+    """A table with a thin bar per row and group that shows the shares of the verdicts.
+
+    Args:
+        table: the counts.
+        beside: by label, tables whose counts stand in further lines of each row.
+        link: where a count leads to.
+    """
+    others = beside or {}
+    has_checked = any(one.checked for one in (table, *others.values()))
+    body: list[Child] = []
+    for name, text in table.requirements.items():
+        rows = [_row(table, name, _name_cell(name, text), link, has_checked=has_checked)]
+        for label, other in others.items():
+            heading = e("th", {"scope": "row"}, label)
+            rows.append(_row(other, name, heading, None, has_checked=has_checked, like=table))
+        for row in rows[1:]:
+            row.set("class", "beside")
+        body.append(e("tbody", None, *rows))
+    grid = e("table", {"class": "counts"}, _head(table, has_checked=has_checked), *body)
+    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+
+
+def _head(table: VerdictTable, *, has_checked: bool) -> ET.Element:
+    letters = len(Verdict)
+    top: list[Child] = [e("th")]
+    below: list[Child] = [e("th")]
+    if has_checked:
+        top.append(e("th", {"rowspan": 2, "class": "checked"}, "model checking"))
+    for group in table.groups:
+        tests = e("small", None, f" {group.runs}")
+        top.append(e("th", {"colspan": letters, "scope": "colgroup"}, group.name, tests))
+        below.extend(
+            e("th", {"scope": "col", "data-verdict": verdict.value}, verdict.value)
+            for verdict in Verdict
+        )
+    return e("thead", None, e("tr", None, *top), e("tr", None, *below))
+
+
+def _name_cell(name: str, text: str) -> ET.Element:
+    return e("th", {"scope": "row", "title": text}, name)
+
+
+def _row(
+    table: VerdictTable,
+    name: str,
+    heading: ET.Element,
+    link: Link | None,
+    *,
+    has_checked: bool,
+    like: VerdictTable | None = None,
+) -> ET.Element:
+    """One line of counts; `like` gives the groups to be shown, by name."""
+    cells: list[Child] = [heading]
+    if has_checked:
+        shown = checked_text(table.checked[name]) if name in table.checked else ""
+        cells.append(e("td", {"class": "checked"}, shown))
+    for group in (like or table).groups:
+        counts = next(
+            (one.counts.get(name) for one in table.groups if one.name == group.name), None
+        )
+        cells.extend(_cells(counts, group.name, name, link))
+    return e("tr", None, *cells)
+
+
+def _cells(counts: Counts | None, group: str, name: str, link: Link | None) -> list[ET.Element]:
+    if counts is None:
+        return [e("td", {"colspan": len(Verdict), "class": "none"}, "–")]
+    cells = []
+    for verdict in Verdict:
+        count = counts.get(verdict, 0)
+        address = link(group, name, verdict) if link is not None and count else None
+        shown: Child = str(count)
+        if address is not None:
+            title = f"an example of {name} {verdict.value}"
+            shown = e("a", {"href": address, "title": title}, str(count))
+        kind = None if count else "zero"
+        cells.append(e("td", {"data-verdict": verdict.value, "class": kind}, shown))
+    return cells
