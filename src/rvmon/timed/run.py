@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from rvmon.timed.model import Edge
+
+if TYPE_CHECKING:
+    from rvmon.timed.timing import Timing
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,12 +101,14 @@ class Run:
         steps: in order.
         ending: how it ends.
         loop: for loops the number of the first step that is repeated.
+        timing: all timed runs along the path, if it is known.
     """
 
     start: Position
     steps: tuple[RunStep, ...]
     ending: Ending = Ending.REACHED
     loop: int | None = None
+    timing: Timing | None = field(default=None, compare=False, repr=False)
 
     @property
     def duration(self) -> Fraction:

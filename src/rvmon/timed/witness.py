@@ -119,7 +119,7 @@ def make_run(
         RunStep(window, wait, action_of(step.move), position_of(step.state))
         for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
     )
-    run = Run(position_of(start), run_steps, ending, loop)
+    run = Run(position_of(start), run_steps, ending, loop, timing)
     replay(network, run)
     return run
 

@@ -1,0 +1,126 @@
+"""Tests from the model: templates are projections of witnesses, tests lie inside their windows."""
+
+import random
+from math import inf
+
+import msgspec
+import pytest
+
+from handover.driver import run_test
+from handover.generator.abstract_test import ReceiveSignal, SendSignal, SetParam
+from handover.generator.files import AbstractTestError
+from handover.generator.model_based import (
+    PROJECTED,
+    choose_times,
+    instantiate,
+    model_based,
+    project,
+    templates,
+)
+from handover.generator.template import Wait, load_template, save_template
+from handover.model import handover_network
+from rvmon.timed.outcome import Policy
+from rvmon.timed.verify import verify
+
+
+def signals(test):
+    """The signals of a script, in order."""
+    return [a.signal for a in test.actions if isinstance(a, SendSignal | ReceiveSignal)]
+
+
+def postures(test):
+    """The postures that a script takes last."""
+    return {a.param: a.value for a in test.actions if isinstance(a, SetParam) and a.param != "time"}
+
+
+def test_one_test_for_each_expressible_requirement():
+    """R1 to R4 give a test each; all follow the protocol up to the human's readiness."""
+    tests = model_based(100, seed=3)
+    assert [test.name[-2:] for test in tests] == ["R1", "R2", "R3", "R4"]
+    for test in tests:
+        assert signals(test) == ["activateRobot", "informHumanOfHandoverStart", "humanIsReady"]
+
+
+def test_postures_follow_the_witness():
+    """R1's witness takes all postures well, R2's at least one badly."""
+    good, bad, *_ = model_based(4, seed=3)
+    assert postures(good) == dict.fromkeys(("honTask", "hgazeOk", "hlocationOk", "hpressureOk"), 1)
+    assert 0 in postures(bad).values()
+
+
+def test_the_same_seed_gives_the_same_tests():
+    """Tests follow from the seed alone, and differ between seeds."""
+    assert model_based(4, seed=5) == model_based(4, seed=5)
+    assert model_based(4, seed=5) != model_based(4, seed=6)
+
+
+@pytest.mark.parametrize("policy", ["shortest", "fastest", "likely"])
+def test_chosen_times_are_those_of_some_run(policy):
+    """Whatever is chosen satisfies every limit that the witness puts on the projected instants."""
+    network = handover_network()
+    (query,) = (q for q in network.queries if q.id == "R1")
+    run = verify(network, query, policy=Policy(policy)).run
+    instants = [0] + [
+        number
+        for number, step in enumerate(run.steps, start=1)
+        for index, _ in step.action.edges
+        if network.automata[index].name in PROJECTED
+    ]
+    template = templates(policy)[0]
+    for seed in range(100):
+        times = choose_times(template, random.Random(seed))
+        for p, first in zip(instants, times, strict=True):
+            for q, second in zip(instants, times, strict=True):
+                bound = run.timing.bounds[p, q]
+                assert bound == inf or (second - first) * run.timing.scale <= bound
+
+
+def test_waits_are_chosen_all_over_their_windows():
+    """A wait with a window of ten units takes each of its values for some seed."""
+    template = templates()[0]
+    (index,) = (i for i, s in enumerate(template.steps, 1) if s.does == "workflow: ready → tasking")
+    seen = set()
+    for seed in range(300):
+        times = choose_times(template, random.Random(seed))
+        seen.add(times[index] - times[index - 1])
+    assert seen == set(range(1, 11))
+
+
+def test_templates_are_files(tmp_path):
+    """A template can be written, read by people and programs, and read back."""
+    template = templates()[1]
+    path = save_template(template, tmp_path)
+    assert load_template(path) == template
+    assert '"gaze: off → ok"' in path.read_text()
+
+
+def test_a_template_changed_by_hand_is_taken_as_it_is(tmp_path):
+    """A changed window is kept; contradictory limits and broken files are refused."""
+    template = templates()[0]
+    steps = list(template.steps)
+    steps[2] = msgspec.structs.replace(steps[2], wait=Wait(100, 100))
+    changed = msgspec.structs.replace(template, steps=tuple(steps))
+    times = choose_times(changed, random.Random(1))
+    assert times[3] - times[2] == 100
+    steps[4] = msgspec.structs.replace(steps[4], wait=Wait(90, 90))
+    with pytest.raises(AbstractTestError, match="no times satisfy"):
+        instantiate(msgspec.structs.replace(template, steps=tuple(steps)), seed=1)
+    (tmp_path / "broken.json").write_text('{"name": 3}')
+    with pytest.raises(AbstractTestError, match="not a test template"):
+        load_template(tmp_path / "broken.json")
+
+
+def test_projection_keeps_only_human_and_sensors():
+    """No step of a template is the robot's."""
+    network = handover_network()
+    run = verify(network, "E<> robot.done and withheld").run
+    steps, _ = project(network, run)
+    assert steps
+    assert {step.does.split(":")[0] for step in steps} <= set(PROJECTED)
+
+
+@pytest.mark.parametrize(("requirement", "event"), [(0, "released"), (1, "withheld")])
+def test_the_robot_does_what_the_witness_shows(requirement, event):
+    """Played against the robot, R1's test ends in a release, R2's in a refusal."""
+    run = run_test(model_based(4, seed=1)[requirement], startup_loss=False)
+    assert any(event in values for _, values in run.samples)
