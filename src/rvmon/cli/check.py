@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
         broken += wrong
     _show(arguments.format, findings)
     if arguments.format == "text":
-        _summary(len(arguments.specs), unreadable + broken, len(findings))
+        print(_summary(len(arguments.specs), findings))
     if unreadable or broken:
         return 2
     return int(arguments.strict and bool(findings))
@@ -84,9 +84,11 @@ def _show(form: str, findings: list[Diagnostic]) -> None:
             print(render_full(findings), file=sys.stderr)
 
 
-def _summary(files: int, broken: int, findings: int) -> None:
+def _summary(files: int, findings: list[Diagnostic]) -> str:
     def counted(count: int, noun: str) -> str:
         return f"{count} {noun}{'' if count == 1 else 's'}"
 
-    state = "fine" if not broken else f"{broken} of them unfit for use"
-    print(f"{counted(files, 'file')}: {state}, {counted(findings, 'finding')}")
+    errors = sum(finding.severity == "error" for finding in findings)
+    counts = ((errors, "error"), (len(findings) - errors, "warning"))
+    found = ", ".join(counted(count, noun) for count, noun in counts if count)
+    return f"{counted(files, 'file')}: {found or 'nothing to report'}"

@@ -22,7 +22,7 @@ _OPERAND_ALL = _OPERAND | {
 }  # fmt: skip
 _ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
 _INFIX = {"AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS"}
-_CLAUSES = {"TEXT_CLAUSE", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY"}
+_CLAUSES = {"TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE"}
 _WORDS = {
     "NAME": "a name",
     "NUMBER": "a number",
@@ -119,7 +119,7 @@ def _in_words(accepted: set[str], parser: lark.Lark) -> str:
         words.append("an operator such as `and`, `or`, `->`, `until`")
         rest -= _INFIX | _ARITHMETIC
     if rest >= _CLAUSES:
-        words.append("a clause (`source`, `rationale`, `severity`, `tags`, `let`, …)")
+        words.append("a clause (`source`, `scope`, `let`, …)")
         rest -= _CLAUSES
     if len(rest & {"SPEC", "SIGNAL", "REQUIREMENT"}) == 3:
         return f"an item ({', '.join(f'`{word}`' for word in ITEM_WORDS)})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from functools import cache
 from importlib import resources
@@ -20,7 +21,7 @@ from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.split import split_items
 from rvmon.spec.syntax import Expression
 from rvmon.spec.units import compound_pattern
-from rvmon.spec.words import NOT_UNITS, RESERVED
+from rvmon.spec.words import ITEM_WORDS, NOT_UNITS, RESERVED
 
 DEEPEST = 100
 """Expressions nested more deeply are refused."""
@@ -37,14 +38,31 @@ def parse_spec(source: Source) -> tuple[ParsedSpec, list[Diagnostic]]:
     items: list[Item] = []
     findings: list[Diagnostic] = []
     doubtful: set[str] = set()
-    for start, end in split_items(source.text):
+    waiting = split_items(source.text)[::-1]
+    while waiting:
+        start, end = waiting.pop()
         item, wrong = _parse(source, start, end, "item")
-        findings += wrong
         if item is not None:
             items.append(item)
-        else:
-            doubtful.update(re.findall(r"\w[\w.]*", source.text[start:end]))
+            findings += wrong
+            continue
+        cut = _misspelled_item(source.text, start, wrong)
+        if cut is not None:
+            waiting += ((cut, end), (start, cut))
+            continue
+        findings += wrong
+        doubtful.update(re.findall(r"\w[\w.]*", source.text[start:end]))
     return ParsedSpec(source, tuple(items), frozenset(doubtful)), findings
+
+
+def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int | None:
+    """Where an item starts that was taken for a part of the one before, as `requirment R2` is."""
+    place = findings[0].spans[0].span.start
+    if place <= start or text[place - 1] != "\n":
+        return None
+    word = re.compile(r"\w+").match(text, place)
+    close = word and difflib.get_close_matches(word[0], ITEM_WORDS, 1, 0.75)
+    return place if close else None
 
 
 def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic]]:

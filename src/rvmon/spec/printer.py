@@ -119,7 +119,7 @@ def _formula(formula: Formula, level: int) -> str:
             return f"{probe}({_name(name)})"
         case BoundAtom(bound=bound):
             return str(bound)
-        case Compare(left=left, right=Literal(value=True)) if formula.right.value is True:
+        case Compare(left=left, right=Literal(value=bool())):  # a bool payload field and its kin
             return format_numeric(left)
         case Compare(op=op, left=left, right=right):
             return f"{format_numeric(left)} {op} {format_numeric(right)}"

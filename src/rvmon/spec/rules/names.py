@@ -108,23 +108,21 @@ UNKNOWN_FUNCTION = Rule(
     "unknown-function",
     Severity.ERROR,
     "No function or macro of that name exists.",
-    "A name right before a bracket is a call. An operator such as `within T (a or b)` has a space "
-    "there.",
+    "A name right before a bracket is a call. Where an operator is meant, as in `a and (b or c)`, "
+    "it is a word of the language with a space behind it.",
     """spec demo
-event asked, released
-const T = 3 s
+signal door : bool
 
 requirement R1
-  upon asked
-  then within T(released or asked)
+  upon rize(door)
+  then within 3 s not door
 """,
     """spec demo
-event asked, released
-const T = 3 s
+signal door : bool
 
 requirement R1
-  upon asked
-  then within T (released or asked)
+  upon rise(door)
+  then within 3 s not door
 """,
 )
 
