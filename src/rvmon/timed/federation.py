@@ -21,8 +21,7 @@ def before(zone: Zone, dim: int) -> Zone:
     """The valuations from which some delay leads into a zone; normalised."""
     earlier = normalise(zone)
     for clock in range(1, dim):
-        row = zone[clock * dim + 1 : clock * dim + dim]
-        earlier[clock * dim] = min(row)
+        earlier[clock * dim] = min(earlier[clock * dim + 1 : clock * dim + dim])
     return earlier
 
 

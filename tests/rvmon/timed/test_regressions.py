@@ -16,6 +16,7 @@ from rvmon.timed.verify import verify
         (1163, 5),
         (2995, 8),  # a difference of two strict bounds was taken for tighter than one strict bound
         (3108, 9),
+        (4929, 8),
     ],
 )
 def test_it_is_right_now(seed, query):
