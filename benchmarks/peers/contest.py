@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from benchmarks.peers import dialects
 from benchmarks.peers.client import Peer
-from benchmarks.peers.core import UntranslatableError
+from benchmarks.peers.core import UntranslatableError, names_in
 from benchmarks.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
 from benchmarks.peers.positions import Cell, Question
 
@@ -19,7 +19,6 @@ from rvmon.spec.checked import (
     EventAtom,
     Formula,
     Literal,
-    SignalAtom,
     SignalValue,
     TimeModel,
     Unary,
@@ -28,7 +27,6 @@ from rvmon.testing.dice import chance, pick
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.shrink import smaller_formulas
 from rvmon.testing.vocabulary import CARRIER, EVENTS, NUMBERS
-from rvmon.testing.walk import subformulas
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,26 +156,13 @@ def random_question(dice: random.Random, contest: Contest) -> tuple[Question | N
         return None, str(error)
     ticks = dice.randint(2, 24)
     columns: dict[str, list[bool | float]] = {}
-    for name in sorted(_names(asked) or {"p"}):
+    for name in sorted(names_in(asked) or {"p"}):
         if name in NUMBERS:
             columns[name] = list(_walk(dice, ticks, lambda: float(dice.randint(-2, 3))))
         else:
             columns[name] = list(_walk(dice, ticks, lambda: chance(dice, 50)))
     events = frozenset(_EVENTS) & columns.keys()
     return Question(asked, columns, events, contest.time), ""
-
-
-def _names(asked: Formula) -> set[str]:
-    found = set()
-    for part in subformulas(asked):
-        match part:
-            case SignalAtom(name=name) | EventAtom(name=name):
-                found.add(name)
-            case Compare(left=SignalValue(name=name)):
-                found.add(name)
-            case _:
-                pass
-    return found
 
 
 def _with_numbers(dice: random.Random, asked: Formula) -> Formula:

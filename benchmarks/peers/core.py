@@ -13,9 +13,11 @@ from rvmon.spec.checked import (
     Interval,
     ProbeAtom,
     SignalAtom,
+    SignalValue,
     Unary,
     UnaryOp,
 )
+from rvmon.testing.walk import numerics, subformulas
 
 EVER = Interval(0, None)
 
@@ -42,6 +44,18 @@ def either(left: Formula, right: Formula) -> Formula:
 def until(left: Formula, right: Formula, window: Interval) -> Formula:
     """`left U[window] right`."""
     return Binary(BinaryOp.UNTIL, left, right, window)
+
+
+def names_in(formula: Formula) -> set[str]:
+    """The signals and events that a formula reads."""
+    found = {part.name for part in numerics(formula) if isinstance(part, SignalValue)}
+    for part in subformulas(formula):
+        match part:
+            case SignalAtom(name=name) | EventAtom(name=name):
+                found.add(name)
+            case _:
+                pass
+    return found
 
 
 def to_core(formula: Formula) -> Formula:

@@ -59,7 +59,7 @@ def _headers(environment: Environment, folder: Path) -> Path | None:
     return next(iter(folder.glob("pip-download-*/reelay_*/include")), None)
 
 
-def packed(columns: Mapping[str, Sequence[bool]]) -> bytes:
+def packed(columns: Mapping[str, Sequence[bool | float]]) -> bytes:
     """One byte per row: bit i is the column of `LETTERS[i]`."""
     rows = bytearray(len(next(iter(columns.values()))))
     for name, column in columns.items():

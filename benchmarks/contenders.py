@@ -1,0 +1,157 @@
+"""Who is measured, and how each is given a workload."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+from benchmarks.ours import always_text, scaled, specification
+from benchmarks.peers import dialects
+from benchmarks.peers.client import Peer
+from benchmarks.peers.core import UntranslatableError
+from benchmarks.peers.dialects import Dialect, spelling, translate
+from benchmarks.peers.environment import HOME, Environment
+from benchmarks.peers.native import LETTERS, Native, packed
+from benchmarks.workload import Workload
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """One pass over a workload: CPU ns, and per formula the first row at which it was violated."""
+
+    cpu_ns: int
+    violated: tuple[int | None, ...]
+
+
+class Contender(Protocol):
+    """Someone who can be given a workload and passes over it again and again."""
+
+    label: str
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        """Take the first so many rows; raise `UntranslatableError` if that cannot be done."""
+
+    def run(self) -> Pass:
+        """One pass."""
+
+    def close(self) -> None:
+        """Free what was taken."""
+
+
+Request = Callable[[Workload, int], dict[str, Any]]
+
+
+@dataclass(slots=True)
+class Worker:
+    """A contender behind the protocol of the peers."""
+
+    label: str
+    peer: Peer
+    request: Request
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        """Send the formulas and the rows."""
+        self.peer.ask("load", **self.request(workload, rows))
+
+    def run(self) -> Pass:
+        """One pass in the worker's process; it measures itself."""
+        answer = self.peer.ask("run")
+        return Pass(answer["cpu_ns"], tuple(answer["violated"]))
+
+    def close(self) -> None:
+        """End the process: it holds the rows."""
+        self.peer.close()
+
+
+@dataclass(slots=True)
+class NativeReelay:
+    """reelay's C++ monitor over bytes in memory."""
+
+    binary: Path
+    label: str = "reelay C++"
+    command: list[str] = field(default_factory=list)
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        """Write the rows to a file, from which each pass reads them first."""
+        if not set(workload.columns) <= set(LETTERS):
+            raise UntranslatableError("its harness knows the columns p, q, r, s")
+        path = HOME / "rows.bin"
+        columns = {name: column[:rows] for name, column in workload.columns.items()}
+        path.write_bytes(packed(columns))
+        patterns = [f"historically({p})" for p in _translated(workload, dialects.REELAY_DISCRETE)]
+        self.command = [str(self.binary), "memory", str(path), *patterns, "1"]
+
+    def run(self) -> Pass:
+        """One pass in a process of its own; it measures the loop alone."""
+        done = subprocess.run(self.command, capture_output=True, text=True, check=True)
+        spent, *violated = (int(word) for word in done.stdout.split())
+        return Pass(spent, tuple(None if row < 0 else row for row in violated))
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+def contenders(environment: Environment, native: Native) -> Iterator[Contender]:
+    """All that there are, ours first."""
+    here = Path(sys.executable)
+    for label, kind in (
+        ("rvmon step", "step"),
+        ("rvmon step, changes", "changes"),
+        ("rvmon evaluate", "evaluate"),
+    ):
+        yield Worker(label, Peer(here, "rvmon"), _ours(kind))
+    peers: tuple[tuple[str, str, str, Request], ...] = (
+        ("reelay", "reelay", "reelay", _past(dialects.REELAY_DISCRETE)),
+        ("rtamt", "rtamt", "rtamt", _past(dialects.RTAMT_DISCRETE)),
+        ("mstlo", "mstlo-python", "mstlo", _future),
+    )
+    for label, package, worker, request in peers:
+        if package in environment.versions:
+            yield Worker(label, Peer(environment.python, worker), request)
+    if native.binary is not None:
+        yield NativeReelay(native.binary)
+
+
+def _ours(kind: str) -> Request:
+    def request(workload: Workload, rows: int) -> dict[str, Any]:
+        texts = [always_text(scaled(f, workload.period)) for f in workload.formulas]
+        columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
+        text = specification(texts, columns, "sampled")
+        return {
+            "spec": text,
+            "kind": kind,
+            "columns": columns,
+            "rows": rows,
+            "period": workload.period,
+        }
+
+    return request
+
+
+def _past(dialect: Dialect) -> Request:
+    def request(workload: Workload, rows: int) -> dict[str, Any]:
+        if workload.form != "past":
+            raise UntranslatableError("only past forms are measured")
+        formulas = [f"historically({f})" for f in _translated(workload, dialect)]
+        return _rows(workload, rows, formulas, "discrete")
+
+    return request
+
+
+def _future(workload: Workload, rows: int) -> dict[str, Any]:
+    if workload.form != "future":
+        raise UntranslatableError("only future forms are measured")
+    return _rows(workload, rows, _translated(workload, dialects.MSTLO), "DelayedQualitative")
+
+
+def _translated(workload: Workload, dialect: Dialect) -> list[str]:
+    return [translate(formula, dialect) for formula in workload.formulas]
+
+
+def _rows(workload: Workload, rows: int, formulas: list[str], kind: str) -> dict[str, Any]:
+    columns = {spelling(name): list(column[:rows]) for name, column in workload.columns.items()}
+    return {"formulas": formulas, "kind": kind, "columns": columns, "rows": rows}

@@ -1,0 +1,127 @@
+"""Measuring: passes of all contenders in turn, so that what the machine does meets all alike."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from benchmarks.contenders import Contender
+from benchmarks.peers.client import PeerError
+from benchmarks.peers.core import UntranslatableError
+from benchmarks.workload import Workload
+
+FEWEST_ROWS = 50
+PROBE_ROWS = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How long to measure.
+
+    Attributes:
+        repeats: passes of each contender.
+        seconds: what one pass may take; slow contenders get fewer rows.
+    """
+
+    repeats: int = 5
+    seconds: float = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """What one contender needed for one workload.
+
+    Attributes:
+        label: the contender.
+        rows: of each pass.
+        median: CPU ns per row.
+        least: of the passes.
+        most: of the passes.
+        violated: the first violated row of each formula.
+    """
+
+    label: str
+    rows: int
+    median: float
+    least: float
+    most: float
+    violated: tuple[int | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """All figures of one workload.
+
+    Attributes:
+        section: the table.
+        name: the line.
+        form: `past` or `future`.
+        formulas: how many.
+        rows: of the whole trace.
+        changing: the share of rows at which something changes.
+        figures: of the contenders that took part.
+        refusals: of the others, the reason by label.
+    """
+
+    section: str
+    name: str
+    form: str
+    formulas: int
+    rows: int
+    changing: float
+    figures: tuple[Figure, ...]
+    refusals: tuple[tuple[str, str], ...] = ()
+
+
+def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> Result:
+    """Give the workload to all contenders and let them pass over it in turn."""
+    ready: list[tuple[Contender, int]] = []
+    refusals: list[tuple[str, str]] = []
+    for contender in contenders:
+        try:
+            ready.append((contender, _prepare(contender, workload, plan.seconds)))
+        except (UntranslatableError, PeerError) as error:
+            refusals.append((contender.label, str(error).splitlines()[0]))
+    spent: dict[str, list[float]] = {contender.label: [] for contender, _ in ready}
+    violated: dict[str, tuple[int | None, ...]] = {}
+    for number in range(plan.repeats):
+        turn = number % max(len(ready), 1)
+        for contender, rows in [*ready[turn:], *ready[:turn]]:
+            done = contender.run()
+            spent[contender.label].append(done.cpu_ns / rows)
+            violated[contender.label] = done.violated
+    figures = tuple(
+        Figure(
+            contender.label,
+            rows,
+            statistics.median(spent[contender.label]),
+            min(spent[contender.label]),
+            max(spent[contender.label]),
+            violated[contender.label],
+        )
+        for contender, rows in ready
+    )
+    for contender in contenders:
+        contender.close()
+    return Result(
+        workload.section,
+        workload.name,
+        workload.form,
+        len(workload.formulas),
+        workload.rows,
+        workload.changing,
+        figures,
+        tuple(refusals),
+    )
+
+
+def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
+    """Find by a short pass how many rows fit into the time, and load them."""
+    probe = min(PROBE_ROWS, workload.rows)
+    contender.prepare(workload, probe)
+    per_row = max(contender.run().cpu_ns / probe, 1)
+    fitting = max(int(seconds * 1e9 / per_row), FEWEST_ROWS)
+    rows = min(fitting, workload.rows)
+    contender.prepare(workload, rows)
+    return rows

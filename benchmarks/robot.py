@@ -1,0 +1,88 @@
+"""A robot beside a person: a stream of its signals, and requirements on it.
+
+A handover is requested, granted or withheld; a person comes near and the arm stops; speed and
+distance vary at every row. All requirements hold throughout.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterator
+
+from benchmarks.peers.core import names_in
+from benchmarks.workload import Workload
+
+from rvmon.spec.checked import Formula, SignalAtom, SignalValue
+from rvmon.testing.build import always, compared, eventually, historically, no, two
+
+RATES = {"20 Hz": 20, "1 kHz": 1000}
+
+_request, _granted, _withheld, _released, _near, _stopped = (
+    SignalAtom(name) for name in ("request", "granted", "withheld", "released", "near", "stopped")
+)
+_distance, _speed = SignalValue("distance"), SignalValue("speed")
+
+
+def stream(rate: int, rows: int, seed: int = 1) -> dict[str, list[bool | float]]:
+    """The signals at so many rows a second.
+
+    Args:
+        rate: rows a second.
+        rows: the length.
+        seed: of the random choices.
+    """
+    dice = random.Random(f"robot/{rate}/{seed}")
+    flags: dict[str, list[bool | float]] = {
+        name: [False] * rows
+        for name in ("request", "granted", "withheld", "released", "near", "stopped")
+    }
+
+    def hold(name: str, start: float, seconds: float) -> None:
+        for row in range(int(start), min(int(start + max(seconds * rate, 1)), rows)):
+            flags[name][row] = True
+
+    row = 0.0
+    while row < rows:
+        answer = row + dice.uniform(0.2, 2.9) * rate
+        hold("request", row, 0)
+        if dice.random() < 0.7:
+            hold("granted", answer, 0.1)
+            hold("released", answer + 0.3 * rate, 0.1)
+        else:
+            hold("granted", answer, 0.1)
+            hold("withheld", answer + 0.2 * rate, 0)
+        near = answer + 3.5 * rate
+        hold("near", near, 1)
+        hold("stopped", near + dice.uniform(0.05, 0.25) * rate, 1.5)
+        row = near + dice.uniform(2, 4) * rate
+    return {
+        **flags,
+        "distance": [0.8 + 0.25 * math.sin(i / rate) for i in range(rows)],
+        "speed": [0.15 + 0.05 * math.cos(3 * i / rate) for i in range(rows)],
+    }
+
+
+def properties(rate: int) -> Iterator[tuple[str, str, Formula]]:
+    """Name, form and formula of each requirement; bounds in rows at this rate."""
+    three, two_seconds = 3 * rate, 2 * rate
+    yield "answered in 3 s", "future", two(_request, "->", eventually(_granted, 0, three))
+    yield "answered in 3 s", "past", no(two(no(_granted), "S", _request, three + 1, None))
+    yield "withheld for 2 s", "future", two(_withheld, "->", always(no(_released), 0, two_seconds))
+    yield "withheld for 2 s", "past", two(_released, "->", historically(no(_withheld), 0, rate))
+    slow = two(compared(_distance, "<", 0.65), "->", compared(_speed, "<=", 0.25))
+    yield "slow when close", "past", slow
+    stopping = eventually(always(_stopped, 0, rate // 10), 0, 3 * rate // 10)
+    yield "stops in 0.3 s", "future", two(_near, "->", two(_stopped, "or", stopping))
+
+
+def workloads(seconds: int) -> Iterator[Workload]:
+    """Each requirement at each rate on a stream of so many seconds."""
+    for label, rate in RATES.items():
+        rows = seconds * rate
+        columns = stream(rate, rows)
+        for name, form, formula in properties(rate):
+            used = {key: columns[key] for key in sorted(names_in(formula))}
+            yield Workload(
+                "robot", f"{name}, {label}", form, (formula,), used, 1_000_000_000 // rate
+            )

@@ -1,0 +1,100 @@
+"""The workloads of every section."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+
+from benchmarks.workload import Workload
+
+from benchmarks import robot, timescales
+from rvmon.spec.checked import Formula, SignalAtom
+from rvmon.testing.build import eventually, no, two
+
+SIGNALS = 20
+"""Of the stream that many monitors read."""
+
+_BATCHED = (
+    ("AbsentAQ", 10),
+    ("RespondGLB", 10),
+    ("AbsentBQR", 100),
+    ("RespondGLB", 1000),
+    ("AbsentBQR", 1000),
+    ("RecurGLB", 1000),
+    ("RespondBQR", 1000),
+)
+
+
+def families(rows: int, bounds: Sequence[int] = timescales.BOUNDS) -> Iterator[Workload]:
+    """The Timescales families in both forms."""
+    for family in timescales.FAMILIES:
+        for high in bounds:
+            columns = timescales.trace(family, high, rows)
+            low = timescales.low_bound(high)
+            name = f"{family.name} {high}"
+            yield Workload("online", name, "past", (family.past(low, high),), columns)
+            yield Workload("online", name, "future", (family.future(low, high),), columns)
+
+
+def robots(seconds: int) -> Iterator[Workload]:
+    """The robot's requirements."""
+    return robot.workloads(seconds)
+
+
+def many(rows: int, counts: Sequence[int] = (10, 100, 1000)) -> Iterator[Workload]:
+    """So many responses on one stream of 20 signals, of which one changes at each row."""
+    names = [f"v{number}" for number in range(SIGNALS)]
+    dice = random.Random("many")
+    columns: dict[str, list[bool | float]] = {name: [] for name in names}
+    state = dict.fromkeys(names, False)
+    for _ in range(rows):
+        changed = names[dice.randrange(SIGNALS)]
+        state[changed] = not state[changed]
+        for name in names:
+            columns[name].append(state[name])
+    for count in counts:
+        yield Workload("many", f"{count} monitors", "past", _responses(count, "past"), columns)
+        yield Workload("many", f"{count} monitors", "future", _responses(count, "future"), columns)
+
+
+def _responses(count: int, form: str) -> tuple[Formula, ...]:
+    dice = random.Random("responses")
+    formulas = []
+    for _ in range(count):
+        asked, answer = (SignalAtom(f"v{n}") for n in dice.sample(range(SIGNALS), 2))
+        deadline = dice.randint(400, 4000)
+        if form == "past":
+            formulas.append(no(two(no(answer), "S", two(asked, "and", no(answer)), deadline, None)))
+        else:
+            formulas.append(two(asked, "->", eventually(answer, 0, deadline)))
+    return tuple(formulas)
+
+
+def bounds(
+    rows: int, highs: Sequence[int] = (10, 100, 1_000, 10_000, 100_000)
+) -> Iterator[Workload]:
+    """One response with a growing deadline, on one trace."""
+    p, s = SignalAtom("p"), SignalAtom("s")
+    dice = random.Random("bounds")
+    columns: dict[str, list[bool | float]] = {"p": [False] * rows, "s": [False] * rows}
+    row = 0
+    while row < rows - 20:
+        columns["p"][row] = True
+        row += dice.randint(1, 9)
+        columns["s"][row] = True
+        row += dice.randint(1, 9)
+    for high in highs:
+        past = no(two(no(s), "S", p, high, None))
+        future = two(p, "->", eventually(s, 0, high))
+        yield Workload("bound", f"bound {high}", "past", (past,), columns)
+        yield Workload("bound", f"bound {high}", "future", (future,), columns)
+
+
+def batches(rows: int) -> Iterator[Workload]:
+    """Families for columns in memory: many and few rows that change."""
+    by_name = {family.name: family for family in timescales.FAMILIES}
+    for name, high in _BATCHED:
+        family = by_name[name]
+        columns = timescales.trace(family, high, rows)
+        formula = family.past(timescales.low_bound(high), high)
+        yield Workload("batch", f"{name} {high}", "past", (formula,), columns)
