@@ -2,41 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rvmon.spec.checked import TimeModel
 from rvmon.testing.attempts import is_upon_end
-from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, outcomes
-from rvmon.testing.generate_spec import Profile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report
 
-Judge = Callable[[Case], Report]
 
-
-@settings(max_examples=100, deadline=None)
-@given(case=cases(), data=st.data())
-def test_a_longer_trace_overturns_nothing(judge: Judge, case: Case, data: st.DataObject) -> None:
+@settings(max_examples=50, deadline=None)
+@given(data=st.data())
+def test_a_longer_trace_overturns_nothing(subject: Any, data: st.DataObject) -> None:
     """An attempt that the prefix decided stays decided so, at the same instant."""
+    case = data.draw(cases(subject.profile))
     count = data.draw(st.integers(0, len(case.actions)))
-    prefix = judge(replace(case, actions=case.actions[:count], end=None))
-    later = outcomes(judge(case))
+    prefix = subject.judge(replace(case, actions=case.actions[:count], end=None))
+    later = outcomes(subject.judge(case))
     for (name, number), outcome in outcomes(prefix).items():
         if outcome.decision is Decision.PREFIX and not is_upon_end(case.spec.requirements[name]):
             assert later[name, number] == outcome
 
 
-@settings(max_examples=100, deadline=None)
-@given(case=cases(), data=st.data())
-def test_splitting_by_advance(judge: Judge, case: Case, data: st.DataObject) -> None:
+@settings(max_examples=50, deadline=None)
+@given(data=st.data())
+def test_splitting_by_advance(subject: Any, data: st.DataObject) -> None:
     """`advance` between samples, to any instant up to the next, changes nothing."""
+    case = data.draw(cases(subject.profile))
     actions: list[Sample | int] = []
     before: int | None = None
     for action in case.actions:
@@ -46,13 +44,14 @@ def test_splitting_by_advance(judge: Judge, case: Case, data: st.DataObject) -> 
             actions += sorted(data.draw(st.lists(middle, max_size=2)))
         actions.append(action)
         before = instant
-    assert differences(judge(case), judge(replace(case, actions=tuple(actions)))) == []
+    assert subject.differences(case, replace(case, actions=tuple(actions))) == []
 
 
-@settings(max_examples=100, deadline=None)
-@given(case=cases(Profile(time=TimeModel.HELD)), data=st.data())
-def test_empty_samples_in_held_time(judge: Judge, case: Case, data: st.DataObject) -> None:
+@settings(max_examples=50, deadline=None)
+@given(data=st.data())
+def test_empty_samples_in_held_time(subject: Any, data: st.DataObject) -> None:
     """In held time samples that say nothing change nothing: no verdict depends on their rate."""
+    case = data.draw(cases(replace(subject.profile, time=TimeModel.HELD)))
     if not case.samples:
         return
     first, last = case.samples[0].t, case.samples[-1].t
@@ -61,34 +60,36 @@ def test_empty_samples_in_held_time(judge: Judge, case: Case, data: st.DataObjec
     told = [*case.samples, *(Sample(t, {}) for t in {*extra} - said)]
     told.sort(key=lambda sample: sample.t)
     advances = tuple(t for t in case.advances if t > last)
-    assert differences(judge(case), judge(replace(case, actions=(*told, *advances)))) == []
+    assert subject.differences(case, replace(case, actions=(*told, *advances))) == []
 
 
-@settings(max_examples=60, deadline=None)
-@given(case=cases())
-def test_order_inside_a_sample(judge: Judge, case: Case) -> None:
+@settings(max_examples=50, deadline=None)
+@given(data=st.data())
+def test_order_inside_a_sample(subject: Any, data: st.DataObject) -> None:
     """The order in which a sample lists its names changes nothing."""
+    case = data.draw(cases(subject.profile))
     turned = tuple(
         Sample(action.t, dict(reversed(action.values.items())))
         if isinstance(action, Sample)
         else action
         for action in case.actions
     )
-    assert differences(judge(case), judge(replace(case, actions=turned))) == []
+    assert subject.differences(case, replace(case, actions=turned)) == []
 
 
-@settings(max_examples=60, deadline=None)
-@given(case=cases())
-def test_shifting_in_time(judge: Judge, case: Case) -> None:
+@settings(max_examples=50, deadline=None)
+@given(data=st.data())
+def test_shifting_in_time(subject: Any, data: st.DataObject) -> None:
     """A trace that happens later is judged alike, later (clocked: by multiples of the period)."""
+    case = data.draw(cases(subject.profile))
     shift = 7 * (case.spec.period or 1)
     later = tuple(
         replace(action, t=action.t + shift) if isinstance(action, Sample) else action + shift
         for action in case.actions
     )
     end = None if case.end is None else case.end + shift
-    moved = judge(replace(case, actions=later, end=end))
-    assert differences(judge(case), _back(moved, shift)) == []
+    moved = subject.judge(replace(case, actions=later, end=end))
+    assert differences(subject.judge(case), _back(moved, shift)) == []
 
 
 def _back(report: Report, shift: int) -> Report:
