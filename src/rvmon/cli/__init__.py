@@ -20,6 +20,7 @@ COMMANDS = {
     "run": "judge recordings by a specification",
     "format": "lay specifications out in the canonical form",
     "explain": "a requirement, or a diagnostic's code, in plain words",
+    "init": "a starter specification from a recording",
     "verify": "model-check a network of timed automata",
     "conform": "hold recorded runs against a network of timed automata",
 }

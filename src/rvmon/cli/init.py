@@ -1,0 +1,67 @@
+"""`rvmon init`: a starter specification from a recording."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError
+
+if TYPE_CHECKING:
+    from rvmon.starter.column import Profile
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "init",
+        help="a starter specification from a recording",
+        description="Write a starter specification from a recording: signals with guessed types, "
+        "ranges and rates, events, and two requirements that run at once.",
+        epilog="example: rvmon init monday.csv && rvmon run monday.rv monday.csv",
+    )
+    parser.add_argument("data", metavar="DATA", help="a recording: .csv, .jsonl or .ndjson")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="where to write, - to print (default: DATA's .rv)"
+    )
+    parser.add_argument("--force", action="store_true", help="overwrite what is there")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Look the recording over, write, and return the exit code."""
+    from rvmon.starter.profile import profile_of
+    from rvmon.starter.write import starter_text
+
+    output = arguments.output or Path(arguments.data).with_suffix(".rv").name
+    if output != "-" and Path(output).exists() and not arguments.force:
+        raise RvmonError(
+            f"error: {output} is there already: give another place with -o, or --force to overwrite"
+        )
+    profile = profile_of(arguments.data)
+    text = starter_text(profile)
+    if output == "-":
+        sys.stdout.write(text)
+        return 0
+    try:
+        Path(output).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise RvmonError(f"error: {output}: {error.strerror or error}") from None
+    print(f"wrote {output}: {_contents(profile)}")
+    print(f"try:   {shlex.join(['rvmon', 'run', output, arguments.data])}")
+    return 0
+
+
+def _contents(profile: Profile) -> str:
+    events = sum(column.is_event for column in profile.columns)
+    signals = len(profile.columns) - events
+    parts = [_counted(signals, "signal"), _counted(events, "event"), "2 requirements to start from"]
+    if profile.left_out:
+        parts.append(f"{len(profile.left_out)} left out")
+    return ", ".join(parts)
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,1 @@
+"""A first specification from a recording: what is in it, and requirements that run at once."""

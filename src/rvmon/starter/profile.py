@@ -1,0 +1,140 @@
+"""A recording looked over: ranges, rates, gaps, and which truth values look like events."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+from rvmon.errors import TraceError
+from rvmon.readers.recording import FileRecording
+from rvmon.starter.column import Column, Profile, Shape
+from rvmon.starter.shapes import shapes_of
+from rvmon.trace.sample import Value
+from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.time import TICKS_PER_SECOND
+
+MOST_INSTANTS = 10_000
+"""Occurrences that are kept of one name."""
+
+EVENT_SHARE = 0.1
+"""Truth values that are true in single samples only, and in at most this share, are events."""
+
+
+def profile_of(path: str) -> Profile:
+    """Look a recording over, as `rvmon run` will read it.
+
+    Args:
+        path: a `.csv`, `.jsonl` or `.ndjson` file.
+
+    Raises:
+        TraceError: the file cannot be read; place and cause are named.
+    """
+    shapes = shapes_of(path)
+    if not shapes.declared:
+        reasons = ", ".join(f"`{name}`: {why}" for name, why in shapes.left_out.items())
+        found = f" ({reasons})" if reasons else ""
+        raise TraceError(f"{path}: nothing but time: expected signals or events{found}")
+    schema = Schema(
+        {name: shape.kind for name, shape in shapes.declared.items() if shape.kind is not None},
+        {name: shape.fields for name, shape in shapes.declared.items() if shape.kind is None},
+    )
+    followed = {name: _Followed(shape) for name, shape in shapes.declared.items()}
+    start = latest = end = samples = lateness = 0
+    for sample in FileRecording(path, schema, ordered=False):
+        if not samples:
+            start = latest = end = sample.t
+        samples += 1
+        start, end = min(start, sample.t), max(end, sample.t)
+        lateness = max(lateness, latest - sample.t)
+        latest = max(latest, sample.t)
+        for name, one in followed.items():
+            one.take(sample.t, sample.values.get(name, _NOTHING), first=samples == 1)
+    columns = tuple(one.column(name, end) for name, one in followed.items())
+    return Profile(path, columns, shapes.left_out, start, end, samples, lateness)
+
+
+_NOTHING: Mapping[str, bool] = {}
+"""Stands for a name that a sample does not speak of."""
+
+
+class _Followed:
+    """One name from sample to sample."""
+
+    def __init__(self, shape: Shape) -> None:
+        self.shape = shape
+        self.updates = 0
+        self.first: int | None = None
+        self.last: int | None = None
+        self.longest = 0
+        self.low = math.inf
+        self.high = -math.inf
+        self.unknown = False
+        self.instants: list[int] = []
+        self.trues = 0
+        self.falses = 0
+        self.before = False
+        self.runs_are_single = True
+        self.silent = 0
+
+    def take(self, t: int, value: Value, *, first: bool) -> None:
+        if value is _NOTHING:
+            self.unknown |= first
+            self.silent += 1
+            return
+        if self.last is not None:
+            self.longest = max(self.longest, t - self.last)
+        self.first = t if self.first is None else self.first
+        self.last = t
+        self.updates += 1
+        match value:
+            case bool():
+                self._truth(t, value)
+            case int() | float() if math.isfinite(value):
+                self.low, self.high = min(self.low, value), max(self.high, value)
+            case None | float():
+                self.unknown = True
+            case str():
+                pass
+            case _:
+                self._occurred(t)
+
+    def _truth(self, t: int, value: bool) -> None:
+        if value:
+            self.trues += 1
+            self.runs_are_single &= not self.before
+            if not self.before or self.shape.kind is None or not self.falses:
+                self._occurred(t)
+        else:
+            self.falses += 1
+        self.before = value
+
+    def _occurred(self, t: int) -> None:
+        if len(self.instants) < MOST_INSTANTS:
+            self.instants.append(t)
+
+    def _looks_like_event(self) -> bool:
+        if self.shape.kind is not Kind.BOOL or not self.trues:
+            return False
+        if not self.falses:  # only ever said when true
+            return self.silent > self.trues
+        return self.runs_are_single and self.trues <= EVENT_SHARE * (self.trues + self.falses)
+
+    def column(self, name: str, end: int) -> Column:
+        """What is to be said of it, of a recording that ends at `end`."""
+        span = 0 if self.first is None or self.last is None else self.last - self.first
+        event = self._looks_like_event()
+        return Column(
+            name,
+            replace(self.shape, kind=None) if event else self.shape,
+            event,
+            self.trues if event else self.updates,
+            self.low if self.low <= self.high else None,
+            self.high if self.low <= self.high else None,
+            (self.updates - 1) * TICKS_PER_SECOND / span if span > 0 else 0.0,
+            self.longest,
+            0 if self.last is None else max(self.longest, end - self.last),
+            self.first,
+            self.unknown,
+            tuple(self.instants),
+        )

@@ -1,0 +1,89 @@
+"""A looked-over recording as the text of a specification."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from rvmon.spec.printer import format_duration
+from rvmon.starter.column import Column, Profile
+from rvmon.starter.skeletons import Skeleton, name_text, round_up, skeletons_of
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import TICKS_PER_SECOND
+
+COMMENT_COLUMN = 34
+"""Where the remarks beside declarations start, if there is room."""
+
+
+def starter_text(profile: Profile) -> str:
+    """The text of a starter specification; it runs on the recording without edits."""
+    lines = [*_header(profile), "", *map(_declaration, profile.columns)]
+    if profile.left_out:
+        lines += ["", "# Not declared:"]
+        lines += [f"#   {_plain(name)}: {why}" for name, why in profile.left_out.items()]
+    for number, skeleton in enumerate(skeletons_of(profile), 1):
+        lines += ["", *_requirement(f"R{number}", skeleton)]
+    return "\n".join(lines) + "\n"
+
+
+def _header(profile: Profile) -> Iterator[str]:
+    file = Path(profile.path).name
+    stem = re.sub(r"\W", "_", Path(profile.path).stem) or "recording"
+    span = (profile.end - profile.start) / TICKS_PER_SECOND
+    name = stem if stem[0].isalpha() else f"recording_{stem}"
+    yield f"# From {_plain(file)}: {profile.samples} samples in {span:.6g} s."
+    yield "# The types are guessed; add units (`real [m/s]`) and roles (`input`, `output`)."
+    yield f'spec {name_text(name)} "{_plain(stem)}"'
+    yield "time held"
+    if profile.lateness:
+        late = profile.lateness / TICKS_PER_SECOND
+        yield f"max delay {round_up(profile.lateness)}  # stamps go back by up to {late:.6g} s"
+
+
+def _declaration(column: Column) -> str:
+    remark = "; ".join(_remarks(column))
+    line = _declared(column)
+    gap = max(COMMENT_COLUMN - len(line), 2)
+    return f"{line}{' ' * gap}# {remark}" if remark else line
+
+
+def _declared(column: Column) -> str:
+    name, shape = name_text(column.name), column.shape
+    if shape.kind is None:
+        fields = ", ".join(f"{field}: {kind}" for field, kind in shape.fields.items())
+        return f"event  {name}({fields})" if fields else f"event  {name}"
+    if shape.kind is Kind.LABEL:
+        return f"signal {name} : {{{', '.join(map(name_text, shape.labels))}}}"
+    return f"signal {name} : {shape.kind}"
+
+
+def _remarks(column: Column) -> Iterator[str]:
+    if column.is_event:
+        yield f"{column.updates} times" if column.updates != 1 else "once"
+        if column.guessed_event:
+            yield "a guess: true in single samples"
+        return
+    if column.low is not None and column.high is not None:
+        yield f"{column.low:.6g} … {column.high:.6g}"
+    if column.rate:
+        gap = format_duration(column.longest_gap)
+        if len(gap) > 8:
+            gap = f"{column.longest_gap / TICKS_PER_SECOND:.3g} s"
+        yield f"{column.rate:.3g} Hz, longest gap {gap}"
+    elif column.updates == 1:
+        yield "one value"
+    elif not column.updates:
+        yield "no value"
+
+
+def _requirement(name: str, skeleton: Skeleton) -> Iterator[str]:
+    yield f'requirement {name} "{_plain(skeleton.title)}"'
+    for line in skeleton.body:
+        yield f"  {line}"
+    yield f"  # {skeleton.remark}"
+
+
+def _plain(text: str) -> str:
+    """Text that cannot end a line, a comment or a string."""
+    return "".join(char if char.isprintable() and char not in '"\\' else "_" for char in text)

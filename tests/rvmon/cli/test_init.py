@@ -1,0 +1,150 @@
+"""`rvmon init` as a person uses it: what it writes runs on the same recording, unedited."""
+
+import json
+import random
+
+import pytest
+
+import rvmon
+from rvmon.cli import main
+
+RECORDINGS = {
+    "plain.csv": "t,speed,door\n0,0.5,true\n1,0.7,false\n2,,true\n",
+    "zero_one.csv": "t,closed\n0,0\n1,1\n2,1\n",
+    "only_numbers.csv": "t_ns,x\n0,1\n7,2\n9,nan\n",
+    "only_event.csv": "t,go\n0,\n1,1\n2,\n3,1\n4,\n",
+    "one_row.csv": "t,x,mode\n5.5,1,idle\n",
+    "late.csv": "t,x\n0,1\n2,2\n1.5,3\n3,4\n",
+    "odd_names.csv": "t,for,a b,source,U,age,rate,always,mode\n0,1,2,3,4.5,1,2,true,for\n"
+    "1,1,3,3,4.5,1,2,false,red hot\n",
+    "unusable.csv": "t,x,note,empty,ok\n0,1,a,,1\n1,b,7,,2\n2,3,c,,3\n",
+    "times.csv": "t,x\n1700000000.000000001,1\n1700000000.5,2\n",
+    "9 lives.csv": "t,x\n0,1\n1,2\n",
+    "bom.csv": "\ufefft,x\n0,1\n1,2\n",
+    "plain.jsonl": '{"t":0,"speed":1,"mode":"idle"}\n{"t":0.5,"speed":1.5,"door":true}\n',
+    "events.jsonl": '{"t":0,"x":1}\n{"t":1,"events":["go"]}\n{"t":1.4,"events":["done"]}\n',
+    "nested.jsonl": '{"t":0,"arm":{"x":1,"y":{"z":2}}}\n{"t":1,"arm":{"x":2,"y":null}}\n',
+    "payload.jsonl": "".join(f'{{"t":{t},"x":{t}}}\n' for t in range(9))
+    + '{"t":9,"pick":{"id":3,"x":0.5,"by":"arm"}}\n{"t":10,"x":3}\n',
+    "payloads.jsonl": '{"t":0,"x":1}\n{"t":1,"pick":[{"id":3}]}\n{"t":2,"x":null}\n',
+    "nulls.jsonl": '{"t":0,"x":null}\n{"t":1,"x":2,"list":[1,2],"both":1}\n{"t":2,"both":"a"}\n',
+}
+
+
+@pytest.mark.parametrize("name", RECORDINGS)
+def test_what_is_written_runs_at_once(name, tmp_path, monkeypatch, capsys):
+    """Whatever a recording holds, the starter runs on it, with two requirements, none failed."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).write_text(RECORDINGS[name], encoding="utf-8")
+    assert main(["init", name, "-o", "made.rv"]) == 0
+    capsys.readouterr()
+    assert main(["run", "made.rv", name, "--format", "json"]) == 0
+    shown = json.loads(capsys.readouterr().out)
+    verdicts = [one["verdict"] for one in shown["requirements"].values()]
+    assert len(verdicts) == 2
+    assert set(verdicts) <= {"P", "I"}
+
+
+def test_random_recordings_run_at_once(tmp_path):
+    """Random CSV recordings: the starter meets its own recording."""
+    dice = random.Random(5)
+    for number in range(60):
+        columns = [_random_column(dice, 30) for _ in range(dice.randint(1, 5))]
+        names = [f"c{index}" for index in range(len(columns))]
+        rows = [
+            f"{t * 0.1:.1f},{','.join(cells)}" for t, cells in enumerate(zip(*columns, strict=True))
+        ]
+        path = tmp_path / f"{number}.csv"
+        path.write_text("\n".join([f"t,{','.join(names)}", *rows]))
+        made = tmp_path / f"{number}.rv"
+        assert main(["init", str(path), "-o", str(made)]) == 0
+        report = rvmon.load(made).evaluate(path)
+        assert "F" not in {verdict.value for verdict in report.verdicts.values()}, path.read_text()
+
+
+def _random_column(dice, length):
+    kind = dice.choice(["bool", "sparse", "int", "real", "label", "spike"])
+    make = {
+        "bool": lambda: dice.choice("01"),
+        "sparse": lambda: dice.choice(["", "", "", "1"]),
+        "int": lambda: str(dice.randint(-5, 5)),
+        "real": lambda: dice.choice(["", f"{dice.uniform(-1, 1):.3f}"]),
+        "label": lambda: dice.choice(["red", "green", "start"]),
+        "spike": lambda: "1" if dice.random() < 0.05 else "0",
+    }[kind]
+    cells = [make() for _ in range(length)]
+    return cells if any(cells) else ["1", *cells[1:]]
+
+
+def test_what_was_seen_stands_beside_the_names(tmp_path, capsys):
+    """Types, ranges, rates and gaps of a recording; a column that is true now and then is one."""
+    path = tmp_path / "a.csv"
+    path.write_text("t,speed,go,mode\n0,0.5,,idle\n0.5,1.5,1,busy\n2,1,,idle\n")
+    assert main(["init", str(path), "-o", "-"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any(
+        line.startswith("signal speed : real") and "0.5 … 1.5" in line and "1 Hz" in line
+        for line in lines
+    )
+    assert any("longest gap 1500 ms" in line for line in lines)
+    assert any(line.startswith("event  go ") and "once" in line for line in lines)
+    assert "signal mode : {idle, busy}" in "\n".join(lines)
+
+
+def test_a_response_is_timed_from_the_recording(tmp_path, capsys):
+    """The first skeleton bounds an event by the longest wait for the one that follows it."""
+    path = tmp_path / "a.jsonl"
+    path.write_text(
+        '{"t":0,"x":1}\n{"t":1,"events":["go"]}\n{"t":1.4,"events":["done"]}\n'
+        '{"t":5,"events":["go"]}\n{"t":5.7,"events":["done"]}\n'
+    )
+    assert main(["init", str(path), "-o", "-"]) == 0
+    shown = capsys.readouterr().out
+    assert "upon go\n  then within 800 ms done" in shown
+    assert "longest wait in the recording was 0.7 s" in shown
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("a.csv", "time,x\n0,1\n", "`time` looks like it; rename"),
+        ("a.csv", "t,x\n", "`x`: no value in the recording"),
+        ("a.csv", "", "is empty"),
+        ("a.csv", "t\n0\n", "nothing but time"),
+        ("a.csv", "t,x\n0,1,2\n", "line 2"),
+        ("a.csv", "t,x\nzero,1\n", "line 2"),
+        ("a.jsonl", '{"t":0,\n', "line 1: not a JSON object"),
+        ("a.jsonl", "[1]\n", "line 1: expected an object"),
+        ("a.jsonl", '{"x":0}\n', "no time column"),
+        ("a.bag", "x", "no known format"),
+    ],
+)
+def test_bad_recordings_are_refused_with_their_place(name, text, said, tmp_path, capsys):
+    """One message with place and mend, exit code 2, and nothing is written."""
+    path = tmp_path / name
+    path.write_text(text)
+    assert main(["init", str(path), "-o", str(tmp_path / "made.rv")]) == 2
+    shown = capsys.readouterr().err
+    assert said in shown
+    assert str(path) in shown
+    assert not (tmp_path / "made.rv").exists()
+
+
+def test_nothing_is_overwritten(tmp_path, monkeypatch, capsys):
+    """A specification that is there stays, unless --force is given."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.csv").write_text("t,x\n0,1\n1,2\n")
+    (tmp_path / "a.rv").write_text("mine")
+    assert main(["init", "a.csv"]) == 2
+    assert "--force" in capsys.readouterr().err
+    assert (tmp_path / "a.rv").read_text() == "mine"
+    assert main(["init", "a.csv", "--force"]) == 0
+    assert "requirement R1" in (tmp_path / "a.rv").read_text()
+
+
+def test_binary_and_missing_files(tmp_path, capsys):
+    """A binary file and one that is not there are said to be so."""
+    (tmp_path / "a.csv").write_bytes(b"t,x\n\xff\xfe\x00")
+    for name in ("a.csv", "none.csv"):
+        assert main(["init", str(tmp_path / name), "-o", "-"]) == 2
+        assert name in capsys.readouterr().err
