@@ -51,7 +51,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         "--strategy",
         metavar="NAMES",
         default="pseudorandom,constrained",
-        help="of pseudorandom, constrained, directed (default: pseudorandom,constrained)",
+        help="of pseudorandom, constrained, model-based, directed (default: the first two)",
     )
     parser.add_argument(
         "--tests", metavar="N", type=_positive, default=100, help="of each random strategy (100)"
@@ -69,8 +69,8 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser = commands.add_parser(
         "demo",
         help="the paper's Table 1, for both robots",
-        description="Play the pseudorandom, constrained and directed tests against the robot of "
-        "the paper's testbench and against the correct one, and write tables and pages.",
+        description="Play tests of every strategy against the robot of the paper's testbench and "
+        "against the correct one, and write tables and pages.",
         epilog="example: handover demo --out out/demo",
     )
     parser.add_argument(

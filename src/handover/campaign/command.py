@@ -11,6 +11,7 @@ from pathlib import Path
 from handover.campaign.documents import table_document, to_json
 from handover.campaign.execute import INTERRUPTED, execute
 from handover.campaign.files import write_tables, write_tests
+from handover.campaign.model_checking import check_model
 from handover.campaign.outcome import Results
 from handover.campaign.plan import Plan, plan
 from handover.campaign.strategies import STRATEGIES
@@ -22,7 +23,7 @@ from rvmon.errors import UnknownNameError
 from rvmon.session import Spec, load
 from rvmon.verdict.verdict import Verdict
 
-DEMO_STRATEGIES = ("pseudorandom", "constrained", "directed")
+DEMO_STRATEGIES = ("pseudorandom", "constrained", "model-based", "directed")
 DEMO_ROBOTS = ("legacy", "correct")
 
 
@@ -62,7 +63,11 @@ def _campaign(chosen: Plan, arguments: argparse.Namespace) -> tuple[CampaignSumm
     # Wrong requirements are told before anything is played.
     specs = {robot: load(path) for robot, path in chosen.specs.items()} if chosen.monitors else {}
     results = _execute(chosen, arguments.jobs)
-    summary = summarise(results, {robot: _texts(specs.get(robot)) for robot in chosen.specs})
+    texts = {robot: _texts(specs.get(robot)) for robot in chosen.specs}
+    checked = {}
+    if "model-based" in chosen.tests and chosen.monitors:
+        checked = check_model(dict.fromkeys(name for one in texts.values() for name in one))
+    summary = summarise(results, texts, checked)
     if arguments.out:
         folder = Path(arguments.out)
         write_tables(folder, summary)

@@ -16,8 +16,10 @@ def table_document(summary: CampaignSummary) -> dict[str, object]:
     document: dict[str, object] = {
         "seed": summary.seed,
         "robots": {name: _robot(robot) for name, robot in summary.robots.items()},
-        "paper": _paper(),
     }
+    if summary.checked:
+        document["model_checking"] = summary.checked
+    document["paper"] = _paper()
     if summary.cut_short:
         document["partial"] = {
             "why": summary.cut_short,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from handover.campaign.summary import StrategySummary
+from handover.campaign.summary import StrategySummary, Transition
 from handover.collector.statements import StatementCoverage
 from handover.collector.transitions import TRANSITIONS
 from handover.robot.handover import STATES
@@ -12,7 +12,7 @@ from handover.robot.layout import COMMON
 from rvmon.report.markup import e
 from rvmon.report.percent import percent_text
 
-LEFT, BOX_WIDTH, BOX_HEIGHT, PITCH = 34, 178, 34, 54
+LEFT, BOX_WIDTH, BOX_HEIGHT, PITCH = 34, 200, 34, 54
 LANE = 13
 """Units between two of the lines that lead past the other states to the last one."""
 
@@ -76,33 +76,36 @@ def _box(label: str, state: str, top: float, coverage: StatementCoverage) -> ET.
     )
 
 
-def _step(transition: tuple[str, str], figures: StrategySummary) -> ET.Element:
+def _step(transition: Transition, figures: StrategySummary) -> ET.Element:
     """A line to the next state below."""
     start, end = _top(transition[0]) + BOX_HEIGHT, _top(transition[1])
-    path = f"M{CENTRE} {start}V{end - 5}"
-    return _edge(transition, path, f"{CENTRE} {end}", (CENTRE + 7, start + 14), figures)
+    line = f"M{CENTRE} {start}V{end - 5}"
+    tip = f"M{CENTRE} {end}l-4 -7h8z"
+    return _edge(transition, line, tip, (CENTRE + 7, start + 14), figures)
 
 
-def _loop(transition: tuple[str, str], figures: StrategySummary) -> ET.Element:
+def _loop(transition: Transition, figures: StrategySummary) -> ET.Element:
     """A line from a state's left side back to it."""
     top = _top(transition[0])
-    path = f"M{LEFT} {top + 26}h-9q-8 0 -8 -9t8 -9h4"
-    return _edge(transition, path, None, (LEFT - 19, top + 21), figures, anchor="end")
+    line = f"M{LEFT} {top + 25}h-6q-8 0 -8 -8t8 -8h2"
+    tip = f"M{LEFT} {top + 9}l-7 -4v8z"
+    return _edge(transition, line, tip, (LEFT - 18, top + 21), figures, anchor="end")
 
 
-def _exit(transition: tuple[str, str], lane: int, figures: StrategySummary) -> ET.Element:
+def _exit(transition: Transition, lane: int, figures: StrategySummary) -> ET.Element:
     """A line past all other states to the last one; the first of them is the outermost."""
     start = _top(transition[0]) + BOX_HEIGHT / 2
     end = _top(transition[1]) + BOX_HEIGHT / 2
     x = RIGHT + LANE * lane + 4
-    path = f"M{RIGHT} {start}H{x - 6}q6 0 6 6V{end - 6}q0 6 -6 6H{RIGHT + 5}"
-    return _edge(transition, path, None, (RIGHT + 4, start - 4), figures)
+    line = f"M{RIGHT} {start}H{x - 6}q6 0 6 6V{end - 6}q0 6 -6 6H{RIGHT + 5}"
+    tip = f"M{RIGHT} {end}l7 -4v8z"
+    return _edge(transition, line, tip, (RIGHT + 4, start - 4), figures)
 
 
 def _edge(
-    transition: tuple[str, str],
-    path: str,
-    tip: str | None,
+    transition: Transition,
+    line: str,
+    tip: str,
     label: tuple[float, float],
     figures: StrategySummary,
     *,
@@ -114,10 +117,9 @@ def _edge(
         "g",
         {"class": "edge taken" if tests else "edge"},
         e("title", None, f"{source} → {target}: {tests} of {figures.tests} tests"),
-        e("path", {"d": path}),
+        e("path", {"d": line}),
+        e("path", {"class": "tip", "d": tip}),
     )
-    if tip is not None:
-        edge.append(e("path", {"class": "tip", "d": f"M{tip}l-4 -7h8z"}))
     if tests:
         x, y = label
         edge.append(e("text", {"x": x, "y": y, "text-anchor": anchor}, str(tests)))

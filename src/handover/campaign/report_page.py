@@ -69,13 +69,7 @@ def _header(summary: CampaignSummary) -> ET.Element:
     return e(
         "header",
         None,
-        e(
-            "h1",
-            None,
-            f"{summary.finished} simulated handovers, judged by five requirements"
-            if len(requirements) == 5
-            else f"{summary.finished} simulated handovers",
-        ),
+        e("h1", None, f"{summary.finished} simulated handovers, {len(requirements)} requirements"),
         e(
             "p",
             {"class": "soft"},

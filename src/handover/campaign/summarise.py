@@ -21,12 +21,17 @@ from rvmon.report.table import Counts
 from rvmon.verdict.verdict import Verdict
 
 
-def summarise(results: Results, requirements: Mapping[str, Mapping[str, str]]) -> CampaignSummary:
+def summarise(
+    results: Results,
+    requirements: Mapping[str, Mapping[str, str]],
+    checked: Mapping[str, bool | None] | None = None,
+) -> CampaignSummary:
     """Count verdicts, statements and transitions.
 
     Args:
         results: what was played.
         requirements: by robot, id → text of what it was judged by.
+        checked: what model checking says by requirement, if it was asked.
     """
     plan = results.plan
     statements = robot_statements()
@@ -53,6 +58,7 @@ def summarise(results: Results, requirements: Mapping[str, Mapping[str, str]]) -
     return CampaignSummary(
         seed=plan.seed,
         robots=robots,
+        checked=checked or {},
         planned=len(plan.jobs()),
         finished=len(results.outcomes),
         cut_short=results.cut_short,

@@ -88,6 +88,8 @@ class CampaignSummary:
     Attributes:
         seed: of the campaign.
         robots: by name.
+        checked: what model checking says by requirement, `None` if the model cannot express it;
+            empty if it was not asked.
         planned: how many tests were to be played.
         finished: how many were.
         cut_short: why fewer; empty if all were.
@@ -96,6 +98,7 @@ class CampaignSummary:
 
     seed: int
     robots: Mapping[str, RobotSummary]
+    checked: Mapping[str, bool | None]
     planned: int
     finished: int
     cut_short: str

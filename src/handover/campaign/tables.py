@@ -27,6 +27,7 @@ def verdict_table(summary: CampaignSummary, robot: str) -> VerdictTable:
         title=f"{ROBOTS[robot]}, judged by {figures.spec}",
         requirements=figures.requirements,
         groups=_groups(tests, counts),
+        checked=summary.checked,
         notes=_notes(summary, figures),
     )
 

@@ -22,10 +22,10 @@ def print_summary(summary: CampaignSummary, console: Console) -> None:
     for robot, figures in summary.robots.items():
         if figures.requirements and figures.strategies:
             _print_verdicts(summary, robot, console)
-    if any(figures.strategies for figures in summary.robots.values()):
-        console.print("Statement coverage of the robot's code by state", style="bold")
-        console.print(_statements(summary))
-        console.print()
+        if figures.strategies:
+            console.print(f"{ROBOTS[robot]}: statements of its code that ran", style="bold")
+            console.print(_statements(figures))
+            console.print()
     for robot, figures in summary.robots.items():
         for line in _known(robot, figures):
             console.print(line)
@@ -46,28 +46,23 @@ def _print_verdicts(summary: CampaignSummary, robot: str, console: Console) -> N
     console.print()
 
 
-def _statements(summary: CampaignSummary) -> Table:
+def _statements(figures: RobotSummary) -> Table:
     from rich import box
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("", no_wrap=True)
+    table.add_column("state", no_wrap=True)
     table.add_column("statements", justify="right")
-    columns = [
-        (robot, name, strategy)
-        for robot, figures in summary.robots.items()
-        for name, strategy in figures.strategies.items()
-    ]
-    for robot, name, _ in columns:
-        table.add_column(f"{robot}\n{name}", justify="right")
-    first = columns[0][2]
-    for state, block in first.statements.items():
-        shares = (strategy.statements[state] for _, _, strategy in columns)
+    for name in figures.strategies:
+        table.add_column(name, justify="right")
+    columns = list(figures.strategies.values())
+    for state, block in columns[0].statements.items():
+        shares = (one.statements[state] for one in columns)
         cells = [percent_text(one.covered, one.statements) for one in shares]
         table.add_row(state, str(block.statements), *cells)
     table.add_section()
-    totals = [percent_text(one.total.covered, one.total.statements) for _, _, one in columns]
-    table.add_row("all", str(first.total.statements), *totals, style="bold")
+    totals = [percent_text(one.total.covered, one.total.statements) for one in columns]
+    table.add_row("all", str(columns[0].total.statements), *totals, style="bold")
     return table
 
 

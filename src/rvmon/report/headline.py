@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rvmon.report.panel import Panel
 from rvmon.report.style import MARKS
-from rvmon.report.view import moment
+from rvmon.report.view import moment, with_moments
 from rvmon.verdict.verdict import Verdict
 
 
@@ -27,5 +27,5 @@ def headline(run: str, panel: Panel, origin: int) -> str:
     if attempt is None:
         return f"{panel.requirement} {MARKS[Verdict.NOT_TRIGGERED].word}, {run}"
     when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
-    reason = f": {attempt.reason}" if attempt.reason else ""
+    reason = f": {with_moments(attempt.reason, panel.view)}" if attempt.reason else ""
     return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

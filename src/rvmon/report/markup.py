@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
 from importlib import resources
@@ -10,6 +11,9 @@ from importlib import resources
 from rvmon.report.style import verdict_colours
 
 Child = ET.Element | str | None
+
+_UNIT = re.compile(r"(?<=\d) (?=(s|ns|us|ms|min|h|m|cm|mm)\b)")
+"""The space between a number and its unit, where no line should end."""
 
 _UNSAFE_IN_SCRIPT = {"<": r"\u003c", ">": r"\u003e", "&": r"\u0026"}
 
@@ -94,7 +98,7 @@ def with_code(sentence: str) -> list[Child]:
     >>> to_html(e("p", None, *with_code("saw `x` twice")))
     '<p>saw <code>x</code> twice</p>'
     """
-    parts = sentence.split("`")
+    parts = _UNIT.sub("\N{NO-BREAK SPACE}", sentence).split("`")
     if len(parts) % 2 == 0:  # an odd number of quotes quotes nothing
         return [sentence]
     return [e("code", None, part) if index % 2 else part for index, part in enumerate(parts)]

@@ -29,3 +29,10 @@ class Panel:
     view: View
     tracks: tuple[Track, ...]
     ghost: Ghost | None
+
+    @property
+    def instant(self) -> int:
+        """Where the cursor stands at first: at the decision, else at the trigger."""
+        if self.attempt is None:
+            return self.view.start
+        return self.attempt.triggered if self.attempt.decided is None else self.attempt.decided

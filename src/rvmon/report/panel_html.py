@@ -66,13 +66,11 @@ def _badge(verdict: Verdict) -> ET.Element:
 
 
 def _cursor_controls(panel: Panel, origin: int) -> ET.Element:
-    attempt = panel.attempt
-    start = panel.view.start if attempt is None else attempt.decided or attempt.triggered
     slider = {
         "type": "range",
         "min": 0,
         "max": 1000,
-        "value": round(panel.view.fraction(start) * 1000),
+        "value": round(panel.view.fraction(panel.instant) * 1000),
         "aria-label": "instant shown",
     }
     return e(
@@ -80,7 +78,7 @@ def _cursor_controls(panel: Panel, origin: int) -> ET.Element:
         {"class": "controls"},
         e("div", {"class": "name"}, e("button", {"class": "play", "type": "button"}, "▶ play")),
         e("div", {"class": "plot"}, e("input", slider)),
-        e("output", {"class": "instant"}, moment(start, origin, panel.view)),
+        e("output", {"class": "instant"}, moment(panel.instant, origin, panel.view)),
     )
 
 

@@ -34,6 +34,7 @@ def _panel_data(panel: Panel, origin: int) -> dict[str, object]:
         "requirement": panel.requirement,
         "start": _seconds(panel.view.start, origin),
         "end": _seconds(panel.view.end, origin),
+        "instant": _seconds(panel.instant, origin),
         "trigger": None if attempt is None else _seconds(attempt.triggered, origin),
         "tracks": {
             track.name: _track_data(track, panel.view, origin)

@@ -15,7 +15,6 @@ from rvmon.report.run_data import script_data
 from rvmon.report.run_page import RunPage
 from rvmon.report.scene_html import scene_svg
 from rvmon.report.style import MARKS
-from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
 
@@ -32,7 +31,7 @@ def run_page(content: RunPage) -> str:
     sentence = headline(content.run.name, first, content.run.report.origin)
     body = (
         _navigation(content, panels),
-        e("main", {"data-open": first.id}, *sections, _aside(content, attempt)),
+        e("main", {"data-open": first.id}, *sections, _aside(content, first)),
         data("run", script_data(content, panels)),
     )
     return page(sentence.replace("`", ""), body, styles=["base.css", "run.css"], scripts=["run.js"])
@@ -60,19 +59,16 @@ def _navigation(content: RunPage, panels: Sequence[Panel]) -> ET.Element:
     return e("nav", {"aria-label": "requirements"}, *links)
 
 
-def _aside(content: RunPage, attempt: Attempt | None) -> ET.Element:
+def _aside(content: RunPage, first: Panel) -> ET.Element:
     parts: list[Child] = []
     if content.scene is not None:
-        instant = content.run.report.origin
-        if attempt is not None:
-            instant = attempt.decided or attempt.triggered
-        parts.append(e("figure", {"class": "scene"}, scene_svg(content.scene, instant)))
+        parts.append(e("figure", {"class": "scene"}, scene_svg(content.scene, first.instant)))
     parts.append(
         e(
             "div",
             {"class": "command"},
             e("span", None, "see it again"),
-            e("code", {"id": "command"}, content.command),
+            e("code", {"id": "command"}, *_words(content.command)),
             e("button", {"type": "button", "class": "copy"}, "copy"),
         )
     )
@@ -83,6 +79,14 @@ def _aside(content: RunPage, attempt: Attempt | None) -> ET.Element:
         parts.append(e("dl", {"class": "facts"}, *facts))
     parts.append(_health(content))
     return e("aside", None, *parts)
+
+
+def _words(command: str) -> list[Child]:
+    """A command that breaks anywhere but within an option."""
+    words: list[Child] = []
+    for word in command.split(" "):
+        words += [e("span", None, word) if word.startswith("-") else word, " "]
+    return words[:-1]
 
 
 def _health(content: RunPage) -> ET.Element | None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.report.style import MARKS
-from rvmon.report.table import VerdictTable, checked_text
+from rvmon.report.table import RunGroup, VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 ZERO = "·"
 """A count of nothing, so that the others stand out."""
+
+ABREAST = 3
+"""Groups of runs that fit beside each other into 80 columns."""
 
 WIDTH = 4
 """Characters of a column of counts."""
@@ -32,34 +35,47 @@ def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None
     from rich.console import Group
     from rich.text import Text
 
+    grids = [
+        _grid(table, beside or {}, table.groups[first : first + ABREAST], with_checked=not first)
+        for first in range(0, len(table.groups), ABREAST)
+    ]
     notes = (Text(note, style="dim") for note in table.notes)
-    return Group(Text(table.title, style="bold"), _grid(table, beside or {}), *notes)
+    return Group(Text(table.title, style="bold"), *grids, *notes)
 
 
-def _grid(table: VerdictTable, beside: Mapping[str, VerdictTable]) -> Table:
+def _grid(
+    table: VerdictTable,
+    beside: Mapping[str, VerdictTable],
+    groups: Sequence[RunGroup],
+    *,
+    with_checked: bool,
+) -> Table:
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
+    shown = {group.name for group in groups}
+    others = {
+        f"  {label}": one
+        for label, one in beside.items()
+        if shown & {group.name for group in one.groups}
+    }
     grid = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
     grid.add_column("", no_wrap=True)
-    has_checked = any(one.checked for one in (table, *beside.values()))
+    has_checked = with_checked and any(one.checked for one in (table, *others.values()))
     if has_checked:
         grid.add_column(Text("model\nchecking"), justify="center")
     letters = "".join(f"{verdict.value:>{WIDTH}}" for verdict in Verdict)
-    for group in table.groups:
+    for group in groups:
         runs = f"{group.name} ({group.runs})"
         grid.add_column(Text(f"{runs:^{len(letters)}}\n{letters}"), no_wrap=True)
     for name in table.requirements:
-        lines = [
-            (name, table, False),
-            *((f"  {label}", one, True) for label, one in beside.items()),
-        ]
-        for heading, source, dim in lines:
+        for heading, source in {name: table, **others}.items():
+            dim = source is not table
             cells = [Text(heading, style="dim" if dim else "bold")]
             if has_checked:
                 cells.append(_checked_cell(source, name, dim=dim))
-            cells.extend(_counts_cell(source, group.name, name, dim=dim) for group in table.groups)
+            cells.extend(_counts_cell(source, group.name, name, dim=dim) for group in groups)
             grid.add_row(*cells)
     return grid
 

@@ -60,29 +60,32 @@ def timeline(
     ghosts = {track.name: track for track in ghost.tracks} if ghost else {}
     rows: list[Child] = []
     if attempt is not None:
-        rows.append(_obligation(attempt, view, origin))
+        rows.append(_obligation(attempt, view, origin, end))
     for track in tracks:
         offending = _offending(attempt) if track.name in blamed else ()
         other = ghosts.get(track.name)
         rows.append(track_row(track, view, end, offending, other, ghost.end if ghost else end))
     rows.append(_axis(view, origin))
-    guides = [] if attempt is None else _guides(attempt, view)
+    guides = [] if attempt is None else _guides(attempt, view, end)
     overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
     return e("div", {"class": "timeline"}, *rows, overlay)
 
 
 def _offending(attempt: Attempt | None) -> tuple[int, ...]:
-    return attempt.blame.at if attempt is not None and attempt.blame is not None else ()
+    """What is to blame became so at `at`, perhaps before the window in which it mattered."""
+    if attempt is None or attempt.blame is None:
+        return ()
+    return tuple(max(instant, attempt.blame.window[0]) for instant in attempt.blame.at)
 
 
-def _obligation(attempt: Attempt, view: View, origin: int) -> ET.Element:
+def _obligation(attempt: Attempt, view: View, origin: int, end: int) -> ET.Element:
     """The window in which something was owed, between labels of its instants."""
     first, last = _window(attempt)
     left = view.fraction(first)
-    right = 1.0 if last is None else min(view.fraction(last), 1.0)
+    right = min(view.fraction(max(end, first) if last is None else last), 1.0)
     kind = "window unbounded" if last is None else "window"
     bar = e("div", {"class": kind, "style": place_of(left, max(right - left, 0.0))})
-    labels = _labels(attempt, view, origin)
+    labels = _labels(attempt, view, origin, end)
     rows = 1 + max(row for _, row in labels)
     height = {"style": f"height:{rows * 1.35 + 0.9:g}rem"}
     plot = e("div", {"class": "plot owed", **height}, *(label for label, _ in labels), bar)
@@ -95,7 +98,7 @@ def _window(attempt: Attempt) -> tuple[int, int | None]:
     return attempt.triggered, attempt.deadline
 
 
-def _labels(attempt: Attempt, view: View, origin: int) -> list[tuple[ET.Element, int]]:
+def _labels(attempt: Attempt, view: View, origin: int, end: int) -> list[tuple[ET.Element, int]]:
     """Labels of trigger, deadline and decision, each in the first row in which it has room."""
     wanted = [(attempt.triggered, "trigger", "▼", "trigger")]
     deadline = _window(attempt)[1]
@@ -104,6 +107,8 @@ def _labels(attempt: Attempt, view: View, origin: int) -> list[tuple[ET.Element,
     if attempt.decided is not None:
         mark = MARKS[attempt.verdict]
         wanted.append((attempt.decided, "decision", mark.sign, mark.word))
+    else:
+        wanted.append((end, "end", "■", "end of the run"))
     taken: list[list[tuple[float, float]]] = []
     labels = []
     for instant, kind, sign, word in wanted:
@@ -132,10 +137,10 @@ def _labels(attempt: Attempt, view: View, origin: int) -> list[tuple[ET.Element,
     return labels
 
 
-def _guides(attempt: Attempt, view: View) -> list[ET.Element]:
+def _guides(attempt: Attempt, view: View, end: int) -> list[ET.Element]:
     """Lines through all tracks at trigger, deadline and decision."""
     wanted = [("trigger", attempt.triggered), ("deadline", _window(attempt)[1])]
-    wanted.append(("decision", attempt.decided))
+    wanted.append(("end", end) if attempt.decided is None else ("decision", attempt.decided))
     return [
         e(
             "div",

@@ -14,6 +14,9 @@ from rvmon.report.view import View
 WIDTH, HEIGHT = 1000, 100
 """Units of a number's drawing, which is stretched to the width of the page."""
 
+SIGNS = {"<=": "≤", ">=": "≥", "==": "=", "!=": "≠"}
+"""Comparisons as people write them."""
+
 EDGE = 0.12
 """Of a number's range, left free above and below."""
 
@@ -96,7 +99,9 @@ def _add_number(
 ) -> None:
     pieces = stretches(track, view, end)
     others = [] if ghost is None else stretches(ghost, view, ghost_end)
-    lowest, highest = _range([*pieces, *others], track)
+    low, high = _range([*pieces, *others], track)
+    edge = (high - low) * EDGE
+    lowest, highest = low - edge, high + edge
     drawing = e(
         "svg",
         {"viewBox": f"0 0 {WIDTH} {HEIGHT}", "preserveAspectRatio": "none", "aria-hidden": "true"},
@@ -105,18 +110,21 @@ def _add_number(
         for points in polylines(some, lowest, highest):
             drawing.append(e("polyline", {"class": kind, "points": _points(points)}))
     plot.append(drawing)
+    for bound in (low, high):
+        top = (highest - bound) / (highest - lowest)
+        plot.append(e("span", {"class": "scale", "style": f"top:{top:.2%}"}, f"{bound:.3g}"))
     for piece in pieces:
         if piece.value is None:
             plot.append(_unknown(piece.left, piece.right - piece.left))
     for threshold in track.thresholds:
         top = (highest - threshold.value) / (highest - lowest)
-        text = f"{threshold.op} {threshold.value:g}{_unit(track)}"
+        text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g}{_unit(track)}"
         line = {"class": "threshold", "style": f"top:{top:.2%}"}
         plot.append(e("div", line, e("span", None, text)))
     for instant in blamed:
-        value = track.value_at(instant)
-        if isinstance(value, int | float) and view.start <= instant <= view.end:
-            x, y = view.fraction(instant), (highest - value) / (highest - lowest)
+        at = track.value_at(instant)
+        if isinstance(at, int | float) and view.start <= instant <= view.end:
+            x, y = view.fraction(instant), (highest - at) / (highest - lowest)
             plot.append(e("span", {"class": "sample", "style": f"left:{x:.2%};top:{y:.2%}"}, "✗"))
 
 
@@ -125,9 +133,8 @@ def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
     values = [float(one.value) for one in pieces if isinstance(one.value, int | float)]
     values = [value for value in values if math.isfinite(value)]
     values += [threshold.value for threshold in track.thresholds]
-    lowest, highest = min(values, default=0.0), max(values, default=1.0)
-    edge = (highest - lowest) * EDGE or abs(highest) * EDGE or 1.0
-    return lowest - edge, highest + edge
+    low, high = min(values, default=0.0), max(values, default=1.0)
+    return (low, high) if low < high else (low - 1.0, high + 1.0)
 
 
 def _offending(place: float) -> ET.Element:

@@ -70,7 +70,9 @@ def _signal_track(
             changes.append((t, known))
         if signal.stale_after is not None:
             stale_at = t + signal.stale_after + 1
-            if index + 1 == len(updates) or updates[index + 1][0] > stale_at:
+            if known is not None and (
+                index + 1 == len(updates) or updates[index + 1][0] > stale_at
+            ):
                 changes.append((stale_at, None))
     return Track(
         signal.name,

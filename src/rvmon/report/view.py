@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 
-from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, ticks_of_text
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
@@ -16,6 +17,8 @@ SMALLEST_MARGIN = TICKS_PER_SECOND
 """For attempts that are decided at once; less if the run is short."""
 
 STEPS = (1, 2, 5)
+
+_SECONDS = re.compile(r"\b(\d+\.\d+) s\b")
 
 SHOWN_DIGITS = 4
 """The last digit of an instant is between a thousandth and a ten-thousandth of the view."""
@@ -86,6 +89,15 @@ def moment(instant: int, origin: int, view: View) -> str:
     digits = math.ceil(math.log10(view.end - view.start)) - SHOWN_DIGITS
     since = instant - origin
     return format_ticks(since if digits <= 0 else round(since, -digits))
+
+
+def with_moments(sentence: str, view: View) -> str:
+    """A sentence with its exact instants and durations as fine as they can be seen in a view.
+
+    >>> with_moments("never since 25.682548547 s", View(0, 10_000_000_000))
+    'never since 25.683 s'
+    """
+    return _SECONDS.sub(lambda found: moment(ticks_of_text(found[1]), 0, view), sentence)
 
 
 def _length(report: Report) -> int:

@@ -29,7 +29,7 @@
       else chip.removeAttribute("aria-current");
     }
     document.title = section.querySelector("h1").textContent;
-    setFraction(section.querySelector("input").value / 1000);
+    setInstant(run.panels[section.id].instant);
   }
 
   function requirement(section) {
@@ -44,10 +44,15 @@
 
   function setFraction(fraction) {
     const panel = run.panels[open.id];
-    const bounded = Math.min(Math.max(fraction, 0), 1);
-    instant = panel.start + bounded * (panel.end - panel.start);
-    open.querySelector(".cursor").style.left = 100 * bounded + "%";
-    open.querySelector("input").value = Math.round(1000 * bounded);
+    setInstant(panel.start + Math.min(Math.max(fraction, 0), 1) * (panel.end - panel.start));
+  }
+
+  function setInstant(t) {
+    const panel = run.panels[open.id];
+    const fraction = (t - panel.start) / (panel.end - panel.start);
+    instant = t;
+    open.querySelector(".cursor").style.left = 100 * fraction + "%";
+    open.querySelector("input").value = Math.round(1000 * fraction);
     open.querySelector(".instant").textContent = reading(instant, panel.trigger);
     for (const output of open.querySelectorAll("output[data-track]")) {
       output.textContent = valueAt(panel.tracks[output.dataset.track], instant);
@@ -56,8 +61,10 @@
   }
 
   function reading(t, trigger) {
-    const since = trigger === null ? "" : `, trigger ${t < trigger ? "−" : "+"} ${shown(Math.abs(t - trigger))} s`;
-    return `${shown(t)} s${since}`;
+    if (trigger === null) return `${shown(t)} s`;
+    const since = shown(Math.abs(t - trigger));
+    const sign = t < trigger && since !== "0" ? "−" : "+";
+    return `${shown(t)} s, trigger ${sign} ${since} s`;
   }
 
   function shown(number) {
