@@ -8,7 +8,8 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.spec.checked import CheckedSpec, Event, Requirement, Signal, TimeModel, Type
 from rvmon.spec.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.cycles import find_cycles
-from rvmon.spec.expressions import Checker, Reported
+from rvmon.spec.expressions import Checker
+from rvmon.spec.findings import Findings
 from rvmon.spec.items import TypeSyntax
 from rvmon.spec.macros import check_unused
 from rvmon.spec.properties import checked_property
@@ -19,7 +20,7 @@ from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import triggers as trigger_rules
 from rvmon.spec.rules import types as type_rules
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax import Expression
 from rvmon.spec.table import Table, close_unit
 from rvmon.spec.unit import Unit
@@ -28,17 +29,19 @@ from rvmon.spec.values import EVERYWHERE
 from rvmon.trace.schema import Kind
 
 
-def check(spec: ResolvedSpec) -> tuple[CheckedSpec, list[Diagnostic]]:
+def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
     """Check everything that a specification says.
 
+    Args:
+        spec: with all names known.
+        findings: takes what is wrong.
+
     Returns:
-        What could be checked, and all findings; it is fit for use if none of them is an error.
+        What could be checked; it is fit for use if no finding is an error.
     """
-    findings: list[Diagnostic] = []
-    recursive, circles = find_cycles(spec.declared)
-    findings += circles
+    recursive = find_cycles(spec.declared, findings)
     table = _table(spec, recursive, findings)
-    checker = Checker(table, findings)
+    checker = Checker(table, findings, sum(len(source.text) for source in spec.sources))
     signals = dict(table.signals)
     for declared in spec.declared.values():
         if isinstance(declared, DeclaredSignal) and declared.stale_after is not None:
@@ -76,7 +79,7 @@ def check(spec: ResolvedSpec) -> tuple[CheckedSpec, list[Diagnostic]]:
         for name, syntax in spec.crosses.items()
         if (cross := checked_cross(checker, syntax, coverpoints, spec.coverpoints))
     }
-    checked = CheckedSpec(
+    return CheckedSpec(
         spec.header.name.text if spec.header else "spec",
         spec.header.title if spec.header else "",
         table.time,
@@ -91,10 +94,9 @@ def check(spec: ResolvedSpec) -> tuple[CheckedSpec, list[Diagnostic]]:
         coverpoints,
         crosses,
     )
-    return checked, findings
 
 
-def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: list[Diagnostic]) -> Table:
+def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) -> Table:
     signals: dict[str, Signal] = {}
     events: dict[str, Event] = {}
     units: dict[str, Unit] = {}
@@ -111,7 +113,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: list[Diagnos
                 for field in declared.event.fields:
                     if field.name.text in fields:
                         places = field.name.span, declared.name.span
-                        findings.append(name_rules.double(field.name.text, "field", *places))
+                        findings.add(name_rules.double(field.name.text, "field", *places))
                     found = types.read(field.type)
                     if found is not None:
                         fields[field.name.text], units[f"{name}.{field.name.text}"] = found
@@ -123,7 +125,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: list[Diagnos
 class _Types:
     """Reads types, each syntax once, so that `signal a, b : real [kgg]` is one finding."""
 
-    def __init__(self, findings: list[Diagnostic]) -> None:
+    def __init__(self, findings: Findings) -> None:
         self._findings = findings
         self._read: dict[int, tuple[Type, Unit] | None] = {}
 
@@ -137,12 +139,12 @@ class _Types:
         for number, label in enumerate(syntax.labels):
             if label.text in labels[:number]:
                 first = syntax.labels[labels.index(label.text)].span
-                self._findings.append(name_rules.double(label.text, "label", label.span, first))
+                self._findings.add(name_rules.double(label.text, "label", label.span, first))
         try:
             unit = parse_unit(syntax.unit)
         except UnknownUnitError as error:
             part = str(error)
-            self._findings.append(type_rules.unknown_unit(syntax.span, part, close_unit(part)))
+            self._findings.add(type_rules.unknown_unit(syntax.span, part, close_unit(part)))
             return None
         return Type(Kind(syntax.name), syntax.unit, labels), unit
 

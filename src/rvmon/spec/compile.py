@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
@@ -12,8 +13,10 @@ from rvmon.errors import SpecError
 from rvmon.spec.check import check, never_read
 from rvmon.spec.checked import CheckedSpec
 from rvmon.spec.constants import overridden
+from rvmon.spec.findings import MOST, Enough, Findings
 from rvmon.spec.load import load_files
 from rvmon.spec.resolve import resolve
+from rvmon.spec.rules.syntax import too_many
 
 
 def compile_text(
@@ -42,23 +45,28 @@ def compile_text(
     (True, ())
     """
     source = Source(name, text)
-    files, findings = load_files(source, directory)
-    files, unknown = overridden(files, constants or {})
-    resolved, doubles = resolve(files)
-    checked, wrong = check(resolved)
-    found = _once([*findings, *unknown, *doubles, *wrong], source)
-    if any(finding.severity is Severity.ERROR for finding in found):
+    findings = Findings()
+    checked: CheckedSpec | None = None
+    with suppress(Enough):
+        files = load_files(source, directory, findings)
+        files = overridden(files, constants or {}, findings)
+        checked = check(resolve(files, findings), findings)
+        if not _errors(findings.found):
+            findings.extend(never_read(checked))
+    found = sorted(findings.found, key=lambda finding: _place(finding, source))
+    if len(found) >= MOST:
+        found.append(too_many(MOST))
+    if checked is None or _errors(found):
         raise SpecError(found, render_full(found))
-    return checked, tuple(_once([*found, *never_read(checked)], source))
+    return checked, tuple(found)
 
 
-def _once(findings: Iterable[Diagnostic], main: Source) -> list[Diagnostic]:
-    """In order of place, the main file first; what was found several times (in a macro) once."""
-    unique = {(finding.code, _place(finding, main)): finding for finding in reversed([*findings])}
-    return sorted(unique.values(), key=lambda finding: _place(finding, main))
+def _errors(findings: Iterable[Diagnostic]) -> bool:
+    return any(finding.severity is Severity.ERROR for finding in findings)
 
 
 def _place(finding: Diagnostic, main: Source) -> tuple[bool, str, int, int]:
+    """The main file comes first."""
     if not finding.spans:
         return (False, "", 0, 0)
     span = finding.spans[0].span

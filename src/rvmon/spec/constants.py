@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source
+from rvmon.spec.findings import Findings
 from rvmon.spec.items import ConstItem, Item, ParsedSpec
 from rvmon.spec.parse import parse_expression
 from rvmon.spec.rules import names as rules
@@ -14,29 +14,26 @@ from rvmon.spec.syntax import Expression
 
 
 def overridden(
-    files: Sequence[ParsedSpec], constants: Mapping[str, str]
-) -> tuple[list[ParsedSpec], list[Diagnostic]]:
+    files: Sequence[ParsedSpec], constants: Mapping[str, str], findings: Findings
+) -> list[ParsedSpec]:
     """The files with the values of some constants replaced.
 
     Args:
         files: as read.
         constants: text of the language by name.
-
-    Returns:
-        The files, and what is wrong with the values or names.
+        findings: takes what is wrong with the values or names.
     """
-    findings: list[Diagnostic] = []
     values: dict[str, Expression] = {}
     known = [item.name.text for file in files for item in file.items if isinstance(item, ConstItem)]
     for name, text in constants.items():
         if name not in known:
-            findings.append(rules.unknown_constant(name, known))
+            findings.add(rules.unknown_constant(name, known))
             continue
         value, wrong = parse_expression(Source(f"<constant {name}>", text))
-        findings += wrong
+        findings.extend(wrong)
         if value is not None:
             values[name] = value
-    return [_with_values(file, values) for file in files], findings
+    return [_with_values(file, values) for file in files]
 
 
 def _with_values(file: ParsedSpec, values: Mapping[str, Expression]) -> ParsedSpec:

@@ -20,7 +20,7 @@ from rvmon.spec.checked import (
     UnaryOp,
 )
 from rvmon.spec.comparisons import compared
-from rvmon.spec.expressions import Checker, Reported
+from rvmon.spec.expressions import Checker
 from rvmon.spec.goals import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.spec.items import (
     BinSyntax,
@@ -35,7 +35,7 @@ from rvmon.spec.items import (
 from rvmon.spec.rules import goals as rules
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import triggers as trigger_rules
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax import Comparison, Expression, Name, Window
 from rvmon.spec.tense import end_part, future_part
 from rvmon.spec.values import EVERYWHERE, Quantity, Scope, Value
@@ -110,8 +110,10 @@ def checked_cross(
             if point.text not in points:
                 raise Reported
         bins = [[bin_.name for bin_ in points[name].bins] for name in names]
-        if prod(map(len, bins)) > rules.MOST_COMBINATIONS:
-            raise Refusal(rules.too_many_combinations(item.span, prod(map(len, bins))))
+        combinations = prod(map(len, bins))
+        if combinations > rules.MOST_COMBINATIONS:
+            raise Refusal(rules.too_many_combinations(item.span, combinations))
+        checker.effort.spend(combinations * len(item.clauses), item.span)
         unwanted = {
             kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)
             for kind in (BinKind.IGNORE, BinKind.ILLEGAL)

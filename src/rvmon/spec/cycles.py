@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.spec.findings import Findings
 from rvmon.spec.items import ConstItem, DefineItem
 from rvmon.spec.resolved import Declared
 from rvmon.spec.rules import names as rules
@@ -12,14 +12,13 @@ from rvmon.spec.syntax import Call, Expression, Name
 from rvmon.spec.walk import expressions_in
 
 
-def find_cycles(declared: Mapping[str, Declared]) -> tuple[frozenset[str], list[Diagnostic]]:
-    """The names from which a circle of definitions can be reached, and a finding per circle."""
+def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozenset[str]:
+    """The names from which a circle of definitions can be reached; each circle is reported."""
     uses = {
         name: sorted(set(_used(item)) & declared.keys())
         for name, item in declared.items()
         if isinstance(item, DefineItem | ConstItem)
     }
-    findings = []
     caught: set[str] = set()
     finished: set[str] = set()
     for root in uses:
@@ -40,10 +39,10 @@ def find_cycles(declared: Mapping[str, Declared]) -> tuple[frozenset[str], list[
                 circle = path[path.index(following) :]
                 caught.update(circle)
                 place = declared[circle[0]].name.span
-                findings.append(rules.recursive([*circle, circle[0]], place))
+                findings.add(rules.recursive([*circle, circle[0]], place))
             else:
                 waiting.append((following, iter(uses[following])))
-    return frozenset(caught), findings
+    return frozenset(caught)
 
 
 def _used(item: DefineItem | ConstItem) -> Iterator[str]:

@@ -10,15 +10,11 @@ from rvmon.spec.checked import (
     Binary,
     BinaryOp,
     BoundAtom,
-    Compare,
-    CompareOp,
     Constant,
     EventAtom,
     FieldValue,
     Formula,
     Interval,
-    Literal,
-    SignalAtom,
     SignalValue,
     TimeModel,
     Unary,
@@ -26,15 +22,17 @@ from rvmon.spec.checked import (
 )
 from rvmon.spec.comparisons import compared
 from rvmon.spec.durations import closed_interval, ticks_of
+from rvmon.spec.effort import Cost, Effort
+from rvmon.spec.findings import Findings
 from rvmon.spec.functions import applied
 from rvmon.spec.items import ConstItem, DefineItem
+from rvmon.spec.kinds import formula_of, number_of
 from rvmon.spec.quantities import arithmetic
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
-from rvmon.spec.rules import syntax as size_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax import (
     Call,
     Comparison,
@@ -57,20 +55,10 @@ from rvmon.spec.table import Table, close_name, close_unit
 from rvmon.spec.tense import FUTURE
 from rvmon.spec.unit import PLAIN
 from rvmon.spec.units import UnknownUnitError, parse_unit
-from rvmon.spec.values import EVERYWHERE, Age, Closure, Quantity, Scope, Value
+from rvmon.spec.values import EVERYWHERE, Closure, Quantity, Scope, Value
 from rvmon.trace.schema import Kind
 
-DEEPEST = 100
-"""Deeper nesting is refused, macros expanded."""
-
-LARGEST = 10_000
-"""Formulas with more operators are refused, macros expanded."""
-
 _TEMPORAL = FUTURE | {BinaryOp.SINCE}
-
-
-class Reported(Exception):  # noqa: N818 - never leaves this package
-    """Something below is wrong, and the finding about it is recorded already."""
 
 
 class Checker:
@@ -80,22 +68,27 @@ class Checker:
 
     Args:
         table: the names of the file.
-        findings: where findings are recorded.
+        findings: takes what is wrong.
+        characters: of the whole specification: a long file may do more.
     """
 
-    def __init__(self, table: Table, findings: list[Diagnostic]) -> None:
+    def __init__(self, table: Table, findings: Findings, characters: int) -> None:
         self.table = table
         self._findings = findings
-        self._defined: dict[str, tuple[Value | None, int, int]] = {}
-        self._depth = self._deepest = self._size = 0
+        self.effort = Effort(characters)
+        self._defined: dict[str, tuple[Value | None, Cost]] = {}
 
     def report(self, finding: Diagnostic) -> None:
-        """Record a finding."""
-        self._findings.append(finding)
+        """Record a finding.
+
+        Raises:
+            Enough: there are too many.
+        """
+        self._findings.add(finding)
 
     def top(self, expression: Expression, scope: Scope) -> Formula | None:
         """A whole formula, or `None` if it is wrong."""
-        self._size = 0
+        self.effort.begin()
         try:
             return self.formula(expression, scope)
         except Refusal as refusal:
@@ -116,12 +109,12 @@ class Checker:
     def formulas(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Formula]:
         """As `formula`, for several operands."""
         values = self.values(expressions, scope)
-        return [_formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
+        return [formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
     def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
         """What the expressions stand for, which have to be numbers."""
         values = self.values(expressions, scope)
-        return [_number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
+        return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
     def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
         """What the expressions stand for.
@@ -146,21 +139,15 @@ class Checker:
 
     def value(self, expression: Expression, scope: Scope) -> Value | None:
         """What the expression stands for; `None` if it is wrong, and then that is recorded."""
-        self._depth += 1
-        self._size += 1
-        self._deepest = max(self._deepest, self._depth)
         try:
-            if self._depth > DEEPEST:
-                raise Refusal(size_rules.too_deep(expression.span, DEEPEST))
-            if self._size > LARGEST:
-                raise Refusal(size_rules.too_large(expression.span, LARGEST))
+            self.effort.enter(expression.span)
             return self._value(expression, scope)
         except Refusal as refusal:
             self.report(refusal.finding)
         except Reported:
             pass
         finally:
-            self._depth -= 1
+            self.effort.leave()
         return None
 
     def _value(self, expression: Expression, scope: Scope) -> Value:
@@ -256,25 +243,23 @@ class Checker:
         if name.text in self.table.recursive:
             raise Reported
         if name.text not in self._defined:
-            deepest, self._deepest, size = self._deepest, self._depth, self._size
-            body = declared.body if isinstance(declared, DefineItem) else declared.value
-            value = self.value(body, EVERYWHERE)
-            if isinstance(declared, ConstItem) and not _constant(value):
-                if value is not None:
-                    self.report(rules.not_constant(body.span))
-                value = None
-            found = value, self._deepest - self._depth, self._size - size
-            self._defined[name.text] = found
-            self._deepest, self._size = max(deepest, self._deepest), size
-        value, depth, size = self._defined[name.text]
-        self._size += size
-        if value is None:
+            mark = self.effort.mark()
+            value = self._body_value(declared)
+            self._defined[name.text] = value, self.effort.since(mark)
+        found, cost = self._defined[name.text]
+        if found is None:
             raise Reported
-        if self._depth + depth > DEEPEST:
-            raise Refusal(size_rules.too_deep(name.span, DEEPEST))
-        if self._size > LARGEST:
-            raise Refusal(size_rules.too_large(name.span, LARGEST))
-        return value
+        self.effort.add(cost, name.span)
+        return found
+
+    def _body_value(self, declared: DefineItem | ConstItem) -> Value | None:
+        if isinstance(declared, DefineItem):
+            return self.value(declared.body, EVERYWHERE)
+        value = self.value(declared.value, EVERYWHERE)
+        if value is None or (isinstance(value, Quantity) and value.constant is not None):
+            return value
+        self.report(rules.not_constant(declared.value.span))
+        return None
 
     def _call(self, call: Call, scope: Scope) -> Value:
         declared = self.table.declared.get(call.function.text)
@@ -309,7 +294,7 @@ class Checker:
         interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
         if operand is None:
             raise Reported
-        formula = _formula_of(operand, prefix.operand.span)
+        formula = formula_of(operand, prefix.operand.span)
         return Unary(prefix.op, formula, interval, prefix.span)
 
     def _interval_of(
@@ -338,8 +323,8 @@ class Checker:
             raise Reported
         return Binary(
             infix.op,
-            _formula_of(left, infix.left.span),
-            _formula_of(right, infix.right.span),
+            formula_of(left, infix.left.span),
+            formula_of(right, infix.right.span),
             interval,
             infix.span,
         )
@@ -357,33 +342,3 @@ class Checker:
         high = None if window.high is None else self.duration(window.high, scope)
         opens = {"low_open": window.low_open, "high_open": window.high_open}
         return closed_interval(low, high, **opens, span=window.span)
-
-
-def _formula_of(value: Value, span: Span) -> Formula:
-    match value:
-        case Quantity(node=SignalValue(name=name), truth=True):
-            return SignalAtom(name, span)
-        case Quantity(node=node, truth=True) if node is not None:
-            return Compare(CompareOp.EQ, node, Literal(True), span)
-        case Quantity(labels=labels):
-            raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
-        case Age():
-            raise Refusal(rules.age_alone(span))
-        case _:
-            return value
-
-
-def _number_of(value: Value, span: Span) -> Quantity:
-    match value:
-        case Quantity(truth=False, labels=()):
-            return value
-        case Quantity(labels=labels) if labels:
-            raise Refusal(rules.label_use(span))
-        case Age():
-            raise Refusal(rules.age_alone(span))
-        case _:
-            raise Refusal(rules.needs_number(span))
-
-
-def _constant(value: Value | None) -> bool:
-    return isinstance(value, Quantity) and value.constant is not None

@@ -8,8 +8,8 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source
+from rvmon.spec.findings import Findings
 from rvmon.spec.items import ImportItem, ParsedSpec
 from rvmon.spec.parse import parse_spec
 from rvmon.spec.rules import imports as rules
@@ -19,26 +19,26 @@ LIBRARIES = ("patterns",)
 """Folders of this package with specifications that can be imported by name."""
 
 
-def load_files(source: Source, directory: Path | None) -> tuple[list[ParsedSpec], list[Diagnostic]]:
+def load_files(source: Source, directory: Path | None, findings: Findings) -> list[ParsedSpec]:
     """Read a file and those it imports.
 
     Args:
         source: the main file.
         directory: its folder; default the current one.
+        findings: takes what is wrong with how they are written or imported.
 
     Returns:
-        The main file, then the imported ones in the order of their first import; and what is
-        wrong with how they are written or imported.
+        The main file, then the imported ones in the order of their first import.
     """
-    loader = _Loader()
+    loader = _Loader(findings)
     loader.read(source, directory or Path(), _key(Path(source.name)), ())
-    return loader.files, loader.findings
+    return loader.files
 
 
 class _Loader:
-    def __init__(self) -> None:
+    def __init__(self, findings: Findings) -> None:
         self.files: list[ParsedSpec] = []
-        self.findings: list[Diagnostic] = []
+        self._findings = findings
         self._seen: set[str] = set()
 
     def read(
@@ -46,9 +46,8 @@ class _Loader:
     ) -> None:
         """Read a file; `path` are the files that are being read, with the imports in them."""
         self._seen.add(key)
-        parsed, findings = parse_spec(source)
+        parsed = parse_spec(source, self._findings)
         self.files.append(parsed)
-        self.findings += findings
         for item in parsed.items:
             if isinstance(item, ImportItem):
                 self._import(item, directory, (*path, (key, item)))
@@ -60,13 +59,13 @@ class _Loader:
             for source, folder, key in _sources(item, directory):
                 circle = [step for _, step in path[_index(path, key) :]]
                 if circle:
-                    self.findings.append(rules.circle(item.span, circle[0].span))
+                    self._findings.add(rules.circle(item.span, circle[0].span))
                 elif len(path) > rules.DEEPEST:
                     raise Refusal(rules.too_deep(item.span))
                 elif key not in self._seen:
                     self.read(source, folder, key, path)
         except Refusal as refusal:
-            self.findings.append(refusal.finding)
+            self._findings.add(refusal.finding)
 
 
 def _index(path: tuple[tuple[str, ImportItem], ...], key: str) -> int:

@@ -15,6 +15,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.build import Builder
 from rvmon.spec.expected import explain_unexpected
+from rvmon.spec.findings import Findings
 from rvmon.spec.items import Item, ParsedSpec
 from rvmon.spec.rules import syntax as rules
 from rvmon.spec.rules.rule import Refusal
@@ -29,14 +30,9 @@ DEEPEST = 100
 Parsed = tuple[Any, list[Diagnostic]]
 
 
-def parse_spec(source: Source) -> tuple[ParsedSpec, list[Diagnostic]]:
-    """Read a file.
-
-    Returns:
-        The items that could be read, and what is wrong with the others.
-    """
+def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
+    """Read a file; `findings` takes what is wrong with the items that are left out."""
     items: list[Item] = []
-    findings: list[Diagnostic] = []
     doubtful: set[str] = set()
     waiting = split_items(source.text)[::-1]
     while waiting:
@@ -44,15 +40,15 @@ def parse_spec(source: Source) -> tuple[ParsedSpec, list[Diagnostic]]:
         item, wrong = _parse(source, start, end, "item")
         if item is not None:
             items.append(item)
-            findings += wrong
+            findings.extend(wrong)
             continue
         cut = _misspelled_item(source.text, start, wrong)
         if cut is not None:
             waiting += ((cut, end), (start, cut))
             continue
-        findings += wrong
+        findings.extend(wrong)
         doubtful.update(re.findall(r"\w[\w.]*", source.text[start:end]))
-    return ParsedSpec(source, tuple(items), frozenset(doubtful)), findings
+    return ParsedSpec(source, tuple(items), frozenset(doubtful))
 
 
 def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int | None:

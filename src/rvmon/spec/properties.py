@@ -13,9 +13,9 @@ from rvmon.spec.ctl import (
     StateFormula,
     StateNot,
 )
-from rvmon.spec.expressions import Checker, Reported
+from rvmon.spec.expressions import Checker
 from rvmon.spec.rules import properties as rules
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax import (
     Expression,
     Group,

@@ -21,7 +21,7 @@ from rvmon.spec.checked import (
 )
 from rvmon.spec.coverage import present
 from rvmon.spec.ctl import Property
-from rvmon.spec.expressions import Checker, Reported
+from rvmon.spec.expressions import Checker
 from rvmon.spec.items import (
     AtEndClause,
     Bare,
@@ -43,7 +43,7 @@ from rvmon.spec.response import derived_response
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import triggers as rules
 from rvmon.spec.rules import types as type_rules
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.scopes import scoped_consequent, scoped_trigger
 from rvmon.spec.syntax import Expression, Group, Immediately
 from rvmon.spec.tense import end_part, future_part, is_pulse, is_timeless, mixed_disjunction

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeVar, assert_never
 
-from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.spec.findings import Findings
 from rvmon.spec.items import (
     ConstItem,
     CoverItem,
@@ -31,22 +31,23 @@ from rvmon.spec.words import FUNCTIONS
 _K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 
 
-def resolve(parsed: Sequence[ParsedSpec]) -> tuple[ResolvedSpec, list[Diagnostic]]:
+def resolve(parsed: Sequence[ParsedSpec], findings: Findings) -> ResolvedSpec:
     """Gather the declarations of a file and of those it imports.
 
     Args:
         parsed: the main file first.
+        findings: takes names that are declared twice.
 
     Returns:
-        The specification with the first declaration of every name, and the findings.
+        The specification with the first declaration of every name.
     """
-    resolver = _Resolver()
+    resolver = _Resolver(findings)
     for number, file in enumerate(parsed):
         for item in file.items:
             if number == 0 or not isinstance(item, Header):
                 resolver.add(item)
     once = resolver.once
-    spec = ResolvedSpec(
+    return ResolvedSpec(
         tuple(file.source for file in parsed),
         *(once.get(Header), once.get(TimeItem), once.get(DelayItem)),  # type: ignore[arg-type]
         resolver.declared,
@@ -57,12 +58,11 @@ def resolve(parsed: Sequence[ParsedSpec]) -> tuple[ResolvedSpec, list[Diagnostic
         resolver.crosses,
         frozenset().union(*(file.doubtful for file in parsed)),
     )
-    return spec, resolver.findings
 
 
 class _Resolver:
-    def __init__(self) -> None:
-        self.findings: list[Diagnostic] = []
+    def __init__(self, findings: Findings) -> None:
+        self._findings = findings
         self.once: dict[type, Header | TimeItem | DelayItem] = {}
         self.declared: dict[str, Declared] = {}
         self.requirements: dict[str, RequirementItem] = {}
@@ -78,7 +78,7 @@ class _Resolver:
                 earlier = self.once.setdefault(type(item), item)
                 if earlier is not item:
                     word = item.span.text.split(maxsplit=1)[0]
-                    self.findings.append(rules.double_item(word, item.span, earlier.span))
+                    self._findings.add(rules.double_item(word, item.span, earlier.span))
             case SignalItem(names=names):
                 for name in names:
                     self._declare(DeclaredSignal(name, item.type, item.role, item.stale_after))
@@ -109,12 +109,12 @@ class _Resolver:
     def _declare(self, declared: Declared) -> None:
         name = declared.name
         if name.text in FUNCTIONS and isinstance(declared, DefineItem):
-            self.findings.append(rules.built_in(name.span))
+            self._findings.add(rules.built_in(name.span))
         if self._is_new("name", name):
             self.declared[name.text] = declared
 
     def _is_new(self, kind: str, name: Ident) -> bool:
         first = self._first.setdefault((kind, name.text), name)
         if first is not name:
-            self.findings.append(rules.double(kind, name.text, name.span, first.span))
+            self._findings.add(rules.double(kind, name.text, name.span, first.span))
         return first is name

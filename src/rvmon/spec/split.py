@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from rvmon.spec.words import ITEM_WORDS
 
@@ -30,7 +31,7 @@ def split_items(text: str) -> list[tuple[int, int]]:
         starts.append(found.start("word"))
         inside = word
     first = starts[0] if starts else len(text)
-    places = list(zip(starts, [*starts[1:], len(text)], strict=True))
+    places = list(pairwise([*starts, len(text)]))
     return places if _blank(text[:first]) else [(0, first), *places]
 
 

@@ -42,10 +42,17 @@ _CONNECTIVES = frozenset((BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES, BinaryOp.
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:
-    """The formula and all below it, from the outside in, left to right."""
+    """The formula and all below it, from the outside in, left to right.
+
+    A part that a macro shares between several places comes once.
+    """
     waiting = [formula]
+    seen: set[int] = set()
     while waiting:
         node = waiting.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
         yield node
         match node:
             case Unary(operand=operand):

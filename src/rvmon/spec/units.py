@@ -65,6 +65,9 @@ _PREFIXES = {
     "G": Fraction(10**9),
 }
 
+_LONGEST = 60
+"""Longer units are refused: their factors could have thousands of digits."""
+
 _PART = re.compile(r"([*/]?)\s*([^\s*/^]+)(?:\^(-?\d{1,2}))?\s*")
 
 
@@ -103,6 +106,8 @@ def parse_unit(text: str) -> Unit:
     >>> parse_unit("km/h").factor
     Fraction(5, 18)
     """
+    if len(text) > _LONGEST:
+        raise UnknownUnitError(text)
     return _parse(text, unit_table())
 
 

@@ -10,7 +10,7 @@ from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
 from rvmon.spec.rules.syntax import short
 
-MOST_COMBINATIONS = 100_000
+MOST_COMBINATIONS = 10_000
 """Crosses with more combinations are refused."""
 
 BIN = Rule(

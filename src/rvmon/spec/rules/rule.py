@@ -39,6 +39,10 @@ class Refusal(Exception):  # noqa: N818 - it carries a finding through a parser,
         self.finding = finding
 
 
+class Reported(Exception):  # noqa: N818 - it never leaves this package
+    """Something is wrong, and the finding about it is recorded already."""
+
+
 def finding(rule: Rule, message: str, *places: Span | Label, mend: str = "") -> Diagnostic:
     """A breach of a rule.
 

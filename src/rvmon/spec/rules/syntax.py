@@ -121,7 +121,17 @@ requirement R1
 """,
 )
 
-RULES = (SYNTAX, REACH, MIXED_CHAIN, COMPARISON_CHAIN, TOO_DEEP)
+TOO_MANY = Rule(
+    "RV006",
+    "too-many-findings",
+    Severity.ERROR,
+    "So much is wrong that the rest of the file was not looked at.",
+    "A file with a hundred errors is most likely no specification, or one mistake is repeated.",
+    "spec demo\n\ndefine all = " + " or ".join(f"door{number}" for number in range(1, 102)) + "\n",
+    "spec demo\nsignal door1 : bool\n\nrequirement R1\n  always door1\n",
+)
+
+RULES = (SYNTAX, REACH, MIXED_CHAIN, COMPARISON_CHAIN, TOO_DEEP, TOO_MANY)
 
 
 def syntax_error(message: str, span: Span, mend: str = "") -> Diagnostic:
@@ -189,6 +199,21 @@ def too_large(span: Span, limit: int) -> Diagnostic:
         span,
         mend="say it in several requirements",
     )
+
+
+def too_much_work(span: Span) -> Diagnostic:
+    """Macros that multiply over the whole file."""
+    return finding(
+        TOO_DEEP,
+        "the macros of this file expand to more than can be checked",
+        span,
+        mend="use macros without parameters where you can: they are expanded once",
+    )
+
+
+def too_many(most: int) -> Diagnostic:
+    """The end of a long list of findings."""
+    return finding(TOO_MANY, f"only the first {most} findings are shown", mend="mend these first")
 
 
 def short(text: str, most: int = 60) -> str:
