@@ -1,7 +1,8 @@
-"""What tests share: programs that may be missing on a developer's machine, never in CI."""
+"""What tests share: programs that CI always has, and golden files."""
 
 import os
 import shutil
+from collections.abc import Callable
 
 import pytest
 
@@ -26,3 +27,21 @@ def chromium() -> str:
 def gcc() -> str:
     """Path of a C compiler."""
     return _program("gcc")
+
+
+@pytest.fixture
+def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
+    """Compare a text with the file of that name in `golden/` beside the test.
+
+    RVMON_UPDATE_GOLDEN=1 writes the files instead; read the difference before you commit it.
+    """
+    folder = request.path.parent / "golden"
+
+    def compare(name: str, text: str) -> None:
+        path = folder / name
+        if os.environ.get("RVMON_UPDATE_GOLDEN"):
+            folder.mkdir(exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        assert text == path.read_text(encoding="utf-8")
+
+    return compare

@@ -1,0 +1,45 @@
+"""Verdicts as JUnit XML."""
+
+import xml.etree.ElementTree as ET
+
+import rvmon
+from rvmon.report.junit import junit_xml
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
+
+SPEC = rvmon.loads(
+    "spec door\nsignal a : bool input\n"
+    + "".join(f'requirement D{n} "text {n}"\n  upon a\n  then within 2 s not a\n' for n in range(4))
+).checked
+
+
+def reports():
+    """A run with one requirement per verdict, and a reason that XML cannot hold as it is."""
+    attempts = [
+        Attempt("D0", 1, 0, 5, Verdict.PASS),
+        Attempt("D1", 1, 0, 5, Verdict.FAIL, reason='<"\x00&'),
+        Attempt("D1", 2, 1, 6, Verdict.FAIL, reason="again"),
+        Attempt("D2", 1, 0, None, Verdict.INCONCLUSIVE, reason="open"),
+    ]
+    return [report_of(["D0", "D1", "D2", "D3"], attempts, trace="run\x01.csv")]
+
+
+def test_every_verdict_has_its_form():
+    """F is a failure with all its reasons, I and NT are skipped, P is neither."""
+    root = ET.fromstring(junit_xml(reports(), SPEC))  # noqa: S314
+    cases = {case.get("name"): case for case in root.iter("testcase")}
+    kinds = {
+        name: [child.tag for child in case if child.tag != "properties"]
+        for name, case in cases.items()
+    }
+    assert kinds == {"D0": [], "D1": ["failure"], "D2": ["skipped"], "D3": ["skipped"]}
+    assert "again" in cases["D1"].find("failure").text
+    assert cases["D3"].find("skipped").get("message") == "NT: never triggered"
+
+
+def test_the_suite_counts():
+    """CI servers read the counts of the suite."""
+    suite = ET.fromstring(junit_xml(reports(), SPEC)).find("testsuite")  # noqa: S314
+    shown = {name: suite.get(name) for name in ("tests", "failures", "skipped")}
+    assert shown == {"tests": "4", "failures": "1", "skipped": "2"}

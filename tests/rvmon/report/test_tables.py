@@ -1,0 +1,118 @@
+"""Tables of verdicts in all their forms."""
+
+import csv
+import io
+
+import pytest
+from rich.console import Console
+
+from rvmon.report.markup import to_html
+from rvmon.report.style import MARKS
+from rvmon.report.table import RunGroup, VerdictTable
+from rvmon.report.table_csv import tables_csv
+from rvmon.report.table_html import table_html
+from rvmon.report.table_latex import escape, table_latex
+from rvmon.report.table_text import table_text
+from rvmon.verdict.verdict import Verdict
+
+
+def counts(*figures):
+    """Counts of P, F, NT, I."""
+    return dict(zip(Verdict, figures, strict=True))
+
+
+def table(*names, **more):
+    """Two requirements under groups of 100 runs."""
+    rows = {"R1": counts(33, 0, 67, 0), "R2": counts(0, 1, 90, 9)}
+    return VerdictTable(
+        title="Robot_1 & co",
+        requirements={"R1": "It shall move", "R2": "It shall stop"},
+        groups=tuple(RunGroup(name, 100, rows) for name in names),
+        **more,
+    )
+
+
+OURS = table("random", "directed", checked={"R1": True, "R2": None}, notes=("50 % is fitted.",))
+PAPER = VerdictTable(
+    "Paper", {"R1": "", "R2": ""}, (RunGroup("random", 100, {"R1": counts(30, 0, 70, 0)}),)
+)
+
+
+def as_text(renderable, width=80):
+    """What the terminal shows, without colour."""
+    text = io.StringIO()
+    Console(file=text, width=width, color_system=None).print(renderable)
+    return text.getvalue()
+
+
+def test_text_is_as_agreed(golden):
+    """The terminal's table, with published counts in a second line."""
+    golden("table.txt", as_text(table_text(OURS, beside={"paper": PAPER})))
+
+
+def test_latex_is_as_agreed(golden):
+    """The booktabs table."""
+    golden("table.tex", table_latex(OURS))
+
+
+def test_csv_is_as_agreed(golden):
+    """One row per table, group and requirement."""
+    golden("table.csv", tables_csv({"ours": OURS, "paper": PAPER}))
+
+
+def test_html_is_as_agreed(golden):
+    """The page's table: counts lead to examples, nought to nothing."""
+    link = "#{}-{}-{}".format
+    html = table_html(OURS, beside={"paper": PAPER}, link=link)
+    golden("table.html", to_html(html).replace("><", ">\n<") + "\n")
+
+
+def test_csv_can_be_read_back():
+    """Every count is found again."""
+    rows = list(csv.DictReader(io.StringIO(tables_csv({"ours": OURS}))))
+    assert [row["NT"] for row in rows] == ["67", "90", "67", "90"]
+    assert {row["tests"] for row in rows} == {"100"}
+
+
+@pytest.mark.parametrize("groups", [1, 2, 3, 4, 5])
+def test_text_fits_into_80_columns(groups):
+    """However many groups there are, no count is cut off."""
+    names = ["pseudorandom", "constrained", "model-based", "directed", "more"][:groups]
+    shown = as_text(table_text(table(*names, checked={"R1": True, "R2": None})))
+    assert "…" not in shown
+    assert max(len(line.rstrip()) for line in shown.splitlines()) <= 80
+    assert shown.count(" 33 ") == groups
+    assert all(name in shown for name in names)
+
+
+def test_latex_has_the_same_number_of_columns_in_every_row():
+    """Rows of counts and their head agree with the column specification."""
+    rows = [line for line in table_latex(OURS).splitlines() if line.endswith(r"\\")]
+    assert {row.count("&") for row in rows[1:]} == {2 * 4 + 1}
+
+
+def test_latex_escapes_every_special_character():
+    """No character of a title acts as a command."""
+    assert escape(r"a_b & 5 % \x {y} ~^ #1 $") == (
+        r"a\_b \& 5 \% \textbackslash{}x \{y\} \textasciitilde{}\textasciicircum{} \#1 \$"
+    )
+
+
+@pytest.mark.parametrize("verdict", Verdict)
+@pytest.mark.parametrize(("shade", "page"), [("light", "#fbfbfa"), ("dark", "#0f1215")])
+def test_colours_can_be_read(verdict, shade, page):
+    """Each verdict's colour contrasts with its page by at least 4.5 to 1 (WCAG AA)."""
+    bright, dark = sorted((luminance(getattr(MARKS[verdict], shade)), luminance(page)))[::-1]
+    assert (bright + 0.05) / (dark + 0.05) >= 4.5
+
+
+def test_signs_tell_verdicts_apart_without_colour():
+    """No two verdicts share a sign."""
+    assert len({mark.sign for mark in MARKS.values()}) == len(Verdict)
+
+
+def luminance(colour):
+    """Relative luminance of an sRGB colour (WCAG 2)."""
+    channels = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return sum(weight * c for weight, c in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
