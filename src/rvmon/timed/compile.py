@@ -36,6 +36,7 @@ class CompiledEdge:
 
     Attributes:
         automaton: its index.
+        number: of the edge in the automaton.
         edge: the edge itself.
         data: its guard on the variables; `None` if there is none.
         atoms: its clock bounds.
@@ -45,6 +46,7 @@ class CompiledEdge:
     """
 
     automaton: int
+    number: int
     edge: Edge
     data: Evaluator | None
     atoms: AtomMaker
@@ -53,8 +55,9 @@ class CompiledEdge:
     updates: tuple[Updater, ...]
 
 
-def compile_edge(network: Network, automaton: int, edge: Edge) -> CompiledEdge:
-    """Make an edge ready to be tried."""
+def compile_edge(network: Network, automaton: int, number: int) -> CompiledEdge:
+    """Make an edge, given by its automaton and its number there, ready to be tried."""
+    edge = network.automata[automaton].edges[number]
     channel, channels = None, range(0)
     if edge.sync is not None:
         slot = edge.sync.slot
@@ -62,6 +65,7 @@ def compile_edge(network: Network, automaton: int, edge: Edge) -> CompiledEdge:
         channels = range(slot.first, slot.first + prod(slot.sizes))
     return CompiledEdge(
         automaton,
+        number,
         edge,
         data_of(edge.guard),
         atoms_of(edge.guard.clocks, edge.span),

@@ -13,12 +13,17 @@ from rvmon.timed.search import Found, LinkT, Node, Problem, SiteT
 from rvmon.timed.zones import Zone, is_simulated, is_within
 
 
-def explore(problem: Problem[SiteT, LinkT], meter: Meter) -> Found[SiteT, LinkT]:
+def explore(
+    problem: Problem[SiteT, LinkT],
+    meter: Meter,
+    tell: Callable[[Node[SiteT, LinkT]], None] | None = None,
+) -> Found[SiteT, LinkT]:
     """Search breadth first, so that what is found is reached in the fewest steps.
 
     Args:
         problem: what to search for.
         meter: counts the states that are kept.
+        tell: called with each node that is met, also if it is not kept.
 
     Source: Behrmann, Bengtsson, David, Larsen, Pettersson, Yi, UPPAAL Implementation Secrets, 2002
     (one list of passed and waiting states).
@@ -32,6 +37,8 @@ def explore(problem: Problem[SiteT, LinkT], meter: Meter) -> Found[SiteT, LinkT]
         """Keep a new node unless it is covered; False ends the search."""
         nonlocal found
         site, zone = node.site, node.zone
+        if tell is not None:
+            tell(node)
         nodes = passed.get(site)
         if nodes is None:
             passed[site] = [node]

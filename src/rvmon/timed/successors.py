@@ -48,8 +48,8 @@ class Space:
         self._bounds: list[list[ClockBounds]] = []
         for index, automaton in enumerate(network.automata):
             leaving: list[list[CompiledEdge]] = [[] for _ in automaton.locations]
-            for edge in automaton.edges:
-                leaving[edge.source].append(compile_edge(network, index, edge))
+            for number, edge in enumerate(automaton.edges):
+                leaving[edge.source].append(compile_edge(network, index, number))
             self._edges.append(leaving)
             self._invariants.append(
                 [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 from rvmon.timed.concrete import replay
@@ -31,10 +31,15 @@ from rvmon.timed.zones import Zone, cut, delay, normalise, reset, zero
 def plain_path(node: Node[State, Move]) -> list[PathStep]:
     """The moves to a node of a search over discrete states."""
     nodes = node.path()
-    steps = []
-    for before, after in pairwise(nodes):
-        assert after.link is not None  # noqa: S101 - only the first node has no link
-        steps.append(move_step(before.site, after.link))
+    return move_path(nodes[0].site, [after.link for after in nodes[1:] if after.link is not None])
+
+
+def move_path(start: State, moves: Iterable[Move]) -> list[PathStep]:
+    """Moves in turn."""
+    steps, here = [], start
+    for move in moves:
+        steps.append(move_step(here, move))
+        here = move.target
     return steps
 
 
