@@ -20,7 +20,7 @@ from rvmon.formula.state import State
 from rvmon.monitor.wording import Words
 from rvmon.spec.checked import CheckedSpec, Compare, Requirement
 
-ENGINES = ("auto", "automaton", "progression")
+ENGINES = ("auto", "python", "automaton", "progression")
 
 
 class CompiledRequirement:
@@ -139,6 +139,7 @@ class CompiledSpec:
     Attributes:
         checked: as checked.
         requirements: by id.
+        forms: what was generated for its monitors, by what it depends on.
     """
 
     def __init__(
@@ -146,6 +147,7 @@ class CompiledSpec:
     ) -> None:
         self.checked = checked
         self.requirements = requirements
+        self.forms: dict[object, object] = {}
 
 
 def compile_spec(checked: CheckedSpec) -> CompiledSpec:

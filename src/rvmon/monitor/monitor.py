@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rvmon.automaton.machine import INFINITY
-from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
+from rvmon.errors import TimeOrderError, TraceError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.intake import Intake
@@ -22,7 +22,7 @@ from rvmon.verdict.report import Report
 
 
 class Monitor:
-    """Judges a stream of samples; made by `build_monitor`.
+    """Judges a stream of samples; made by `rvmon.monitor.build`.
 
     Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
     methods that end in `_ns`.
@@ -48,9 +48,7 @@ class Monitor:
     def reset(self) -> None:
         """Forget the run; the next sample starts another."""
         self._ledger = Ledger()
-        self._lanes = Lanes(
-            self._compiled.checked, self._requirements, self._engine, self._sources, self._ledger
-        )
+        self._lanes = self._make_lanes()
         delay = self._compiled.checked.max_delay or 0
         holds_back = delay or self._settle == "next"
         self._intake = Intake(delay, self._compiled.checked.events) if holds_back else None
@@ -58,6 +56,11 @@ class Monitor:
         self._last: int | None = None
         self._reached: int | None = None
         self._report: Report | None = None
+
+    def _make_lanes(self) -> Lanes:
+        return Lanes(
+            self._compiled.checked, self._requirements, self._engine, self._sources, self._ledger
+        )
 
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take one sample; see `step_ns`.
@@ -196,45 +199,7 @@ class Monitor:
     @property
     def next_due(self) -> int | None:
         """The next instant (ticks) at which time alone can decide something."""
-        found = min((lane.next_due for lane in self._lanes.all), default=INFINITY)
-        return found if found < INFINITY else None
-
-
-def build_monitor(
-    compiled: CompiledSpec,
-    *,
-    only: Iterable[str] | None = None,
-    engine: str = "auto",
-    settle: str = "now",
-    sources: Iterable[str] | None = None,
-) -> Monitor:
-    """Build a monitor from a compiled specification.
-
-    Args:
-        compiled: from `compile_spec`; any number of monitors can share it.
-        only: ids of the requirements to judge; default all.
-        engine: `auto`, `automaton` or `progression`.
-        settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
-            each when the next stamp settles it.
-        sources: the signals and events that can arrive; the others are unknown throughout.
-
-    Raises:
-        UnknownNameError: `only`, `engine` or `settle` names what does not exist.
-        RvmonError: the engine was asked for by name and cannot judge a requirement.
-    """
-    if settle not in ("now", "next"):
-        raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
-    wanted = None if only is None else frozenset(only)
-    unknown = sorted((wanted or frozenset()) - compiled.requirements.keys())
-    if unknown:
-        known = ", ".join(compiled.requirements)
-        raise UnknownNameError(f"no requirement `{unknown[0]}`: there are {known}")
-    chosen = [
-        requirement
-        for name, requirement in compiled.requirements.items()
-        if wanted is None or name in wanted
-    ]
-    for requirement in chosen:
-        requirement.machine(engine)
-    given = None if sources is None else frozenset(sources)
-    return Monitor(compiled, chosen, engine, settle, given)
+        if self._reached is None or self._report is not None:
+            return None
+        found = min(lane.next_due for lane in self._lanes.all)
+        return max(found, self._reached + 1) if found < INFINITY else None

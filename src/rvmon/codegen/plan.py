@@ -1,0 +1,66 @@
+"""What generated code is made from: the formulas, inputs and automata of some requirements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rvmon.automaton.automaton import Automaton
+from rvmon.dataflow.graph import Graph
+from rvmon.formula.alphabet import Alphabet
+from rvmon.formula.state import State
+from rvmon.spec.checked import CheckedSpec, Requirement
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlannedRule:
+    """One requirement.
+
+    Attributes:
+        requirement: as checked; without `let` and `for each`.
+        trigger: what starts its attempts; `None` if that is the end of the trace.
+        alphabet: of what it owes.
+        automaton: judges its attempts; `None` if there is none, which only a monitor in this
+            process can do without.
+    """
+
+    requirement: Requirement
+    trigger: State | None
+    alphabet: Alphabet
+    automaton: Automaton | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Uses:
+    """What is asked of a signal or event beside its present value.
+
+    Attributes:
+        history: the last two updates matter (`prev`, `delta`, `rate`, `changed`).
+        marked: whether there is an update matters (`updated`, `changed`).
+    """
+
+    history: bool = False
+    marked: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """Some requirements of a specification, to be generated as one unit.
+
+    Attributes:
+        spec: gives names, types and the time model.
+        rules: in the order of the file.
+        graph: their state formulas, shared.
+        gap: ticks between two positions; `None` if only samples are positions.
+        signals: names in the order of the file; the place of a name is its number.
+        events: the same.
+        uses: by name, of those that are read.
+    """
+
+    spec: CheckedSpec
+    rules: tuple[PlannedRule, ...]
+    graph: Graph
+    gap: int | None
+    signals: tuple[str, ...]
+    events: tuple[str, ...]
+    uses: Mapping[str, Uses]

@@ -1,0 +1,46 @@
+"""From requirements to the plan of generated code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rvmon.codegen.plan import Plan, PlannedRule, Uses
+from rvmon.dataflow.graph import Graph, graph_of
+from rvmon.dataflow.numbers import operands
+from rvmon.formula.state import Leaf
+from rvmon.spec.checked import CheckedSpec, Compare, Probe, ProbeAtom, TimeModel, UpdateValue
+
+
+def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
+    """Share the state formulas of requirements and see what they ask of the input.
+
+    Args:
+        spec: they belong to.
+        rules: in the order of the file.
+    """
+    triggers = [rule.trigger for rule in rules if rule.trigger is not None]
+    owed = [state for rule in rules for state in rule.alphabet.propositions]
+    graph = graph_of([*triggers, *owed])
+    gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+    uses = {name: _uses(graph, name) for name in graph.by_name}
+    return Plan(spec, tuple(rules), graph, gap, tuple(spec.signals), tuple(spec.events), uses)
+
+
+def _uses(graph: Graph, name: str) -> Uses:
+    leaves = [leaf for place in graph.by_name[name] if (leaf := graph.nodes[place].leaf)]
+    return Uses(
+        history=any(_asks_history(leaf, name) for leaf in leaves),
+        marked=any(
+            isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN for leaf in leaves
+        ),
+    )
+
+
+def _asks_history(leaf: Leaf, name: str) -> bool:
+    if isinstance(leaf, ProbeAtom):
+        return leaf.probe is Probe.CHANGED
+    return isinstance(leaf, Compare) and any(
+        isinstance(part, UpdateValue) and part.name == name
+        for side in (leaf.left, leaf.right)
+        for part in operands(side)
+    )

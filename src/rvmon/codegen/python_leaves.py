@@ -1,0 +1,150 @@
+"""State formulas as Python expressions over the arrays of a generated monitor."""
+
+from __future__ import annotations
+
+import math
+from typing import assert_never
+
+from rvmon.codegen.plan import Plan
+from rvmon.dataflow.numbers import events_of
+from rvmon.formula.state import Elapsed, Leaf, StateOp
+from rvmon.spec.checked import (
+    Arithmetic,
+    BoundAtom,
+    Captured,
+    Compare,
+    CompareOp,
+    Constant,
+    EventAtom,
+    FieldValue,
+    Literal,
+    Numeric,
+    NumericOp,
+    Probe,
+    ProbeAtom,
+    SignalAtom,
+    SignalValue,
+    UpdateValue,
+)
+
+_COMPARE = {
+    CompareOp.LT: "lt",
+    CompareOp.LE: "le",
+    CompareOp.EQ: "eq",
+    CompareOp.NE: "ne",
+    CompareOp.GE: "ge",
+    CompareOp.GT: "gt",
+}
+
+_OPERATION = {
+    NumericOp.ADD: "add",
+    NumericOp.SUB: "sub",
+    NumericOp.MUL: "mul",
+    NumericOp.DIV: "truediv",
+    NumericOp.NEG: "neg",
+    NumericOp.ABS: "abs",
+    NumericOp.MIN: "min",
+    NumericOp.MAX: "max",
+    NumericOp.SQRT: "math.sqrt",
+    NumericOp.HYPOT: "math.hypot",
+}
+
+
+def node_expression(plan: Plan, place: int) -> str:
+    """The value of a node at `t`, in a method of the monitor with `v` and `s` at hand."""
+    state = plan.graph.nodes[place]
+    operands = [f"v[{operand}]" for operand in plan.graph.operands[place]]
+    if state.leaf is not None:
+        return _leaf(plan, place, state.leaf)
+    match state.op:
+        case StateOp.NOT:
+            return f"2 - {operands[0]}"
+        case StateOp.AND:
+            return f"min({', '.join(operands)})"
+        case StateOp.OR:
+            return f"max({', '.join(operands)})"
+        case StateOp.PREVIOUS:
+            return f"self.previous_({place}, t, {operands[0]})"
+        case StateOp.SINCE:
+            return f"self.since_({place}, t, {operands[0]}, {operands[1]})"
+        case StateOp.LEAF:
+            raise ValueError("a leaf reads something")
+        case _:
+            assert_never(state.op)
+
+
+def _leaf(plan: Plan, place: int, leaf: Leaf) -> str:
+    match leaf:
+        case Constant(value=value):
+            return "2" if value else "0"
+        case Elapsed(duration=duration):
+            return f"self.elapsed_({place}, t, {duration})"
+        case BoundAtom():
+            return "2 if t == self.origin else 0"
+        case SignalAtom(name=name):
+            held = f"s[{plan.signals.index(name)}]"
+            return f"1 if {held} is None else 2 if {held} else 0"
+        case EventAtom(name=name):
+            return f"self.o[{plan.events.index(name)}]"
+        case ProbeAtom(probe=probe, name=name):
+            return _probe(plan, probe, name)
+        case Compare():
+            return comparison(plan, leaf)
+        case _:
+            assert_never(leaf)
+
+
+def _probe(plan: Plan, probe: Probe, name: str) -> str:
+    match probe:
+        case Probe.KNOWN:
+            if name in plan.signals:
+                return f"0 if s[{plan.signals.index(name)}] is None else 2"
+            return f"0 if self.o[{plan.events.index(name)}] == 1 else 2"
+        case Probe.UPDATED:
+            return f"2 if {name!r} in self.u else 0"
+        case Probe.CHANGED:
+            return f"1 if {name!r} in self.absent else self.c.get({plan.signals.index(name)}, 0)"
+        case _:
+            assert_never(probe)
+
+
+def comparison(plan: Plan, leaf: Compare) -> str:
+    """The truth of a comparison."""
+    left, right = leaf.left, leaf.right
+    if isinstance(left, SignalValue) and isinstance(right, Literal):
+        held = f"s[{plan.signals.index(left.name)}]"
+        return (
+            f"1 if {held} is None else 2 if {held} {leaf.op.value} {_literal(right.value)} else 0"
+        )
+    both = f"compared({_COMPARE[leaf.op]}, {_number(plan, left)}, {_number(plan, right)})"
+    events = events_of(left, right)
+    if not events:
+        return both
+    listed = "".join(f"{plan.events.index(event)}, " for event in events)
+    return f"self.over_(({listed}), lambda q: {both})"
+
+
+def _number(plan: Plan, expression: Numeric) -> str:
+    match expression:
+        case Literal(value=value):
+            return _literal(value)
+        case SignalValue(name=name):
+            return f"s[{plan.signals.index(name)}]"
+        case FieldValue(event=event, field=field):
+            return f"number(q[{plan.events.index(event)}].get({field!r}))"
+        case UpdateValue(function=function, name=name):
+            signal = plan.signals.index(name)
+            return f"self.h[{signal}].{function.value}(s[{signal}])"
+        case Arithmetic(op=op, args=args):
+            listed = ", ".join(_number(plan, arg) for arg in args)
+            return f"finite({_OPERATION[op]}, {listed})"
+        case Captured():
+            raise ValueError("captured values are not generated")
+        case _:
+            assert_never(expression)
+
+
+def _literal(value: float | int | str) -> str:
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"{value} is no number of a specification")
+    return repr(value)

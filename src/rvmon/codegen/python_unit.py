@@ -1,0 +1,51 @@
+"""A generated Python monitor in this process."""
+
+from __future__ import annotations
+
+import math
+import operator
+from typing import Any
+
+from rvmon.codegen.plan import Plan
+from rvmon.codegen.python_source import unit_source
+from rvmon.codegen.runtime.past import compared, finite, number
+from rvmon.codegen.runtime.table import NEVER, Table
+from rvmon.codegen.runtime.unit import LIMIT, MISSING, Unit
+from rvmon.codegen.tables import tables_of
+
+
+def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]:
+    """The class of a plan's generated monitors.
+
+    Args:
+        plan: what to judge.
+        arriving: the names that have a source; default all.
+    """
+    operations = ("lt", "le", "eq", "ne", "ge", "gt", "add", "sub", "mul", "truediv", "neg")
+    namespace: dict[str, Any] = {name: getattr(operator, name) for name in operations}
+    namespace |= {"__name__": "rvmon.generated", "math": math, "NEVER": NEVER, "LIMIT": LIMIT}
+    namespace |= {"MISSING": MISSING, "Unit": Unit}
+    namespace |= {"compared": compared, "finite": finite, "number": number}
+    source = unit_source(plan, arriving)
+    # The source holds names and numbers of the specification as literals only.
+    exec(compile(source, "<generated monitor>", "exec"), namespace)  # noqa: S102
+    made: type[Unit] = namespace["Generated"]
+    return made
+
+
+def machine_of(plan: Plan, index: int) -> Table | None:
+    """What judges a requirement of a plan; `None` if it has no automaton."""
+    automaton = plan.rules[index].automaton
+    if automaton is None:
+        return None
+    data = tables_of(automaton)
+    return Table(
+        data.initial,
+        data.cuts,
+        data.bases,
+        data.strides,
+        data.class_of,
+        data.rows,
+        data.time_values,
+        data.end_clauses,
+    )

@@ -1,0 +1,5 @@
+"""What generated Python monitors stand on.
+
+These modules import nothing of rvmon, because `rvmon compile --to python` copies them into the file
+it writes, in the order `past`, `table`, `rule`, `unit`. They are kept to Python 3.8.
+"""

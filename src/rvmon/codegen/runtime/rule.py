@@ -1,0 +1,232 @@
+"""The open attempts of one requirement in a generated monitor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rvmon.codegen.runtime.table import FAILED, NEVER, PASSED, next_cut, run, settle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rvmon.codegen.runtime.table import Token
+
+    Drive = Callable[[Token, int], tuple[Token, int]]
+
+FALSE, UNKNOWN, TRUE = 0, 1, 2
+
+
+class Rule:
+    """Starts attempts and drives them.
+
+    Args:
+        index: of the requirement.
+        machine: judges its attempts.
+        letters: gives, from the values, the letters with the unknown taken for worse and better.
+        pulse: whether it starts an attempt at every position where its trigger holds.
+        episodic: whether one attempt runs at a time, until the trigger is false.
+        gap: ticks between two positions; `None` if only samples are positions.
+        values: the truth of the state formulas.
+        clerk: makes attempts and hears of decisions.
+
+    Attributes:
+        attempts: the undecided ones, oldest first.
+        due: an instant before which, the letters staying, no attempt can be decided.
+        restless: whether attempts may move at the next position though the letters stay.
+        slides: whether a clock moves along while an attempt loops.
+    """
+
+    __slots__ = (
+        "attempts",
+        "before",
+        "clerk",
+        "due",
+        "episodic",
+        "gap",
+        "index",
+        "known",
+        "letter",
+        "letters",
+        "machine",
+        "other",
+        "position",
+        "pulse",
+        "restless",
+        "running",
+        "slides",
+        "values",
+    )
+
+    def __init__(
+        self,
+        index: int,
+        machine: Any,
+        letters: Callable[[list[int]], tuple[int, int]],
+        pulse: bool,
+        episodic: bool,
+        gap: int | None,
+        values: list[int],
+        clerk: Any,
+    ) -> None:
+        self.index = index
+        self.machine = machine
+        self.letters = letters
+        self.pulse = pulse
+        self.episodic = episodic
+        self.gap = gap
+        self.values = values
+        self.clerk = clerk
+        self.attempts: list[Any] = []
+        self.due = NEVER
+        self.restless = False
+        self.slides = False
+        self.position = -NEVER
+        self.letter = self.other = 0
+        self.before = UNKNOWN
+        self.known = False
+        self.running = False
+
+    def starts(self, truth: int) -> bool:
+        """Whether an attempt starts at a position where the trigger has this truth."""
+        start = truth == TRUE and (self.pulse or self.before == FALSE or not self.known)
+        self.before = truth
+        self.known = self.known or truth != UNKNOWN
+        if not self.episodic:
+            return start
+        if self.running:
+            self.running = truth != FALSE
+            return False
+        self.running = start
+        return start
+
+    @property
+    def repeats(self) -> bool:
+        """Whether another attempt starts at the next position if the trigger stays."""
+        return self.pulse and not self.episodic and self.before == TRUE
+
+    def begin(self, t: int, triggered: int) -> None:
+        """Start an attempt at the position `t`, at which the values are."""
+        if self.position < t:
+            self.visit(t)
+        attempt = self.clerk.opened(self, triggered, self.machine.start)
+        due = self.stepped(attempt, t)
+        if due is not None:
+            self.attempts.append(attempt)
+            if due < self.due:
+                self.due = due
+
+    def visit(self, t: int) -> None:
+        """Take all attempts to the position `t`, at which the values are."""
+        if self.slides or self.due < t:
+            self.pass_to(t - 1)
+        self.letter, self.other = self.letters(self.values)
+        self.restless = self.slides = False
+        self.position = t
+        attempts = self.attempts
+        if not attempts:
+            self.due = NEVER
+            return
+        kept = []
+        due = NEVER
+        for attempt in attempts:
+            own = self.stepped(attempt, t)
+            if own is not None:
+                kept.append(attempt)
+                if own < due:
+                    due = own
+        self.attempts = kept
+        self.due = due
+
+    def stepped(self, attempt: Any, t: int) -> int | None:
+        """Step an attempt at the position `t`; returns when it is due, `None` if it was decided."""
+        if attempt.better is None and self.letter == self.other:
+            before = attempt.token
+            token, due = self._step(before, self.letter, t)
+            return self._moved(attempt, before, token, due)
+        return self._both(attempt, lambda token, letter: self._step(token, letter, t))
+
+    def _step(self, token: Token, letter: int, t: int) -> tuple[Token, int]:
+        moved = self.machine.step(token, t, letter)
+        if moved[0] <= PASSED:
+            return moved, t
+        if moved == token:
+            return token, next_cut(self.machine, token, t)
+        self.restless = True
+        return moved, t + 1
+
+    def _moved(self, attempt: Any, before: Token, token: Token, due: int) -> int | None:
+        if token[0] <= PASSED:
+            self.clerk.decided(self, attempt, token[0] == PASSED, due, before)
+            return None
+        attempt.token = token
+        return due
+
+    def _both(self, attempt: Any, drive: Drive) -> int | None:
+        """Drive the runs that take the unknown for the worse and for the better."""
+        worse, better = attempt.token, attempt.better
+        if better is None:
+            if self.letter == self.other:
+                token, due = drive(worse, self.letter)
+                return self._moved(attempt, worse, token, due)
+            better = worse
+            self.clerk.parted(self, attempt)
+        due = NEVER
+        moved, moved_better = worse, better
+        if worse[0] != FAILED:
+            moved, due = drive(worse, self.letter)
+            if moved[0] == PASSED:
+                self.clerk.decided(self, attempt, True, due, worse)
+                return None
+            if moved[0] == FAILED:
+                due = NEVER
+        if better[0] != PASSED:
+            moved_better, own = drive(better, self.other)
+            if moved_better[0] == FAILED:
+                self.clerk.decided(self, attempt, False, own, better)
+                return None
+            if moved_better[0] != PASSED:
+                due = min(due, own)
+        attempt.token = moved
+        attempt.better = None if moved == moved_better else moved_better
+        return due
+
+    def pass_to(self, t: int) -> None:
+        """Let time come to `t` with the letters as they are; positions up to there are stepped."""
+        gap, position = self.gap, self.position
+        if not self.attempts:
+            self.due = NEVER
+        elif gap is None:
+            self.restless = self.restless or self.due <= t
+            self._drive_all(lambda token, _: settle(self.machine, token, position, t))
+        elif t > position:
+            self.slides = False
+            self._drive_all(lambda token, letter: self._run(token, letter, position + gap, t))
+            self.position += (t - position) // gap * gap
+            self.restless = False
+
+    def _run(self, token: Token, letter: int, first: int, last: int) -> tuple[Token, int]:
+        token, due, slides = run(self.machine, token, letter, first, last, self.gap or 1)
+        if slides:
+            self.slides = True
+        return token, due
+
+    def reach(self, t: int) -> None:
+        """Let time come to `t`, of which the letter is not known, from the instant before."""
+        self.pass_to(t - 1)
+        position = self.position
+        self.restless = self.restless or self.due <= t
+        self._drive_all(lambda token, _: settle(self.machine, token, position, t))
+        if self.gap is not None and self.due > t:
+            self.due = t
+
+    def _drive_all(self, drive: Drive) -> None:
+        due = NEVER
+        kept = []
+        for attempt in self.attempts:
+            own = self._both(attempt, drive)
+            if own is not None:
+                kept.append(attempt)
+                if own < due:
+                    due = own
+        self.attempts = kept
+        self.due = due

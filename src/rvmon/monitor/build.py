@@ -1,0 +1,59 @@
+"""The choice of a monitor for a specification."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rvmon.errors import UnknownNameError
+from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.generated import Forms, GeneratedMonitor, can_generate
+from rvmon.monitor.monitor import Monitor
+
+_GENERATED = ("auto", "python")
+
+
+def build_monitor(
+    compiled: CompiledSpec,
+    *,
+    only: Iterable[str] | None = None,
+    engine: str = "auto",
+    settle: str = "now",
+    sources: Iterable[str] | None = None,
+) -> Monitor:
+    """Build a monitor from a compiled specification.
+
+    Args:
+        compiled: from `compile_spec`; any number of monitors can share it.
+        only: ids of the requirements to judge; default all.
+        engine: `auto` runs generated code where it can; `python`: the same; `automaton` and
+            `progression` look up tables, or work out residuals, at each step.
+        settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
+            each when the next stamp settles it.
+        sources: the signals and events that can arrive; the others are unknown throughout.
+
+    Raises:
+        UnknownNameError: `only`, `engine` or `settle` names what does not exist.
+        RvmonError: the engine was asked for by name and cannot judge a requirement.
+    """
+    if settle not in ("now", "next"):
+        raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
+    wanted = None if only is None else frozenset(only)
+    unknown = sorted((wanted or frozenset()) - compiled.requirements.keys())
+    if unknown:
+        known = ", ".join(compiled.requirements)
+        raise UnknownNameError(f"no requirement `{unknown[0]}`: there are {known}")
+    chosen = [
+        requirement
+        for name, requirement in compiled.requirements.items()
+        if wanted is None or name in wanted
+    ]
+    for requirement in chosen:
+        requirement.machine(engine)
+    given = None if sources is None else frozenset(sources)
+    if engine not in _GENERATED or not any(can_generate(one) for one in chosen):
+        return Monitor(compiled, chosen, engine, settle, given)
+    key = (tuple(one.requirement.id for one in chosen), given)
+    forms = compiled.forms.get(key)
+    if not isinstance(forms, Forms):
+        forms = compiled.forms[key] = Forms(compiled, chosen, given)
+    return GeneratedMonitor(forms, compiled, chosen, engine, settle, given)

@@ -1,0 +1,293 @@
+"""Monitors that run generated code where they can; records and findings are made as ever."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from rvmon.automaton.machine import INFINITY, Token
+from rvmon.codegen.plan import Plan, PlannedRule
+from rvmon.codegen.planning import plan_of
+from rvmon.codegen.python_unit import machine_of, unit_class
+from rvmon.codegen.runtime.rule import Rule
+from rvmon.codegen.runtime.unit import LIMIT, Unit
+from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.inputs import Inputs
+from rvmon.errors import TraceError
+from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.judge import Judge, Open
+from rvmon.monitor.lanes import Lanes
+from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.monitor import Monitor
+from rvmon.trace.sample import Value
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
+
+
+def can_generate(requirement: CompiledRequirement) -> bool:
+    """Whether a requirement can be judged by generated code in this process."""
+    return not requirement.requirement.captures and requirement.requirement.for_each is None
+
+
+def plan_requirements(compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]) -> Plan:
+    """The plan of some requirements of a specification."""
+    return plan_of(
+        compiled.checked,
+        [
+            PlannedRule(one.requirement, one.obligation.trigger, one.alphabet, one.automaton)
+            for one in requirements
+        ],
+    )
+
+
+class Forms:
+    """What is generated for one choice of requirements and sources; serves any number of monitors.
+
+    Attributes:
+        requirements: those that generated code judges.
+        others: those that it cannot judge.
+        plan: of `requirements`.
+        unit: the generated class.
+        machines: per requirement, what judges its attempts.
+
+    Args:
+        compiled: the specification.
+        requirements: chosen from it.
+        sources: the names that can arrive; `None`: all.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        sources: frozenset[str] | None,
+    ) -> None:
+        self.requirements = [one for one in requirements if can_generate(one)]
+        self.others = [one for one in requirements if not can_generate(one)]
+        self.plan = plan_requirements(compiled, self.requirements)
+        self.unit = unit_class(self.plan, sources)
+        self.machines: list[Any] = [
+            machine_of(self.plan, index) or one.machine("progression")
+            for index, one in enumerate(self.requirements)
+        ]
+
+
+class GeneratedLanes(Lanes):
+    """Lanes of which one is generated code; the others are for what that cannot judge.
+
+    Args:
+        forms: what was generated.
+        unit: of these; begins a run.
+        compiled: the specification.
+        engine: judges the others.
+        sources: the names that can arrive; `None`: all.
+        ledger: takes the records.
+        other: takes the samples that need a closer look.
+    """
+
+    def __init__(
+        self,
+        forms: Forms,
+        unit: Unit,
+        compiled: CompiledSpec,
+        engine: str,
+        sources: frozenset[str] | None,
+        ledger: Ledger,
+        other: Step,
+    ) -> None:
+        self.other = other
+        spec = compiled.checked
+        super().__init__(spec, forms.others, engine, sources, ledger)
+        self.alone = not forms.others
+        self.unit = unit
+        unit.restart(self)
+        # What writes the records looks at a flow: it shares the unit's arrays.
+        self._flow_seen = Flow(forms.plan.graph, Inputs(spec, sources), forms.plan.gap, {})
+        self._flow_seen.values = self.unit.v
+        self._flow_seen.since = self.unit.since
+        self._flow_seen._until = self.unit.until
+        self._counts = [0] * len(forms.requirements)
+        self._seats = [
+            Judge(one, one.machine("auto"), self._flow_seen, ledger, {})
+            for one in forms.requirements
+        ]
+
+    # What the unit calls.
+
+    def opened(self, rule: Rule, triggered: int, token: Token) -> Open:
+        """A new attempt."""
+        self._counts[rule.index] += 1
+        attempt = Open(triggered, token, self._seats[rule.index].seen)
+        attempt.number = self._counts[rule.index]
+        return attempt
+
+    def parted(self, rule: Rule, attempt: Open) -> None:
+        """Hear that unknown input made the two runs of an attempt part."""
+        attempt.doubt = self._seat_of(rule)._doubt()
+
+    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
+        """Hear of a decision; see `rvmon.monitor.judge.Clerk`."""
+        self.unit.news = True
+        self.ledger.decided(self._seat_of(rule), attempt, verdict, t, before)
+
+    def told(self) -> Sequence[Attempt]:
+        """The records of what was decided since the last call."""
+        self.unit.news = False
+        return self.ledger.flush()
+
+    def _seat_of(self, rule: Rule) -> Judge:
+        """The judge of a requirement, as it would stand now if it had judged."""
+        judge = self._seats[rule.index]
+        judge.letters = (rule.letter, rule.other)
+        judge.position = rule.position
+        judge.attempts = rule.attempts
+        self._flow_seen.origin = self.unit.origin
+        self._flow_seen.position = self.unit.position
+        return judge
+
+    # What the monitor calls.
+
+    @property
+    def judges(self) -> Sequence[Judge]:
+        """The judges of all lanes."""
+        return [*(self._seat_of(rule) for rule in self.unit.rules), *super().judges]
+
+    def through(self, limit: int) -> None:
+        """Let time pass up to `limit`."""
+        self.unit.through(limit)
+        super().through(limit)
+
+    def reach(self, t: int) -> None:
+        """Let time come to `t`, from the instant before."""
+        self.unit.reach(t)
+        self.unit.set_alarm()
+        super().reach(t)
+
+    def sample(self, t: int, values: Mapping[str, Value]) -> None:
+        """Take a valid sample; time has come to `t − 1` before."""
+        self.unit.take(t, values)
+        super().sample(t, values)
+
+    def finish(self, end: int, reached: int) -> None:
+        """Settle what is undecided; time has come to `end` before."""
+        self.unit.close(end, reached)
+        for rule in self.unit.rules:
+            judge = self._seat_of(rule)
+            for attempt in rule.attempts:
+                self.ledger.ended(judge, attempt, end, reached)
+            rule.attempts = judge.attempts = []
+        super().finish(end, reached)
+        if self.alone:
+            self._show_inputs()
+
+    def _show_inputs(self) -> None:
+        """Note what the unit saw of the inputs where their health is reported from."""
+        inputs = self.main.flow.inputs
+        for name, first in zip(self.unit.SIGNALS, self.unit.first, strict=True):
+            inputs.slots[name].first_at = first
+        inputs.expired = {
+            self.unit.SIGNALS[signal]: found for signal, found in self.unit.expired.items()
+        }
+
+
+class GeneratedMonitor(Monitor):
+    """A monitor whose `step_ns` is generated code.
+
+    Samples that need a closer look (the first, unknown values, payloads, what is wrong) take the
+    way of every monitor.
+
+    Args:
+        forms: what was generated.
+        compiled: the specification.
+        requirements: to be judged.
+        engine: judges what cannot be generated.
+        settle: see `build_monitor`.
+        sources: the names that can arrive; `None`: all.
+    """
+
+    def __init__(
+        self,
+        forms: Forms,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        engine: str,
+        settle: str,
+        sources: frozenset[str] | None,
+    ) -> None:
+        names = {*compiled.checked.signals, *compiled.checked.events}
+        absent = frozenset() if sources is None else frozenset(names - sources)
+        self._forms = forms
+        self._unit = forms.unit(forms.machines, absent)
+        super().__init__(compiled, requirements, engine, settle, sources)
+        if not forms.others and self._intake is None:
+            self.__dict__["step_ns"] = self._unit.step
+
+    def _make_lanes(self) -> Lanes:
+        return GeneratedLanes(
+            self._forms,
+            self._unit,
+            self._compiled,
+            self._engine,
+            self._sources,
+            self._ledger,
+            self.step_slowly,
+        )
+
+    def reset(self) -> None:
+        """Forget the run; the next sample starts another."""
+        super().reset()
+        self._floor = self._unit.after
+
+    def _see(self) -> None:
+        """Note the samples that the generated code took by itself."""
+        after = self._unit.after
+        if after != self._floor:
+            self._last = self._reached = self._floor = after
+        if self._health.began is None:
+            self._health.began = self._unit.began
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """See `Monitor.step_ns`."""
+        return self.step_slowly(t_ns, values)
+
+    def step_slowly(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample by the way of every monitor."""
+        self._see()
+        try:
+            t = operator.index(t_ns)
+        except TypeError:
+            raise TraceError(
+                f"time {t_ns!r} is no whole number of nanoseconds: step() takes seconds"
+            ) from None
+        decided = super().step_ns(t, values)
+        self._unit.news = False
+        self._floor = self._unit.after
+        return decided
+
+    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
+        """See `Monitor.advance_ns`."""
+        self._see()
+        decided = super().advance_ns(t_ns)
+        unit = self._unit
+        unit.news = False
+        if self._reached is not None:
+            unit.after = self._floor = max(unit.after, self._reached - 1)
+        return decided
+
+    def finish_ns(self, t_ns: int | None = None) -> Report:
+        """See `Monitor.finish_ns`."""
+        self._see()
+        report = super().finish_ns(t_ns)
+        self._unit.after = self._floor = LIMIT
+        return report
+
+    @property
+    def next_due(self) -> int | None:
+        """See `Monitor.next_due`."""
+        own = min(self._unit.next_position(), self._unit.next_due())
+        others = super().next_due
+        found = own if others is None else min(own, others)
+        return found if found < INFINITY else None
