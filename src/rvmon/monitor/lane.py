@@ -176,4 +176,5 @@ class Lane:
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt or start one."""
         due = min((judge.next_due for judge in self.judges), default=INFINITY)
-        return min(due, self.flow.next_change, self._awaited)
+        # What changes at an instant is known when that instant has passed.
+        return min(due, self.flow.next_change + 1, self._awaited + 1)
