@@ -1,0 +1,141 @@
+"""What a record says of its verdict."""
+
+import pytest
+
+import rvmon
+
+HEAD = """spec s
+time held
+signal near, slow : bool input
+signal distance : real [m] input stale after 1 s
+event go input
+event released, held_it output
+"""
+
+
+def run(requirement, samples, end=None):
+    """The attempts on a trace whose times are seconds."""
+    spec = rvmon.loads(f"{HEAD}requirement R\n{requirement}\n")
+    monitor = spec.monitor()
+    for t, values in samples:
+        monitor.step(t, values)
+    return spec, monitor.finish(end).attempts
+
+
+CASES = {
+    "a deadline is missed": (
+        "upon go\nthen within 3 s released",
+        [(1, {}), (12.1, {"go": True})],
+        20,
+        "window [12.1 s, 15.1 s] closed, `released` last true: never",
+        "within 3 s released",
+        (12_100_000_000, 15_100_000_000),
+    ),
+    "it was true before": (
+        "upon go\nthen within 3 s released",
+        [(1, {"released": True}), (12, {"go": True})],
+        20,
+        "window [12 s, 15 s] closed, `released` last true: 1 s",
+        "within 3 s released",
+        (12_000_000_000, 15_000_000_000),
+    ),
+    "what must not happen happens": (
+        "upon go\nthen for 2 s not released",
+        [(4, {"go": True}), (4.75, {"released": True})],
+        None,
+        "`released` 0.75 s into never-for-2 s",
+        "for 2 s not released",
+        (4_000_000_000, 6_000_000_000),
+    ),
+    "what must stay ends": (
+        "upon go\nthen for 2 s near",
+        [(4, {"go": True, "near": True}), (5, {"near": False})],
+        None,
+        "`near` false 1 s into for-2 s",
+        "for 2 s near",
+        (4_000_000_000, 6_000_000_000),
+    ),
+    "an invariant is broken": (
+        "always (near -> slow)",
+        [(0, {"near": False, "slow": False}), (3, {"near": True})],
+        None,
+        "`slow` false at 3 s",
+        "slow",
+        (3_000_000_000, None),
+    ),
+    "until is cut off": (
+        "upon go\nthen near until released",
+        [(0, {"near": True, "go": True}), (2, {"near": False})],
+        None,
+        "`near` false at 2 s, before `released`",
+        "near until released",
+        (0, None),
+    ),
+    "an instant is wrong": (
+        "upon go\nthen immediately slow",
+        [(2, {"slow": False, "go": True})],
+        None,
+        "`slow` false at 2 s",
+        "slow",
+        (2_000_000_000, 2_000_000_000),
+    ),
+    "the inner obligation is to blame": (
+        "upon go\nthen (within 2 s released) and always (near -> within 1 s slow)",
+        [(0, {"go": True, "released": True, "slow": False}), (4, {"near": True})],
+        9,
+        "window [4 s, 5 s] closed, `slow` last true: never",
+        "within 1 s slow",
+        (4_000_000_000, 5_000_000_000),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_failure_names_obligation_window_and_place(name):
+    """The reason is one sentence, and the blame points into the text of the spec."""
+    requirement, samples, end, reason, blamed, window = CASES[name]
+    spec, attempts = run(requirement, samples, end)
+    [failed] = [a for a in attempts if a.verdict == "F"]
+    assert failed.reason == reason
+    assert failed.blame.window == window
+    text = spec.checked.source.text[failed.blame.start : failed.blame.end]
+    assert text == failed.blame.subformula == blamed
+
+
+def test_the_blamed_sample_is_the_one_that_changed_the_value():
+    """A value that has been wrong for long is blamed on the sample that made it so."""
+    _, [failed] = run(
+        "upon go\nthen for 2 s not near", [(1, {"near": True}), (5, {"go": True})], None
+    )
+    assert failed.blame.at == (10**9,)
+
+
+def test_propositions_are_shown_at_trigger_and_decision():
+    """A record carries the values of what the requirement reads, unknown ones as None."""
+    _, [failed] = run("upon go\nthen within 1 s (released and near)", [(0, {"go": True})], 5)
+    assert failed.at_trigger == {"go": True, "released": False, "near": None}
+    assert failed.at_decision == {"go": False, "released": False, "near": None}
+
+
+def test_an_undecided_attempt_says_what_is_owed_and_till_when():
+    """An I names the obligation and its deadline."""
+    _, [left] = run("upon go\nthen within 3 s released", [(1, {"go": True})], 2)
+    assert left.reason == "still owed: `within 3 s released` by 4 s, until 4 s"
+    assert left.deadline == 4 * 10**9
+
+
+def test_an_attempt_that_the_input_left_open_says_which_input():
+    """An I that is due to unknown input names it and the instant."""
+    _, [left] = run(
+        "upon go\nthen immediately distance > 5 cm", [(0, {"distance": 1.0}), (2, {"go": True})]
+    )
+    assert "`distance > 0.05 m` unknown at 2 s" in left.reason
+
+
+def test_captured_values_are_recorded():
+    """`let` shows in the record."""
+    _, [attempt] = run(
+        "upon go\nthen within 3 s distance > d\nlet d = distance",
+        [(0, {"go": True, "distance": 0.5}), (1, {"distance": 0.7})],
+    )
+    assert (attempt.captured, attempt.verdict.value) == ({"d": 0.5}, "P")
