@@ -45,6 +45,7 @@ def explore(
         else:
             for old in nodes:
                 if covers(site, zone, old.zone):
+                    node.covered = True
                     return True
             for old in nodes:
                 old.covered = covers(site, old.zone, zone)

@@ -31,6 +31,7 @@ RULES = {
     "TA020": "query-not-supported",
     "TA021": "no-automaton",
     "TA022": "unreadable-file",
+    "TA023": "no-unit",
 }
 """Name of each code."""
 

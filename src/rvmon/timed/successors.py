@@ -28,6 +28,7 @@ class Space:
         extra: what a query compares clocks with, at any location.
         observers: number of clocks of queries, counted behind those of the network.
         uppers: upper bounds of those, as `zones.is_simulated` takes them.
+        lowers: their lower bounds, likewise.
     """
 
     def __init__(
@@ -36,11 +37,12 @@ class Space:
         extra: ClockBounds | None = None,
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
+        lowers: Sequence[tuple[int, float]] = (),
     ) -> None:
         self.network = network
         self.dim = 1 + len(network.clocks) + observers
         self._extra = extra or no_bounds(len(network.clocks))
-        self._uppers = tuple(uppers)
+        self._uppers, self._lowers = tuple(uppers), tuple(lowers)
         self._vectors: dict[tuple[int, ...], Vector] = {}
         self._states: dict[tuple[tuple[int, ...], tuple[int, ...]], State] = {}
         self._edges: list[list[list[CompiledEdge]]] = []
@@ -143,7 +145,11 @@ class Space:
                 *((c + 1, -u) for c, u in enumerate(bounds.upper) if u > -inf),
                 *self._uppers,
             ),
-            ((0, 0.0), *((c + 1, low) for c, low in enumerate(bounds.lower) if low > -inf)),
+            (
+                (0, 0.0),
+                *((c + 1, low) for c, low in enumerate(bounds.lower) if low > -inf),
+                *self._lowers,
+            ),
         )
         self._vectors[locations] = vector
         return vector

@@ -19,6 +19,7 @@ class Steps:
         formula: normalised; what it compares clocks with counts everywhere.
         observers: number of further clocks.
         uppers: upper bounds of those, as `zones.is_simulated` takes them.
+        lowers: their lower bounds, likewise.
     """
 
     def __init__(
@@ -27,8 +28,10 @@ class Steps:
         formula: Expression,
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
+        lowers: Sequence[tuple[int, float]] = (),
     ) -> None:
-        self.space = Space(network, formula_bounds(formula, network), observers, uppers)
+        bounds = formula_bounds(formula, network)
+        self.space = Space(network, bounds, observers, uppers, lowers)
         self.dim = self.space.dim
         # Without strict bounds no zone ever needs to be tidied.
         self._strict = has_strict_bounds(network, formula)

@@ -30,7 +30,7 @@ def items_of(network, run, criterion):
 @pytest.mark.parametrize("criterion", list(Criterion))
 @pytest.mark.parametrize("model", ["fischer", "train_gate", "bridge"])
 def test_what_is_said_to_be_covered_is(model, criterion):
-    """The runs of a suite contain all of its items, and with the missing ones that is everything."""
+    """The runs of a suite contain all of its items; with the missing ones that is everything."""
     constants = {} if model == "bridge" else {"N": 2}
     network = load_network(MODELS / f"{model}.ta", constants=constants)
     suite = build_suite(network, criterion)
