@@ -290,4 +290,7 @@ class GeneratedMonitor(Monitor):
         own = min(self._unit.next_position(), self._unit.next_due())
         others = super().next_due
         found = own if others is None else min(own, others)
-        return found if found < INFINITY else None
+        self._see()
+        if found >= INFINITY or self._reached is None or self._report is not None:
+            return None
+        return max(found, self._reached + 1)
