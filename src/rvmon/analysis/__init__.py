@@ -1,0 +1,1 @@
+"""What a specification can and cannot do, found out before any run."""

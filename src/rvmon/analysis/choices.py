@@ -1,0 +1,219 @@
+"""What a sample can say: values of the names concerned that the formulas can tell apart."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from itertools import combinations, product
+from typing import TypeVar, assert_never
+
+from rvmon.analysis.solve import Variable, parts_of, turning_values
+from rvmon.dataflow.inputs import Inputs
+from rvmon.dataflow.leaves import captured_names, evaluator, reads
+from rvmon.formula.state import Elapsed, Leaf
+from rvmon.spec.checked import (
+    BoundAtom,
+    CheckedSpec,
+    Compare,
+    Constant,
+    FieldValue,
+    Literal,
+    Numeric,
+    Probe,
+    ProbeAtom,
+    SignalValue,
+    Type,
+    UpdateValue,
+)
+from rvmon.trace.sample import Payload, Scalar, Value
+from rvmon.trace.schema import Kind
+
+MOST_VALUATIONS = 240
+"""Valuations that are kept; those with the fewest or the most departures come first."""
+
+MOST_TRIED = 20 * MOST_VALUATIONS
+MOST_PAYLOADS = 24
+
+
+class Silence(Enum):
+    """Stands for a name that a sample does not speak of."""
+
+    SILENT = "silent"
+
+
+T = TypeVar("T")
+SILENT = Silence.SILENT
+Valuation = Mapping[str, Value | Silence]
+"""Of every name concerned what a sample says of it; of an event `False` if it does not occur."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """The samples to choose from at every instant.
+
+    Attributes:
+        names: signals and events concerned.
+        valuations: those that some formula tells apart, calm ones first.
+        remembered: the names whose updates matter beside their values.
+        complete: whether no combination was left out.
+    """
+
+    names: tuple[str, ...]
+    valuations: tuple[Valuation, ...]
+    remembered: frozenset[str]
+    complete: bool
+
+
+def choices_of(
+    spec: CheckedSpec,
+    leaves: Sequence[Leaf],
+    concerned: Collection[str],
+    captured: Sequence[Numeric] = (),
+) -> Choices:
+    """The samples worth trying.
+
+    Args:
+        spec: declares the names.
+        leaves: what is read of the input.
+        concerned: the names to speak of.
+        captured: the expressions of `let`.
+    """
+    names = tuple(name for name in (*spec.signals, *spec.events) if name in concerned)
+    remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
+    options = _Options(spec, leaves, captured, remembered)
+    seen = _Seen(spec, leaves, remembered)
+    found: dict[tuple[object, ...], Valuation] = {}
+    complete = True
+    for tried, chosen in enumerate(_calm_first([options.of(name) for name in names])):
+        if len(found) >= MOST_VALUATIONS or tried >= MOST_TRIED:
+            complete = False
+            break
+        valuation = dict(zip(names, chosen, strict=True))
+        found.setdefault(seen.key(valuation), valuation)
+    return Choices(names, tuple(found.values()), remembered, complete)
+
+
+def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
+    """Names of which it matters when they were updated."""
+    yield from (name for name, one in spec.signals.items() if one.stale_after is not None)
+    for leaf in leaves:
+        if isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN:
+            yield leaf.name
+        elif isinstance(leaf, Compare):
+            parts = parts_of(leaf.left, leaf.right)
+            yield from (part.name for part in parts if isinstance(part, UpdateValue))
+
+
+class _Options:
+    """What can be said of one name; the calm one comes first."""
+
+    def __init__(
+        self,
+        spec: CheckedSpec,
+        leaves: Sequence[Leaf],
+        captured: Sequence[Numeric],
+        remembered: frozenset[str],
+    ) -> None:
+        self.spec = spec
+        self.leaves = leaves
+        self.remembered = remembered
+        self.compared = [leaf for leaf in leaves if isinstance(leaf, Compare)]
+        # A captured value is compared with what the others are.
+        self.compared += [
+            Compare(leaf.op, numeric, leaf.right) for leaf in self.compared for numeric in captured
+        ]
+
+    def of(self, name: str) -> list[Value | Silence]:
+        """The options of a name."""
+        if name in self.spec.events:
+            return [False, *self._payloads(name)]
+        values: list[Value | Silence] = [
+            *self._scalars(SignalValue(name), self.spec.signals[name].type)
+        ]
+        if ProbeAtom(Probe.KNOWN, name) in self.leaves:
+            values.append(None)
+        return [SILENT, *values] if name in self.remembered else values
+
+    def _payloads(self, event: str) -> list[Value]:
+        fields = self.spec.events[event].fields
+        values = [self._scalars(FieldValue(event, name), fields[name]) for name in fields]
+        made: list[Value] = []
+        for chosen in _calm_first(values):
+            payload: Payload = dict(zip(fields, chosen, strict=True))
+            made.append(payload or True)
+            if len(made) == MOST_PAYLOADS:
+                break
+        return made
+
+    def _scalars(self, variable: Variable, type_: Type) -> Sequence[Scalar]:
+        match type_.kind:
+            case Kind.BOOL:
+                return [False, True]
+            case Kind.LABEL:
+                return self._labels(variable, type_.labels)
+            case Kind.INT | Kind.REAL:
+                return turning_values(variable, self.compared, whole=type_.kind is Kind.INT)
+            case _:
+                assert_never(type_.kind)
+
+    def _labels(self, variable: Variable, labels: Sequence[str]) -> list[str]:
+        """One that is not compared with, and those that are; two signals may be compared."""
+        sides = [
+            (leaf.left, leaf.right) for leaf in self.compared if variable in (leaf.left, leaf.right)
+        ]
+        if any(
+            not isinstance(side, Literal) and side != variable for pair in sides for side in pair
+        ):
+            return list(labels)
+        named = {side.value for pair in sides for side in pair if isinstance(side, Literal)}
+        rest = [label for label in labels if label not in named]
+        return [*rest[:1], *(label for label in labels if label in named)]
+
+
+def _calm_first(options: Sequence[Sequence[T]]) -> Iterator[tuple[T, ...]]:
+    """All combinations: few departures from the first options, then few from all, in turn."""
+    low, high = 0, len(options)
+    while low <= high:
+        yield from _departing(options, low)
+        if high > low:
+            yield from _departing(options, high)
+        low, high = low + 1, high - 1
+
+
+def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, ...]]:
+    """The combinations in which so many are not the first option."""
+    for places in combinations(range(len(options)), count):
+        yield from product(
+            *(own[1:] if place in places else own[:1] for place, own in enumerate(options))
+        )
+
+
+class _Seen:
+    """What the formulas see of a valuation."""
+
+    def __init__(
+        self, spec: CheckedSpec, leaves: Iterable[Leaf], remembered: frozenset[str]
+    ) -> None:
+        self.inputs = Inputs(spec, None)
+        self.plain = []
+        self.raw: set[str] = set(remembered)
+        for leaf in leaves:
+            if isinstance(leaf, BoundAtom | Constant | Elapsed):
+                continue
+            own = reads(leaf).names
+            if captured_names(leaf) or own & remembered or isinstance(leaf, ProbeAtom):
+                self.raw |= own
+            else:
+                self.plain.append(evaluator(leaf, self.inputs, {}, lambda: 0))
+
+    def key(self, valuation: Valuation) -> tuple[object, ...]:
+        """Equal for valuations between which no formula tells."""
+        self.inputs.forget_occurrences()
+        self.inputs.apply(0, {n: v for n, v in valuation.items() if not isinstance(v, Silence)})
+        raw = tuple(_hashable(value) for name, value in valuation.items() if name in self.raw)
+        return (*(evaluate(0) for evaluate in self.plain), *raw)
+
+
+def _hashable(value: Value | Silence) -> object:
+    return tuple(value.items()) if isinstance(value, Mapping) else value

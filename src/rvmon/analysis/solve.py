@@ -1,0 +1,133 @@
+"""Numbers at which comparisons turn: what to feed to see both sides of each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from typing import assert_never
+
+from rvmon.dataflow.inputs import Inputs
+from rvmon.dataflow.numbers import reader
+from rvmon.spec.checked import (
+    Arithmetic,
+    Captured,
+    CheckedSpec,
+    Compare,
+    FieldValue,
+    Literal,
+    Numeric,
+    SignalValue,
+    TimeModel,
+    UpdateValue,
+)
+
+Variable = SignalValue | FieldValue
+
+LARGEST = 1e15
+"""Roots beyond this are taken for artefacts of rounding."""
+
+
+def parts_of(*numerics: Numeric) -> Iterator[Numeric]:
+    """The expressions and all that they are made of."""
+    waiting = list(numerics)
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if isinstance(node, Arithmetic):
+            waiting += node.args
+
+
+def turning_values(
+    variable: Variable, comparisons: Iterable[Compare], *, whole: bool
+) -> list[float]:
+    """Values at, between and beside those at which a comparison turns, greatest first.
+
+    Args:
+        variable: a signal or field; in a comparison with others, they are taken to be 0.
+        comparisons: all those that may read it.
+        whole: whether its values are whole numbers.
+
+    >>> from rvmon.spec.checked import CompareOp
+    >>> limit = Compare(CompareOp.LT, SignalValue("x"), Literal(0.5, "m"))
+    >>> turning_values(SignalValue("x"), [limit], whole=False)
+    [0.6, 0.5, 0.4]
+    """
+    roots = {
+        root for leaf in comparisons if _reads(leaf, variable) for root in _roots(leaf, variable)
+    }
+    if whole:
+        near = {round(root) for root in roots}
+        return sorted({n + d for n in near for d in (-1, 0, 1)} or {0, 1}, reverse=True)
+    ordered = sorted(roots)
+    if not ordered:
+        return [0.0, 1.0]
+    between = [(low + high) / 2 for low, high in pairwise(ordered)]
+    beside = [ordered[0] - _stride(ordered[0]), ordered[-1] + _stride(ordered[-1])]
+    return sorted({_tidy(value) for value in (*ordered, *between, *beside)}, reverse=True)
+
+
+def is_solved(comparison: Compare) -> bool:
+    """Whether `turning_values` of its only variable surely shows all its truths."""
+    match comparison:
+        case Compare(left=SignalValue() | FieldValue(), right=Literal()):
+            return True
+        case Compare(left=Literal(), right=SignalValue() | FieldValue()):
+            return True
+        case _:
+            return False
+
+
+def _stride(value: float) -> float:
+    """A step away from a value that people see: a tenth of it, or more."""
+    return 1.0 if value == 0 else 10.0 ** math.floor(math.log10(abs(value)))
+
+
+def _tidy(value: float) -> float:
+    return float(f"{value:.12g}")
+
+
+def _reads(leaf: Compare, variable: Variable) -> bool:
+    return any(
+        part == variable
+        or (
+            isinstance(part, UpdateValue)
+            and isinstance(variable, SignalValue)
+            and part.name == variable.name
+        )
+        for part in parts_of(leaf.left, leaf.right)
+    )
+
+
+def _roots(leaf: Compare, variable: Variable) -> Iterator[float]:
+    """Where both sides are equal; exact where they are straight on each side of 0."""
+    for first, second in ((1.0, 2.0), (-1.0, -2.0)):
+        one, two = _difference(leaf, variable, first), _difference(leaf, variable, second)
+        if one is None or two is None or one == two:
+            continue
+        root = first - one * (second - first) / (two - one)
+        if math.isfinite(root) and abs(root) < LARGEST:
+            yield _tidy(root)
+
+
+def _difference(leaf: Compare, variable: Variable, value: float) -> float | None:
+    empty = Inputs(CheckedSpec("", "", TimeModel.HELD, {}, {}, {}), None)
+    sides = [reader(_put(side, variable, value), empty, {})({}) for side in (leaf.left, leaf.right)]
+    numbers = [float(side) for side in sides if isinstance(side, int | float)]
+    return numbers[0] - numbers[1] if len(numbers) == 2 else None
+
+
+def _put(numeric: Numeric, variable: Variable, value: float) -> Numeric:
+    """The expression with the variable at a value, and all others at 0."""
+    match numeric:
+        case Literal():
+            return numeric
+        case SignalValue() | FieldValue() | Captured():
+            return Literal(value if numeric == variable else 0.0)
+        case UpdateValue(name=name):
+            same = isinstance(variable, SignalValue) and variable.name == name
+            return Literal(value if same else 0.0)
+        case Arithmetic(op=op, args=args):
+            return Arithmetic(op, tuple(_put(arg, variable, value) for arg in args))
+        case _:
+            assert_never(numeric)

@@ -1,0 +1,125 @@
+"""Short runs, judged by the project's own monitor, with what tells one situation from another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rvmon.automaton.location import PASSED
+from rvmon.automaton.machine import INFINITY, Machine, Token
+from rvmon.automaton.stretch import next_cut
+from rvmon.explain.example import Example
+from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.lane import Lane
+from rvmon.monitor.lanes import Lanes
+from rvmon.monitor.ledger import Ledger
+from rvmon.trace.sample import Sample
+from rvmon.verdict.assemble import report_of
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """A short run, judged.
+
+    Attributes:
+        example: the run as it stands if it ends here.
+        situation: equal for runs that go on alike, as far as the search looks.
+        cut: the next instant after its end at which time alone may change something.
+    """
+
+    example: Example
+    situation: tuple[object, ...]
+    cut: int
+
+
+def play(
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    samples: Sequence[Sample],
+    end: int,
+    remembered: frozenset[str],
+) -> Played:
+    """Judge a short run.
+
+    Args:
+        compiled: the specification.
+        requirements: of it, those that are looked at.
+        samples: at least one.
+        end: the instant at which the run ends, ticks, at or after the last sample.
+        remembered: signals of which the instants of the last updates matter.
+    """
+    ledger = Ledger()
+    lanes = Lanes(compiled.checked, requirements, "auto", None, ledger)
+    for sample in samples:
+        lanes.through(sample.t - 1)
+        lanes.sample(sample.t, sample.values)
+    lanes.through(end)
+    for judge in lanes.judges:
+        judge.pass_to(end)
+    ledger.flush()
+    decided = tuple(sorted({(a.requirement, a.verdict) for a in ledger.attempts}))
+    situation = (decided, *_situation(lanes, end, remembered))
+    cut = min((*_cuts(lanes, end), INFINITY))
+    lanes.finish(end, end)
+    ledger.flush()
+    ids = [one.requirement.id for one in requirements]
+    report = report_of(ids, ledger.attempts, origin=samples[0].t, end=end)
+    example = Example(tuple(samples), end, report.verdicts, report.attempts)
+    return Played(example, situation, cut)
+
+
+def _cuts(lanes: Lanes, end: int) -> Iterator[int]:
+    for lane in lanes.all:
+        yield lane.flow.next_change
+    for judge in lanes.judges:
+        for attempt in judge.attempts:
+            for token in _tokens(attempt.token, attempt.better):
+                yield next_cut(judge.machine, token, end)
+
+
+def _tokens(*tokens: Token | None) -> Iterator[Token]:
+    return (token for token in tokens if token is not None and token[0] > PASSED)
+
+
+def _situation(lanes: Lanes, end: int, remembered: frozenset[str]) -> Iterator[object]:
+    for lane in lanes.all:
+        yield from _lane(lane, end)
+    for judge in lanes.judges:
+        yield tuple(judge.captured.items()) if judge.attempts else ()
+        yield frozenset(
+            (
+                _relative(judge.machine, attempt.token, end),
+                attempt.better and _relative(judge.machine, attempt.better, end),
+            )
+            for attempt in judge.attempts
+        )
+    slots = lanes.main.flow.inputs.slots
+    for name in sorted(remembered):
+        slot = slots[name]
+        yield (slot.value, slot.updates and slot.at - end, slot.before, slot.before_at - slot.at)
+
+
+def _lane(lane: Lane, end: int) -> Iterator[object]:
+    flow = lane.flow
+    yield tuple(flow.values)
+    yield flow.next_change - end
+    yield tuple(
+        flow.since[operand] - end
+        for place in flow.graph.stateful
+        for operand in flow.graph.operands[place]
+    )
+    for starter in lane.starters:
+        if starter.trigger is not None:
+            yield (starter.trigger.before, starter.trigger.known, starter.trigger.running)
+
+
+def _relative(machine: Machine, token: Token, end: int) -> object:
+    """A token with ages in place of instants; ages beyond the last cut are alike."""
+    location, anchors = token
+    if location <= PASSED:
+        return location
+    cuts = machine.cuts(location)
+    ages = (
+        min(end - anchor, own[-1] if own else 0) for anchor, own in zip(anchors, cuts, strict=True)
+    )
+    return (location, *ages)

@@ -1,0 +1,163 @@
+"""The shortest example timelines: best first over samples, instants and values that matter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from itertools import count
+
+from rvmon.analysis.choices import SILENT, Choices, Silence, Valuation, choices_of
+from rvmon.explain.example import Budget, Example, Found
+from rvmon.explain.play import play
+from rvmon.explain.tempo import small_step
+from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.spec.checked import CheckedSpec, TimeModel
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.time import TIME_LIMIT
+from rvmon.verdict.verdict import Verdict
+
+Goal = Callable[[Example], str | None]
+"""What an example shows, or `None` if nothing that is looked for."""
+
+
+def verdict_of(name: str) -> Goal:
+    """The goal of an example for each verdict of a requirement."""
+    return lambda example: example.verdicts[name].value
+
+
+def difference_of(first: str, second: str) -> Goal:
+    """The goal of an example on which two requirements have different verdicts."""
+
+    def differs(example: Example) -> str | None:
+        verdicts = example.verdicts[first], example.verdicts[second]
+        if verdicts[0] is verdicts[1]:
+            return None
+        return "hard" if Verdict.FAIL in verdicts else "soft"
+
+    return differs
+
+
+@dataclass(frozen=True, slots=True)
+class _Node:
+    """A run to be judged: its samples, its end, what is held then, and whether it waits there."""
+
+    samples: tuple[Sample, ...]
+    end: int
+    held: Valuation
+    at_cut: bool = False
+
+
+def shortest_examples(
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    goal: Goal,
+    wanted: Sequence[str],
+    budget: Budget | None = None,
+) -> Found:
+    """Look for the shortest example of each kind.
+
+    All runs are judged by the monitor itself, so that an example shows what it is said to show.
+    They are tried in order of the number of samples, then of their end. A sample takes one of the
+    valuations between which the formulas tell; it follows at a short step, or where a window opens
+    or ends, or a tick before or after that.
+
+    Args:
+        compiled: the specification.
+        requirements: of it, those that are looked at.
+        goal: what a run is an example of.
+        wanted: the kinds of examples; the search ends when all are found.
+        budget: when to give up.
+
+    Cost: about half a millisecond per run.
+    """
+    budget = budget or Budget()
+    search = _Search(compiled.checked, requirements, budget)
+    missing = set(wanted)
+    examples: dict[str, Example] = {}
+    seen: set[tuple[object, ...]] = set()
+    heap: list[tuple[int, int, int, int, _Node]] = []
+    number = count()
+    runs = 0
+
+    def add(node: _Node) -> None:
+        heappush(heap, (len(node.samples), node.end, _stir(node), next(number), node))
+
+    for node in search.first():
+        add(node)
+    while heap and missing and runs < budget.runs:
+        node = heappop(heap)[-1]
+        played = play(compiled, requirements, node.samples, node.end, search.choices.remembered)
+        runs += 1
+        kind = goal(played.example)
+        if kind in missing:
+            missing.discard(kind)
+            examples[kind] = played.example
+        if (played.situation, node.at_cut) in seen:
+            continue
+        seen.add((played.situation, node.at_cut))
+        if all(verdict is Verdict.FAIL for verdict in played.example.verdicts.values()):
+            continue
+        for further in search.after(node, played.cut):
+            add(further)
+    return Found(examples, runs, not heap and search.choices.complete)
+
+
+def _stir(node: _Node) -> int:
+    """How much happens in a run: occurrences, values other than false."""
+    return sum(value is not False for sample in node.samples for value in sample.values.values())
+
+
+class _Search:
+    def __init__(
+        self, spec: CheckedSpec, requirements: Sequence[CompiledRequirement], budget: Budget
+    ) -> None:
+        self.spec = spec
+        self.choices = _choices(spec, requirements)
+        self.gap = spec.period if spec.time is TimeModel.CLOCKED and spec.period else 1
+        self.step = budget.step or small_step(spec, [one.requirement for one in requirements])
+        self.most = budget.samples
+
+    def first(self) -> Iterator[_Node]:
+        """The runs of one sample; signals have a value from the start."""
+        for valuation in self.choices.valuations:
+            if SILENT not in valuation.values():
+                yield _Node((Sample(0, self._said(valuation, {})),), 0, valuation)
+
+    def after(self, node: _Node, cut: int) -> Iterator[_Node]:
+        """The runs that go on from one: by waiting, or by a sample."""
+        end = node.end
+        if len(node.samples) < self.most:
+            t = end + (self.gap if node.at_cut else self.step)
+            for valuation in self.choices.valuations:
+                said = self._said(valuation, node.held)
+                if said:
+                    held = {**node.held, **{n: v for n, v in valuation.items() if v is not SILENT}}
+                    yield _Node((*node.samples, Sample(t, said)), t, held)
+        soon = cut - end <= self.gap and not node.at_cut
+        for t in {end + self.step} if soon else {cut - 1, cut}:
+            if end < t < TIME_LIMIT:
+                yield _Node(node.samples, t, node.held, at_cut=True)
+
+    def _said(self, valuation: Valuation, held: Valuation) -> dict[str, Value]:
+        """What a sample has to say: new values, all updates that matter, occurrences."""
+        said: dict[str, Value] = {}
+        for name, value in valuation.items():
+            if isinstance(value, Silence):
+                continue
+            if name in self.spec.events:
+                if value is not False:
+                    said[name] = value
+            elif name in self.choices.remembered or name not in held or held[name] != value:
+                said[name] = value
+        return said
+
+
+def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> Choices:
+    leaves = {state.leaf: None for one in requirements for state, _ in one.leaves if state.leaf}
+    names = {name for one in requirements for name in one.reads}
+    names |= {
+        one.requirement.for_each.value.event for one in requirements if one.requirement.for_each
+    }
+    captured = [capture.value for one in requirements for capture in one.requirement.captures]
+    return choices_of(spec, list(leaves), names, captured)

@@ -1,0 +1,60 @@
+"""Which durations an example may use without looking odd."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from rvmon.spec.checked import (
+    Binary,
+    CheckedSpec,
+    Formula,
+    Interval,
+    Requirement,
+    TimeModel,
+    Unary,
+)
+from rvmon.trace.time import TICKS_PER_SECOND
+
+
+def intervals_of(formula: Formula) -> Iterator[Interval]:
+    """The intervals of a formula's operators."""
+    waiting = [formula]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, Unary | Binary) and node.interval is not None:
+            yield node.interval
+        match node:
+            case Unary(operand=operand):
+                waiting.append(operand)
+            case Binary(left=left, right=right):
+                waiting += (left, right)
+            case _:
+                pass
+
+
+def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:
+    """A step that is small beside all durations of some requirements, and a round number of ticks.
+
+    Of a spec that is sampled by a clock, a whole number of its periods.
+    """
+    bounds = [
+        bound
+        for requirement in requirements
+        for formula in (requirement.trigger, requirement.consequent)
+        for interval in intervals_of(formula)
+        for bound in (interval.low, interval.high)
+        if bound
+    ]
+    bounds += [one.stale_after for one in spec.signals.values() if one.stale_after]
+    step = _rounded_down(min(bounds, default=2 * TICKS_PER_SECOND) // 2)
+    if spec.time is TimeModel.CLOCKED and spec.period:
+        return max(step // spec.period, 1) * spec.period
+    return step
+
+
+def _rounded_down(ticks: int) -> int:
+    """The greatest of 1, 2, 5, 10, … that is at most this, or 1."""
+    scale = 1
+    while scale * 10 <= ticks:
+        scale *= 10
+    return next((scale * digit for digit in (5, 2) if scale * digit <= ticks), scale)
