@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+import resource
 import time
+from pathlib import Path
 from typing import Any
 
 import rvmon
@@ -79,6 +82,33 @@ class Peer:
         spent = time.process_time_ns() - began
         return {"cpu_ns": spent, "violated": self._violated(failed)}
 
+    def hold_open(self, spec: str, attempts: int, samples: int) -> dict[str, Any]:
+        """Open so many attempts, then pass over samples that decide none.
+
+        Args:
+            spec: reads the event `asked` and the signals `answered` and `other`.
+            attempts: opened one per sample.
+            samples: measured after that.
+
+        Returns:
+            CPU ns of the measured samples, bytes of memory per open attempt.
+        """
+        monitor = rvmon.loads(spec).monitor()
+        monitor.step_ns(0, {"answered": False, "other": False})
+        gc.collect()
+        before = _resident()
+        for t in range(1, attempts + 1):
+            monitor.step_ns(t, {"asked": True})
+        gc.collect()
+        grown = _resident() - before
+        rows = [(attempts + 1 + i, {"other": i % 2 == 0}) for i in range(samples)]
+        step = monitor.step_ns
+        began = time.process_time_ns()
+        for t, row in rows:
+            step(t, row)
+        spent = time.process_time_ns() - began
+        return {"cpu_ns": spent, "bytes": grown / attempts, "open": len(monitor.open)}
+
     def _violated(self, attempts: Any) -> list[int | None]:
         """The row at which the failure was known: the first at or after its decision."""
         firsts: dict[str, int | None] = dict.fromkeys(self._spec.requirements)
@@ -88,3 +118,9 @@ class Peer:
                 row = -(-attempt.decided // self._period)
                 firsts[attempt.requirement] = row if first is None else min(first, row)
         return list(firsts.values())
+
+
+def _resident() -> int:
+    """Bytes of memory in use; Linux only."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * resource.getpagesize()

@@ -1,0 +1,58 @@
+"""Attempts held open: what a sample costs, and a byte count per attempt. No peer keeps attempts."""
+
+from __future__ import annotations
+
+import statistics
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchmarks.peers.client import Peer, PeerError
+
+SPEC = """spec open
+time held
+signal answered, other : bool input
+event asked input
+requirement R1
+  upon asked
+  then within 1 h answered
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenAttempts:
+    """What it costs to keep attempts open.
+
+    Attributes:
+        attempts: so many are open.
+        median: CPU ns per sample that concerns none of them.
+        least: of the repeats.
+        most: of the repeats.
+        size: bytes of memory per attempt, the median.
+    """
+
+    attempts: int
+    median: float
+    least: float
+    most: float
+    size: float
+
+
+def measure_open(
+    repeats: int, counts: Sequence[int] = (1, 10, 100, 1_000, 10_000, 100_000), samples: int = 2_000
+) -> Iterator[OpenAttempts]:
+    """Measure for each count, each time in a new process."""
+    for count in counts:
+        spent: list[float] = []
+        sizes: list[float] = []
+        for _ in range(repeats):
+            with Peer(Path(sys.executable), "rvmon") as peer:
+                answer = peer.ask("hold_open", spec=SPEC, attempts=count, samples=samples)
+            if answer["open"] != count:
+                raise PeerError(f"{answer['open']} attempts are open, not {count}")
+            spent.append(answer["cpu_ns"] / samples)
+            sizes.append(answer["bytes"])
+        yield OpenAttempts(
+            count, statistics.median(spent), min(spent), max(spent), statistics.median(sizes)
+        )
