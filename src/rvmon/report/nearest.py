@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from itertools import islice
 from typing import TypeGuard
 
 from rvmon.report.run_page import JudgedRun
 from rvmon.report.timeline import Ghost
 from rvmon.report.tracks import Track, TrackKind
-from rvmon.report.tracks_of import tracks_of
 from rvmon.report.view import View
-from rvmon.spec.checked import CheckedSpec
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -22,12 +22,21 @@ MOST = 100
 """Passing attempts that are compared, the first ones."""
 
 
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A run in which passing attempts of a requirement are looked for.
+
+    Attributes:
+        run: the run.
+        tracks: of the signals that the requirement concerns.
+    """
+
+    run: JudgedRun
+    tracks: tuple[Track, ...]
+
+
 def nearest_passing(
-    attempt: Attempt,
-    tracks: Sequence[Track],
-    view: View,
-    spec: CheckedSpec,
-    runs: Sequence[JudgedRun],
+    attempt: Attempt, tracks: Sequence[Track], view: View, candidates: Sequence[Candidate]
 ) -> Ghost | None:
     """The passing attempt whose signals differ least from those of a failed one.
 
@@ -39,48 +48,49 @@ def nearest_passing(
         attempt: the failed one.
         tracks: of the signals concerned in its run.
         view: over which to compare.
-        spec: that judged all runs.
-        runs: in which to look.
+        candidates: where to look; the first `MOST` passing attempts are compared.
     """
-    best: tuple[float, Ghost] | None = None
-    for count, (run, passed) in enumerate(_passing(attempt.requirement, runs)):
-        if count == MOST:
-            break
-        ghost = _laid_over(run, passed, attempt, spec)
-        distance = sum(
-            _distance(mine, other, view) for mine, other in zip(tracks, ghost.tracks, strict=True)
-        )
+    best: tuple[float, Candidate, Attempt] | None = None
+    for candidate, passed in islice(_passing(attempt.requirement, candidates), MOST):
+        shift = attempt.triggered - passed.triggered
+        pairs = zip(tracks, candidate.tracks, strict=True)
+        distance = sum(_distance(mine, other, view, shift) for mine, other in pairs)
         if best is None or distance < best[0]:
-            best = (distance, ghost)
-    return None if best is None else best[1]
+            best = (distance, candidate, passed)
+    return None if best is None else _laid_over(best[1], best[2], attempt)
 
 
-def _passing(requirement: str, runs: Sequence[JudgedRun]) -> Iterator[tuple[JudgedRun, Attempt]]:
-    for run in runs:
-        for attempt in run.report.attempts:
+def _passing(
+    requirement: str, candidates: Sequence[Candidate]
+) -> Iterator[tuple[Candidate, Attempt]]:
+    for candidate in candidates:
+        for attempt in candidate.run.report.attempts:
             if attempt.requirement == requirement and attempt.verdict is Verdict.PASS:
-                yield run, attempt
+                yield candidate, attempt
 
 
-def _laid_over(run: JudgedRun, passed: Attempt, failed: Attempt, spec: CheckedSpec) -> Ghost:
+def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Ghost:
     shift = failed.triggered - passed.triggered
-    requirement = spec.requirements[passed.requirement]
-    tracks = tracks_of(spec, requirement, run.samples, run.report.health)
     moved = (
         replace(track, changes=tuple((t + shift, value) for t, value in track.changes))
-        for track in tracks
+        for track in candidate.tracks
     )
-    end = failed.triggered if run.report.end is None else run.report.end + shift
-    decided = None if passed.decided is None else passed.decided + shift
-    return Ghost(run.name, passed.number, tuple(moved), end, decided)
+    end = candidate.run.report.end
+    return Ghost(
+        name=candidate.run.name,
+        number=passed.number,
+        tracks=tuple(moved),
+        end=failed.triggered if end is None else end + shift,
+        decided=None if passed.decided is None else passed.decided + shift,
+    )
 
 
-def _distance(mine: Track, other: Track, view: View) -> float:
-    """How much two tracks differ, from 0 (not at all) to 1."""
+def _distance(mine: Track, other: Track, view: View, shift: int) -> float:
+    """How much two tracks differ, from 0 (not at all) to 1, the other moved by `shift`."""
     if mine.kind is TrackKind.EVENT:
-        return abs(_first(mine, view) - _first(other, view))
+        return abs(_first(mine, view, 0) - _first(other, view, shift))
     instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in range(LOOKS)]
-    pairs = [(mine.value_at(instant), other.value_at(instant)) for instant in instants]
+    pairs = [(mine.value_at(instant), other.value_at(instant - shift)) for instant in instants]
     numbers = [abs(value) for pair in pairs for value in pair if _is_number(value)]
     scale = max(numbers, default=0.0) or 1.0
     differences = (
@@ -90,9 +100,12 @@ def _distance(mine: Track, other: Track, view: View) -> float:
     return sum(differences) / LOOKS
 
 
-def _first(track: Track, view: View) -> float:
-    """Where in the view an event first occurs; behind its end if it does not."""
-    return next((view.fraction(t) for t, _ in track.changes if view.start <= t <= view.end), 1.0)
+def _first(track: Track, view: View, shift: int) -> float:
+    """Where in the view an event first occurs; at its end if it does not."""
+    index = bisect_left(track.changes, view.start - shift, key=lambda change: change[0])
+    if index == len(track.changes):
+        return 1.0
+    return min(view.fraction(track.changes[index][0] + shift), 1.0)
 
 
 def _is_number(value: object) -> TypeGuard[float]:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 from rvmon.report.choose import shown_attempts
-from rvmon.report.nearest import nearest_passing
+from rvmon.report.nearest import Candidate, nearest_passing
 from rvmon.report.panel import Panel
-from rvmon.report.run_page import RunPage
+from rvmon.report.run_page import JudgedRun, RunPage
+from rvmon.report.tracks import Track
 from rvmon.report.tracks_of import tracks_of
 from rvmon.report.view import view_of, whole_run
 from rvmon.verdict.attempt import Attempt
@@ -14,21 +17,34 @@ from rvmon.verdict.verdict import Verdict
 
 def panels_of(content: RunPage) -> list[Panel]:
     """A panel for each attempt that is shown, and for each requirement that was not triggered."""
-    report, spec = content.run.report, content.spec
-    samples = content.run.samples
-    first = samples[0].t if samples else report.origin
-    panels = []
-    for name, attempts in shown_attempts(report).items():
-        tracks = tracks_of(spec, spec.requirements[name], samples, report.health)
-        chosen: list[Attempt | None] = [*attempts] or [None]
-        for attempt in chosen:
-            view = whole_run(report, first) if attempt is None else view_of(attempt, report)
-            ghost = None
-            if attempt is not None and attempt.verdict is Verdict.FAIL:
-                runs = (content.run, *content.others)
-                ghost = nearest_passing(attempt, tracks, view, spec, runs)
-            panels.append(Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost))
-    return panels
+    return [
+        panel
+        for name, attempts in shown_attempts(content.run.report).items()
+        for panel in _of_requirement(content, name, attempts)
+    ]
+
+
+def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) -> Iterator[Panel]:
+    report, samples = content.run.report, content.run.samples
+
+    def tracks_in(run: JudgedRun) -> tuple[Track, ...]:
+        requirement = content.spec.requirements[name]
+        return tracks_of(content.spec, requirement, run.samples, run.report.health)
+
+    tracks = tracks_in(content.run)
+    if not attempts:
+        view = whole_run(report, samples[0].t if samples else report.origin)
+        yield Panel(panel_id(name, None), name, None, view, tracks, None)
+    candidates: list[Candidate] = []
+    if any(attempt.verdict is Verdict.FAIL for attempt in attempts):
+        candidates.append(Candidate(content.run, tracks))
+        candidates.extend(Candidate(other, tracks_in(other)) for other in content.others)
+    for attempt in attempts:
+        view = view_of(attempt, report)
+        ghost = None
+        if attempt.verdict is Verdict.FAIL:
+            ghost = nearest_passing(attempt, tracks, view, candidates)
+        yield Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost)
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:

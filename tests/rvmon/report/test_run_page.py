@@ -1,0 +1,246 @@
+"""The page of a run: what it opens on, what it says, and that it is safe and small."""
+
+import json
+import re
+import subprocess
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import rvmon
+from rvmon.report.run_html import run_page
+from rvmon.report.run_page import JudgedRun, RunPage
+from rvmon.report.run_pages import write_run_pages
+from rvmon.report.scene import Outline, Scene
+from rvmon.trace.time import TICKS_PER_SECOND
+
+SPEC = """
+spec door "A door"
+signal closed : bool   input
+signal gap    : real [m] input
+event  knock  input
+
+requirement D1 "Knocking opens the door"
+  upon knock
+  then within 2 s not closed
+
+requirement D2 "Nobody is squeezed"
+  upon closed
+  then immediately gap >= 5 cm
+
+requirement D3 "The door closes in the end"
+  upon start
+  then eventually closed
+"""
+
+
+def judged(name, samples, spec=None, end=20.0):
+    """A run of `(seconds, values)`, judged."""
+    spec = spec or rvmon.loads(SPEC, name="door.rv")
+    trace = spec.recording(samples)
+    report = spec.evaluate(trace, until=end)
+    return spec, JudgedRun(name, report, tuple(trace))
+
+
+def door(name="monday", answer=None, gap=0.2):
+    """A knock at 5 s, answered after so many seconds or never; the door is closed at 0 s."""
+    samples = [(0.0, {"closed": True, "gap": gap}), (5.0, {"knock": True})]
+    if answer is not None:
+        samples.append((5.0 + answer, {"closed": False}))
+    return judged(name, samples)
+
+
+def content(run=None, **more):
+    """A page about a run."""
+    spec, one = run or door()
+    return RunPage(run=one, spec=spec.checked, command="again --please", **more)
+
+
+class Reader(HTMLParser):
+    """Collects what tests ask about."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.ids, self.texts, self.open = [], [], {}, []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        self.tags.append((tag, attributes))
+        if "id" in attributes:
+            self.ids.append(attributes["id"])
+        if tag in ("h1", "mark", "title", "pre", "code"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if tag in self.open:
+            self.open.remove(tag)
+
+    def handle_data(self, data):
+        for tag in self.open:
+            self.texts.setdefault(tag, []).append(data)
+
+
+def opened(page):
+    """The id of the attempt on which a page opens."""
+    return next(a["data-open"] for tag, a in Reader(page).tags if tag == "main")
+
+
+def test_it_opens_on_the_first_failure_with_one_sentence():
+    """Requirement, run, instant and cause, in the window's title too."""
+    page = run_page(content())
+    assert opened(page) == "D1-1"
+    title = "".join(Reader(page).texts["title"])
+    assert title.startswith("D1 failed, monday, 7 s: ")
+    assert "closed" in title
+
+
+def test_without_failure_it_opens_on_what_was_chosen():
+    """On the chosen requirement, else on the first attempt that is open."""
+    run = judged("t", [(0.0, {"closed": True, "gap": 1.0}), (19.0, {"knock": True})])
+    assert opened(run_page(content(run, focus="D2"))) == "D2-1"
+    assert opened(run_page(content(run))) == "D1-1"
+
+
+def test_a_run_in_which_nothing_happened_has_a_page():
+    """Requirements that were never triggered say so."""
+    spec, run = judged("quiet", [(0.0, {"gap": 1.0})], end=3.0)
+    page = run_page(RunPage(run, spec.checked, "x"))
+    assert "D1 was not triggered, quiet" in page
+    assert "D1" in Reader(page).ids
+
+
+def test_the_failed_part_is_underlined_in_the_spec():
+    """The subformula, in its line, with the line's number."""
+    page = run_page(content())
+    assert "within 2 s not closed" in Reader(page).texts["mark"]
+    assert "".join(Reader(page).texts["pre"]).count("upon knock") == 1
+    assert "  9  " in page
+
+
+def test_the_offending_sample_and_the_threshold_are_marked():
+    """A comparison shows its constant and the value that broke it."""
+    page = run_page(content(door(gap=0.01)))
+    section = page[page.index('<section id="D2-1"') :]
+    section = section[: section.index("</section>")]
+    assert "≥ 0.05 m" in section
+    assert section.count('class="sample"') == 1
+
+
+def test_the_nearest_passing_attempt_is_the_ghost():
+    """Of all that pass, the one that differs least."""
+    far, near = door("far", answer=0.1), door("near", answer=1.9)
+    page = run_page(content(others=[far[1], near[1]]))
+    assert "nearest passing attempt: near, attempt 1" in page
+    assert "ghost" in page
+
+
+def test_names_and_texts_cannot_become_markup():
+    """Whatever a spec, a trace or a command says is text, also for the script."""
+    evil = "</script><script>alert(1)</script><img src=x onerror=alert(1)>"
+    spec = rvmon.loads(SPEC.replace("Knocking opens the door", evil.replace('"', "")), name=evil)
+    _, run = judged(evil, [(0.0, {"closed": True, "gap": 1.0}), (5.0, {"knock": True})], spec)
+    page = run_page(RunPage(run, spec.checked, evil, facts=((evil, evil),)))
+    reader = Reader(page)
+    assert "img" not in {tag for tag, _ in reader.tags}
+    assert sum(tag == "script" for tag, _ in reader.tags) == 2
+    assert not any(name.startswith("on") for _, attributes in reader.tags for name in attributes)
+
+
+def test_a_page_needs_nothing_but_itself():
+    """No address leads out of the page's folder."""
+    page = run_page(content(back="../report.html"))
+    addresses = [a[k] for _, a in Reader(page).tags for k in ("href", "src") if k in a]
+    assert all(one.startswith("#") or one == "../report.html" for one in addresses)
+    assert not re.search(r"https?://|url\(|@import", page)
+
+
+def test_a_long_run_makes_a_small_page():
+    """Fifty thousand samples and hundreds of attempts stay below 200 KB."""
+    samples = [
+        (i / 100, {"gap": (i * 7919 % 1000) / 1000, "closed": i % 200 < 100}) for i in range(50_000)
+    ]
+    spec, run = judged("long", samples, end=500.0)
+    page = run_page(RunPage(run, spec.checked, "x"))
+    assert len(run.report.attempts) > 200
+    assert "more</p>" in page
+    assert len(page) < 200_000
+
+
+def scene():
+    """A body that moves a metre in a second."""
+    frames = tuple((i * TICKS_PER_SECOND // 10, (i / 10, 0.5, 0.1)) for i in range(11))
+    return Scene(("cart",), (Outline("cart", ((0.0, 0.0),), 0.1, "piece"),), frames, (0, 0, 2, 1))
+
+
+def test_the_scene_stands_where_the_cursor_is():
+    """Without a script the drawing shows the instant of the decision."""
+    page = run_page(content(scene=scene()))
+    group = next(a for tag, a in Reader(page).tags if tag == "g")
+    assert group["transform"].startswith("translate(1000 -500)")
+    data = json.loads(re.search(r'id="run">(.*?)</script>', page, re.S)[1])
+    assert sum(data["scene"]["values"][0]) == 1000
+    assert len(data["scene"]["times"]) == 11
+
+
+def test_several_recordings_get_a_list(tmp_path):
+    """A page each, under names that do not clash, and an index of them."""
+    spec = rvmon.loads(SPEC)
+    runs = {
+        f"{folder}/{name}.csv": door(answer=answer)[1]
+        for folder, name, answer in (("a", "x", 1.0), ("b", "x", None), ("c", "index", 0.5))
+    }
+    reports = [replace(run.report, trace=name) for name, run in runs.items()]
+    written = write_run_pages(
+        tmp_path,
+        spec.checked,
+        reports,
+        lambda name: runs[name].samples,
+        lambda name: f"judge {name}",
+    )
+    assert len({path.name for path in written}) == 4
+    index = (tmp_path / "index.html").read_text()
+    links = [a["href"] for tag, a in Reader(index).tags if tag == "a"]
+    assert all((tmp_path / link).exists() for link in links)
+    assert len(links) == 3
+    assert "F ✗" in index
+
+
+def dom(chromium, path, address=""):
+    """The page after its script ran, as a browser sees it."""
+    return subprocess.run(  # noqa: S603
+        [
+            chromium,
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--virtual-time-budget=1000",
+            "--enable-logging=stderr",
+            "--dump-dom",
+            f"file://{path}{address}",
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+
+
+def test_the_script_runs_in_a_browser(chromium, tmp_path):
+    """One attempt is open, an address opens another, the cursor reads values, nothing is logged."""
+    path = tmp_path / "run.html"
+    path.write_text(run_page(content(scene=scene())), encoding="utf-8")
+    first = dom(chromium, path)
+    assert "CONSOLE" not in first.stderr
+    assert shown_sections(first.stdout) == ["D1-1"]
+    assert ">7 s, trigger + 2 s<" in first.stdout
+    assert re.search(r'data-track="closed">true<', first.stdout)
+    assert 'transform="translate(1000 -500)' in first.stdout
+    other = dom(chromium, path, "#D2")
+    assert shown_sections(other.stdout) == ["D2-1"]
+
+
+def shown_sections(html):
+    """Ids of the sections that are open."""
+    return [
+        a["id"] for tag, a in Reader(html).tags if tag == "section" and a.get("class") == "open"
+    ]

@@ -1,0 +1,166 @@
+"""What timelines show of signals and events."""
+
+from itertools import pairwise
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rvmon
+from rvmon.report.concerned import blamed_names, concerned_names, thresholds
+from rvmon.report.marks import PLACES, occurrences, polylines, readable, stretches
+from rvmon.report.tracks import Threshold, Track, TrackKind
+from rvmon.report.tracks_of import tracks_of
+from rvmon.report.view import View, round_instants, view_of
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Sample
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt, Blame
+from rvmon.verdict.verdict import Verdict
+
+SECOND = 1_000_000_000
+SPEC = rvmon.loads("""
+spec arm
+signal ok, other : bool input
+signal gap : real [m] input stale after 200 ms
+signal mode : {idle, moving} output
+event go input
+event pick(id: int) output
+requirement R1
+  upon go and mode == moving
+  then within 2 s (gap >= 5 cm and 1 m > gap and pick.id == 3)
+requirement R2
+  upon ok
+  then for 1 s not other
+""").checked
+R1, R2 = SPEC.requirements.values()
+
+
+def track(name, samples, requirement=R1, health=()):
+    """The track of one name."""
+    tracks = tracks_of(SPEC, requirement, samples, health)
+    return next(one for one in tracks if one.name == name)
+
+
+def test_only_names_concerned_have_tracks():
+    """A requirement's own signals and events, those of the trigger first."""
+    assert concerned_names(R1) == ("go", "mode", "gap", "pick")
+    assert concerned_names(R2) == ("ok", "other")
+
+
+def test_thresholds_are_read_from_either_side():
+    """A constant left of the comparison turns it around; units are the signal's."""
+    assert thresholds(R1, "gap") == (Threshold(">=", 0.05), Threshold("<", 1.0))
+    assert thresholds(R1, "mode") == ()
+
+
+def test_unknown_is_shown_as_unknown():
+    """None, NaN and staleness are gaps; a value that comes in time is none."""
+    samples = [
+        Sample(0, {"gap": 1.0}),
+        Sample(100_000_000, {"gap": 1.0}),
+        Sample(1 * SECOND, {"gap": float("nan")}),
+        Sample(2 * SECOND, {"gap": 2.0}),
+        Sample(2 * SECOND + 200_000_001, {"gap": None}),
+    ]
+    assert track("gap", samples).changes == (
+        (0, 1.0),
+        (300_000_001, None),
+        (2 * SECOND, 2.0),
+        (2 * SECOND + 200_000_001, None),
+    )
+
+
+def test_events_and_labels():
+    """Payloads are occurrences, False is none, None may be one; labels keep their words."""
+    samples = [
+        Sample(0, {"mode": "idle", "pick": {"id": 3}}),
+        Sample(1, {"pick": False}),
+        Sample(2, {"pick": None, "mode": "moving"}),
+    ]
+    assert track("pick", samples).changes == ((0, True), (2, None))
+    assert track("mode", samples).kind is TrackKind.LABEL
+    assert track("mode", samples).value_at(1) == "idle"
+
+
+def test_an_event_without_source_is_absent():
+    """What has no source is not drawn as if it never happened."""
+    health = [Health(HealthKind.ABSENT, "go")]
+    assert track("go", [], health=health).absent
+    assert not track("pick", [], health=health).absent
+
+
+def test_blame_names_only_what_failed():
+    """The samples to blame are those of the failed subformula."""
+    text = R1.span.source.text
+    start = text.index("gap >= 5 cm")
+    blame = Blame("gap >= 5 cm", start, start + 11, (0, 1))
+    assert blamed_names(R1, blame) == {"gap"}
+    assert blamed_names(R1, Blame("?", 0, 0, (0, 1))) == {"gap", "pick"}
+
+
+def test_the_view_holds_the_whole_attempt():
+    """Trigger, window, deadline and decision are all in sight, with room around."""
+    blame = Blame("x", 0, 1, (2 * SECOND, 9 * SECOND), (1 * SECOND,))
+    attempt = Attempt(
+        "R1", 1, 3 * SECOND, 7 * SECOND, Verdict.FAIL, deadline=12 * SECOND, blame=blame
+    )
+    view = view_of(attempt, report_of(["R1"], [attempt], end=60 * SECOND))
+    assert view.start < 1 * SECOND
+    assert view.end > 12 * SECOND
+
+
+@given(st.integers(-(10**18), 10**18), st.integers(1, 10**15), st.integers(-(10**18), 10**18))
+def test_an_axis_has_a_few_round_instants(start, length, origin):
+    """About as many labels as asked for, evenly spaced, all in view."""
+    view = View(start, start + length)
+    instants = round_instants(view, origin)
+    assert 1 <= len(instants) <= 8 or length < 6
+    assert all(view.start <= one <= view.end for one in instants)
+    steps = {b - a for a, b in pairwise(instants)}
+    assert len(steps) <= 1
+    assert all((one - origin) % step == 0 for one in instants for step in steps)
+
+
+@given(st.lists(st.tuples(st.integers(1, 10**6), st.integers(-50, 50)), max_size=3000))
+def test_dense_numbers_keep_their_peaks(steps):
+    """However many samples there are, the drawing is bounded and shows both extremes."""
+    times, t = [], 0
+    for gap, _ in steps:
+        t += gap
+        times.append(t)
+    known = ((t, float(value)) for t, (_, value) in zip(times, steps, strict=True))
+    changes = ((0, 0.0), *known)
+    end = (times[-1] if times else 0) + 10
+    view = View(0, end)
+    pieces = stretches(Track("x", TrackKind.NUMBER, changes), view, end)
+    (line,) = polylines(pieces, -60.0, 60.0)
+    assert len(line) <= 4 * PLACES + 4
+    values = [piece.value for piece in pieces]
+    heights = [60 - 120 * y for _, y in line]
+    assert abs(max(heights) - max(values)) < 1e-6
+    assert abs(min(heights) - min(values)) < 1e-6
+    assert line == sorted(line, key=lambda point: point[0])
+
+
+def test_a_fast_switch_is_busy_not_lost():
+    """Ten thousand toggles become one busy stretch, and what is wide stays as it is."""
+    changes = tuple((t, bool(t % 2)) for t in range(10_000))
+    view = View(0, 20_000)
+    drawn = readable(stretches(Track("x", TrackKind.SWITCH, changes), view, 20_000))
+    assert [piece.busy for piece in drawn] == [True, False]
+    assert drawn[0].right == drawn[1].left
+
+
+def test_many_events_keep_their_places():
+    """Of a million occurrences one is left per place, over the whole width."""
+    events = Track("x", TrackKind.EVENT, tuple((t, True) for t in range(100_000)))
+    shown = [place for place, _ in occurrences(events, View(0, 99_999))]
+    assert len(shown) <= PLACES + 1
+    assert min(shown) < 0.01
+    assert max(shown) == 1
+
+
+def test_nothing_is_drawn_behind_the_end_of_the_run():
+    """A value does not go on when the run is over."""
+    pieces = stretches(Track("x", TrackKind.SWITCH, ((0, True),)), View(0, 100), 40)
+    assert [(piece.left, piece.right) for piece in pieces] == [(0, 0.4)]
