@@ -1,0 +1,126 @@
+"""Automata: how large they get, and that they do the work they should."""
+
+import pytest
+
+from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
+from rvmon.automaton.machine import INFINITY
+from rvmon.automaton.progression import Progression
+from rvmon.automaton.stretch import run
+from rvmon.automaton.table import TableMachine
+from rvmon.formula.alphabet import alphabet_of
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import lower
+from rvmon.spec.checked import SignalAtom
+from rvmon.testing.build import always, eventually, no, p, q, r, requirement, two
+
+SECOND = 10**9
+
+
+def core(formula, **more):
+    factory = Factory()
+    owed = lower(requirement(formula, **more), factory).owed
+    return factory.next(owed), alphabet_of(owed)
+
+
+def build(formula, budget=None, **more):
+    return construct(*core(formula, **more), budget or Budget())
+
+
+SIZES = {
+    "response": (eventually(p, 0, 3 * SECOND), None, 4, 1, 2),
+    "absence": (always(no(p), 0, 2 * SECOND), None, 4, 1, 2),
+    "invariant": (p, q, 4, 0, 4),
+    "response everywhere": (two(p, "->", eventually(q, 0, 5)), None, 4, 1, 4),
+    "hold after rise": (two(p, "->", always(r, 0, 3 * SECOND)), q, 6, 1, 7),
+}
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_usual_requirements_stay_small(name):
+    """The shapes that people write need a handful of locations and at most one clock."""
+    formula, whenever, locations, clocks, classes = SIZES[name]
+    automaton = build(formula, **({"whenever": whenever} if whenever else {}))
+    assert len(automaton.locations) <= locations
+    assert automaton.clocks == clocks
+    assert automaton.classes <= classes
+
+
+def test_many_propositions_do_not_make_many_classes():
+    """Twelve propositions that matter one by one collapse to few classes of letters."""
+    names = [SignalAtom(f"s{number}") for number in range(12)]
+    formula = eventually(names[0], 0, 9)
+    for name in names[1:]:
+        formula = two(formula, "or", eventually(name, 0, 9))
+    automaton = build(formula)
+    assert automaton.alphabet.size == 2**12
+    assert automaton.classes == 2
+
+
+def test_respawned_windows_do_not_close():
+    """A window above zero that is opened again and again outgrows the budget, which is said."""
+    with pytest.raises(DoesNotCloseError, match="more than"):
+        build(always(two(p, "->", eventually(q, 20, 50))))
+
+
+def test_construction_is_deterministic():
+    """The same formula gives the same tables."""
+    formula = two(eventually(p, 0, 5), "and", always(two(q, "->", eventually(r, 0, 3))))
+    first, second = build(formula), build(formula)
+    assert (first.edges, first.class_of, first.targets) == (
+        second.edges,
+        second.class_of,
+        second.targets,
+    )
+
+
+class Counted:
+    """A machine that counts its steps."""
+
+    def __init__(self, machine):
+        self.machine = machine
+        self.start = machine.start
+        self.steps = 0
+
+    def step(self, token, t, letter):
+        self.steps += 1
+        return self.machine.step(token, t, letter)
+
+    def cuts(self, location):
+        return self.machine.cuts(location)
+
+    def time_value(self, token, t):
+        return self.machine.time_value(token, t)
+
+    def residual(self, location):
+        return self.machine.residual(location)
+
+
+@pytest.mark.parametrize("scale", [1, 10**6])
+@pytest.mark.parametrize("kind", ["table", "progression"])
+def test_held_time_is_jumped_over(kind, scale):
+    """The number of steps in a stretch does not depend on the length of a tick's worth."""
+    owed, alphabet = core(always(two(p, "->", always(q, 0, 30 * scale))))
+    machine = (
+        TableMachine(construct(owed, alphabet, Budget()))
+        if kind == "table"
+        else Progression(owed, alphabet)
+    )
+    counted = Counted(machine)
+    holds = alphabet.size - 1
+    token, due = counted.start, 0
+    for letter, length in ((holds, 100), (holds - 1, 10), (holds, 50)):
+        token, due = run(counted, token, letter, due, due + length * scale - 1, 1)
+        due = min(due, 10**18)
+    assert counted.steps <= 12
+
+
+def test_a_stretch_is_due_when_a_kept_clock_crosses():
+    """A pending deadline makes the stretch due one tick after it, a settled loop never."""
+    owed, alphabet = core(eventually(p, 0, 30))
+    machine = TableMachine(construct(owed, alphabet, Budget()))
+    _, due = run(machine, machine.start, 0, 10, 20, 1)
+    assert due == 41
+    owed, alphabet = core(always(p))
+    machine = TableMachine(construct(owed, alphabet, Budget()))
+    _, due = run(machine, machine.start, 1, 10, 20, 1)
+    assert due == INFINITY
