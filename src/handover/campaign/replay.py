@@ -29,7 +29,9 @@ def run_replay(arguments: argparse.Namespace) -> int:
     if arguments.out:
         words = ["handover", "replay", arguments.test]
         command = shlex.join([*words, "--legacy"] if arguments.legacy else words)
-        _write(Path(arguments.out), run, report, spec, command)
+        # The file is named after the test's file: what it says inside is no path.
+        target = Path(arguments.out) / Path(arguments.test).stem
+        _write(target, run, report, spec, command)
     return int(Verdict.FAIL in report.verdicts.values())
 
 
@@ -48,13 +50,13 @@ def play_again(
     return run, replace(checker.finish(run.end_ns), trace=test.name)
 
 
-def _write(folder: Path, run: Run, report: Report, spec: Spec, command: str) -> None:
+def _write(target: Path, run: Run, report: Report, spec: Spec, command: str) -> None:
     """Write the page, and the bus messages as JSON lines, which `rvmon run` reads."""
-    folder.mkdir(parents=True, exist_ok=True)
+    target.parent.mkdir(parents=True, exist_ok=True)
     page = simulated_page(run, report, spec, command=command)
     lines = [json.dumps({"t_ns": t_ns, **values}) + "\n" for t_ns, values in run.samples]
-    (folder / f"{run.test.name}.html").write_text(page, encoding="utf-8")
-    (folder / f"{run.test.name}.jsonl").write_text("".join(lines), encoding="utf-8")
+    target.with_name(f"{target.name}.html").write_text(page, encoding="utf-8")
+    target.with_name(f"{target.name}.jsonl").write_text("".join(lines), encoding="utf-8")
 
 
 def _show(form: str, spec: Spec, run: Run, report: Report) -> None:

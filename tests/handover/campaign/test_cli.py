@@ -1,0 +1,153 @@
+"""The command `handover` as a person uses it."""
+
+import csv
+import io
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from handover.campaign.execute import INTERRUPTED
+from handover.cli import main
+from handover.generator.files import load, save
+
+ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory):
+    """The files of a small demo."""
+    folder = tmp_path_factory.mktemp("demo")
+    assert main(["demo", "--tests", "3", "--jobs", "1", "--out", str(folder)]) == 0
+    return folder
+
+
+def test_the_demo_leaves_all_its_files(demo):
+    """Tables in four forms, coverage, pages, and every test."""
+    names = {path.name for path in demo.iterdir()}
+    tables = {f"table.{ending}" for ending in ("txt", "csv", "tex", "json")}
+    assert names == {*tables, "coverage.json", "report.html", "tests", "runs"}
+    assert "constrained-002" in {path.stem for path in (demo / "tests").iterdir()}
+
+
+def test_all_forms_of_the_table_agree(demo):
+    """CSV and JSON have the same counts, of both robots and of the paper."""
+    content = json.loads((demo / "table.json").read_text())
+    rows = list(csv.DictReader(io.StringIO((demo / "table.csv").read_text())))
+    assert {row["robot"] for row in rows} >= {"legacy", "correct", "paper"}
+    sources = {**content["robots"], "paper": content["paper"]}
+    for row in rows:
+        if row["robot"] in sources:
+            strategy = sources[row["robot"]]["strategies"][row["strategy"]]
+            counts = strategy["requirements"][row["requirement"]]
+            assert counts == {name: int(row[name]) for name in counts}
+    assert content["model_checking"] == {"R1": True, "R2": True, "R3": True, "R4": True, "R5": None}
+
+
+def test_all_links_of_the_pages_lead_somewhere(demo):
+    """Every address in the report and in its runs is a file of the demo."""
+    for page in (demo / "report.html", *(demo / "runs").iterdir()):
+        for address in re.findall(r'href="([^"#]+)', page.read_text()):
+            assert (page.parent / address).exists(), (page.name, address)
+
+
+def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
+    """One test alone, by the file that the campaign wrote; its recording is judged the same."""
+    known = json.loads((demo / "table.json").read_text())["robots"]["correct"]["known_answers"]
+    name = "mutant-releases-late"
+    file = str(demo / "tests" / f"{name}.json")
+    assert main(["replay", file, "--format", "json", "--out", str(tmp_path)]) == 1
+    report = json.loads(capsys.readouterr().out)
+    verdicts = {one: entry["verdict"] for one, entry in report["requirements"].items()}
+    assert verdicts == known[name]["verdicts"]
+    assert "R1 failed" in (tmp_path / f"{name}.html").read_text()
+
+    from rvmon.cli import main as rvmon
+
+    assert rvmon(["run", "specs/handover.rv", str(tmp_path / f"{name}.jsonl")]) == 1
+    assert "R1   F" in capsys.readouterr().out
+
+
+def test_exit_codes_of_a_campaign(capsys):
+    """0 when it completed, 1 with --strict if a requirement was never triggered."""
+    few = ["run", "--tests", "2", "--jobs", "1", "--format", "json"]
+    assert main(few) == 0
+    assert json.loads(capsys.readouterr().out)["robots"]["correct"]["strategies"]
+    assert main([*few, "--strict"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("{", "not JSON"),
+        ('{"name": "x"}', "not an abstract test"),
+        (
+            f'{{"name":"x","strategy":"directed","seed":1,"actions":{ACTIONS},"mutation":"no"}}',
+            "no",
+        ),
+        ("\udcff\udcfe", "x.json"),
+        (None, "x.json"),
+    ],
+)
+def test_a_bad_test_is_told_in_one_message(tmp_path, capsys, content, told):
+    """Exit 2, with the file's name, without a traceback."""
+    path = tmp_path / "x.json"
+    if content is not None:
+        path.write_bytes(content.encode("utf-8", "surrogateescape"))
+    assert main(["replay", str(path)]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "Traceback" not in error
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["run", "--strategy", "lucky"], "no strategy `lucky`"),
+        (["run", "--strategy", ","], "names none"),
+        (["run", "--spec", "gone.rv"], "gone.rv"),
+        (["run", "--tests", "0"], "at least 1"),
+        (["run", "--tests", "many"], "at least 1"),
+        (["fly"], "invalid choice"),
+    ],
+)
+def test_wrong_use_is_told(capsys, words, told):
+    """Exit 2 and the reason, before anything is played."""
+    assert main(words) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_name_cannot_leave_the_folder(tmp_path, capsys):
+    """A test's name from a file is no path."""
+    test = load("src/handover/generator/directed/released.json")
+    path = save(test, tmp_path)
+    path.write_text(path.read_text().replace('"released"', '"../../evil"'))
+    main(["replay", str(path), "--out", str(tmp_path / "out")])
+    assert not list(tmp_path.parent.glob("evil*"))
+    assert not list(tmp_path.glob("evil*"))
+
+
+def test_ctrl_c_keeps_what_is_finished(tmp_path):
+    """Exit 130; the table says how many of the planned tests it counts, and it counts them all."""
+    words = ["run", "--tests", "4000", "--strategy", "pseudorandom", "--jobs", "2"]
+    process = subprocess.Popen(  # noqa: S603
+        [sys.executable, "-m", "handover.cli", *words, "--out", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(4)
+    process.send_signal(signal.SIGINT)
+    shown, told = process.communicate(timeout=60)
+    assert process.returncode == 130, told
+    assert "Traceback" not in told
+    content = json.loads((tmp_path / "table.json").read_text())
+    partial = content["partial"]
+    assert partial["why"] == INTERRUPTED
+    assert 0 <= partial["finished"] < partial["planned"] == 4000
+    assert "PARTIAL" in shown or partial["finished"] == 0
+    assert len(list((tmp_path / "tests").iterdir())) == partial["finished"]

@@ -1,0 +1,55 @@
+"""Requirements attached to the bus."""
+
+import pytest
+
+import rvmon
+from handover.checker import SPECS, Checker, spec_path
+from handover.driver import run_test
+from handover.generator.files import directed
+
+TESTS = {test.name: test for test in directed()}
+
+
+@pytest.fixture(scope="module")
+def spec():
+    """The requirements of the correct robot."""
+    return rvmon.load(spec_path("correct"))
+
+
+@pytest.mark.parametrize("robot", SPECS)
+def test_both_robots_are_judged_by_the_same_requirements(robot):
+    """Five ids, in the paper's order; where triggers differ, the words do not."""
+    texts = {name: one.text for name, one in rvmon.load(spec_path(robot)).requirements.items()}
+    assert list(texts) == ["R1", "R2", "R3", "R4", "R5"]
+    assert texts == {
+        name: one.text for name, one in rvmon.load(spec_path("correct")).requirements.items()
+    }
+
+
+@pytest.mark.parametrize("name", ["released", "withheld-no-gaze", "mutant-releases-late"])
+def test_judging_online_equals_judging_the_recording(spec, name):
+    """The verdicts, instants and reasons are those of the finished recording."""
+    checker = Checker(spec)
+    checker.begin()
+    run = run_test(TESTS[name], observer=checker.observe)
+    online = checker.finish(run.end_ns)
+    names = {*spec.checked.signals, *spec.checked.events}
+    monitor = spec.monitor()
+    for t_ns, values in run.samples:
+        known = {name: value for name, value in values.items() if name in names}
+        if known:
+            monitor.step_ns(t_ns, known)
+    assert online == monitor.finish_ns(run.end_ns)
+
+
+def test_one_checker_judges_many_tests(spec):
+    """Nothing of a test is left when the next begins."""
+    checker = Checker(spec)
+    verdicts = []
+    for name in ("mutant-releases-late", "released", "mutant-releases-late"):
+        checker.begin()
+        run = run_test(TESTS[name], observer=checker.observe)
+        verdicts.append(checker.finish(run.end_ns).verdicts)
+    assert verdicts[0] == verdicts[2] != verdicts[1]
+    assert verdicts[0]["R1"] == "F"
+    assert verdicts[1]["R1"] == "P"
