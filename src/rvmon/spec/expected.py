@@ -8,12 +8,13 @@ from contextlib import suppress
 from typing import Any
 
 import lark
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
-from rvmon.spec.rules import names, syntax
-from rvmon.spec.words import ITEM_WORDS, RESERVED
+from rvmon.spec.rules import names, syntax, types
+from rvmon.spec.units import unit_table
+from rvmon.spec.words import ITEM_WORDS, NOT_UNITS, RESERVED
 
 _OPERAND = {"NUMBER", "NAME", "NOT", "TEMPORAL", "MINUS"}
 _OPERAND_ALL = _OPERAND | {
@@ -43,6 +44,7 @@ _WORDS = {
     "THEN": "`then`",
     "WITHIN": "`within`",
 }
+_SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
 _MEND = {
     "≤": "write `<=`",
     "≥": "write `>=`",
@@ -82,6 +84,10 @@ def explain_unexpected(
     found = place.text
     if found in RESERVED and "NAME" in accepted and not accepted >= _OPERAND:
         return names.reserved(place)
+    if swallowed := _SWALLOWED.search(source.text, start, place.start):
+        number, name = swallowed[1], Span(source, swallowed.start(2), swallowed.end(2))
+        if name.text not in unit_table() and name.text not in NOT_UNITS:
+            return types.swallowed_name(name, number)
     expected = _in_words(accepted, parser)
     shown = f"`{syntax.short(found)}`" if found else "the end of the item"
     message = f"found {shown}" + (f", expected {expected}" if expected else "")
@@ -89,10 +95,11 @@ def explain_unexpected(
 
 
 def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span:
-    if isinstance(error, UnexpectedToken) and error.token.type != "$END":
+    if isinstance(error, UnexpectedToken) and error.token.type not in ("$END", "UNIT"):
         first = start + (error.token.start_pos or 0)
         return Span(source, first, first + max(len(error.token), 1))
-    if isinstance(error, UnexpectedCharacters):
+    at_end = isinstance(error, UnexpectedToken) and error.token.type == "$END"
+    if not at_end:  # UNIT matches almost anything, so the word is looked for here
         first = start + (error.pos_in_stream or 0)
         word = re.compile(r"\w+|.", re.DOTALL).match(source.text, first)
         return Span(source, first, word.end() if word else first)
@@ -144,8 +151,10 @@ def _mend(found: str, accepted: set[str], parser: lark.Lark, place: Span) -> str
     call = re.search(r"([^\W\d]\w*)[ \t]+$", before)
     if found == "(" and call:
         return f"a call has no space before its bracket: `{call[1]}(`"
-    if found[:1] in "AE" and found[1:2] in "[<" and "AND" not in accepted:
+    if re.match(r"[AE][\[<]", found) and "AND" not in accepted:
         return f"put brackets around `{found} …`"
+    if "THEN" in accepted:
+        return "what is owed stands behind `then`"
     if re.fullmatch(r"[^\W\d]\w*", found):
         words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", _word_pattern(t, parser))]
         close = difflib.get_close_matches(found, sorted({*words, *ITEM_WORDS}), 1, 0.75)

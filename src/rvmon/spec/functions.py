@@ -20,7 +20,7 @@ from rvmon.spec.checked import (
 from rvmon.spec.quantities import arithmetic
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import types as rules
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax import Call, Name
 from rvmon.spec.unit import PLAIN
 from rvmon.spec.units import parse_unit, quotient
@@ -58,6 +58,8 @@ def applied(checker: Checker, call: Call, scope: Scope) -> Value:
     """
     name = call.function.text
     if name not in FUNCTIONS:
+        if name in checker.table.doubtful:
+            raise Reported
         raise Refusal(_unknown(checker, call))
     _check_count(call)
     match name:

@@ -35,7 +35,7 @@ _FOLD: dict[NumericOp, Callable[[list[Fraction]], Fraction]] = {
     NumericOp.MAX: max,
     NumericOp.HYPOT: lambda values: Fraction(math.hypot(*map(float, values))),
 }
-_DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "less"}
+_DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
 
 
 def compare(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compare | Constant:

@@ -56,12 +56,13 @@ def resolve(parsed: Sequence[ParsedSpec], findings: Findings) -> ResolvedSpec:
         resolver.covers,
         resolver.coverpoints,
         resolver.crosses,
-        frozenset().union(*(file.doubtful for file in parsed)),
+        frozenset(resolver.doubled).union(*(file.doubtful for file in parsed)),
     )
 
 
 class _Resolver:
     def __init__(self, findings: Findings) -> None:
+        self.doubled: set[str] = set()
         self._findings = findings
         self.once: dict[type, Header | TimeItem | DelayItem] = {}
         self.declared: dict[str, Declared] = {}
@@ -112,9 +113,11 @@ class _Resolver:
             self._findings.add(rules.built_in(name.span))
         if self._is_new("name", name):
             self.declared[name.text] = declared
+        else:
+            self.doubled.add(name.text)
 
     def _is_new(self, kind: str, name: Ident) -> bool:
         first = self._first.setdefault((kind, name.text), name)
         if first is not name:
-            self._findings.add(rules.double(kind, name.text, name.span, first.span))
+            self._findings.add(rules.double(name.text, kind, name.span, first.span))
         return first is name

@@ -13,6 +13,40 @@ from rvmon.spec.unit import Unit
 from rvmon.spec.units import unit_table
 from rvmon.spec.values import FieldOf
 
+_LONG_NAMES = {
+    "metre": "m",
+    "meter": "m",
+    "millimetre": "mm",
+    "millimeter": "mm",
+    "second": "s",
+    "sec": "s",
+    "millisecond": "ms",
+    "msec": "ms",
+    "minute": "min",
+    "hour": "h",
+    "hr": "h",
+    "gram": "g",
+    "kilogram": "kg",
+    "kilo": "kg",
+    "newton": "N",
+    "radian": "rad",
+    "degree": "deg",
+    "°": "deg",
+    "turn": "rev",
+    "celsiu": "degC",
+    "kelvin": "K",
+    "volt": "V",
+    "amp": "ampere",
+    "hertz": "Hz",
+    "percent": "%",
+    "mp": "m/s",
+    "kmh": "km/h",
+    "kph": "km/h",
+    "pixel": "px",
+    "byte": "B",
+}
+"""What people write for a unit, in lower case and without a last `s`."""
+
 
 @dataclass(frozen=True, slots=True)
 class Table:
@@ -69,5 +103,8 @@ def _described(table: Table, name: str) -> str:
 
 def close_unit(part: str) -> str:
     """A unit that is alike, or empty."""
+    singular = part.lower().removesuffix("s")
+    if singular in _LONG_NAMES:
+        return _LONG_NAMES[singular]
     close = difflib.get_close_matches(part, list(unit_table()), 1, 0.6)
     return close[0] if close else ""

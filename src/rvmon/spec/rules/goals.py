@@ -21,14 +21,14 @@ BIN = Rule(
     "A bin is a value, a range or a formula of the present and past; without values it is the "
     "label of its own name.",
     """spec demo
-signal state : {idle, moving}
+signal speed : real [m/s]
 
-coverpoint phase = state {idle, driving}
+coverpoint pace = speed {slow, fast}
 """,
     """spec demo
-signal state : {idle, moving}
+signal speed : real [m/s]
 
-coverpoint phase = state {idle, driving: moving}
+coverpoint pace = speed {slow: [0 m/s, 250 mm/s), fast: [250 mm/s, inf)}
 """,
 )
 
@@ -76,11 +76,6 @@ def bin_needs_expression(span: Span) -> Diagnostic:
     )
 
 
-def bin_kind(span: Span, needed: str) -> Diagnostic:
-    """Values of the wrong kind; `needed` says which are possible."""
-    return finding(BIN, f"`{short(span.text)}` does not fit: expected {needed}", span)
-
-
 def looks_ahead(span: Span) -> Diagnostic:
     """A formula of the future in a bin or sampling clause."""
     return finding(
@@ -115,7 +110,7 @@ def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
 
 def same_point(span: Span, name: str) -> Diagnostic:
     """A cross that names a coverpoint twice."""
-    return finding(CROSS, f"`{name}` stands twice in one cross", span)
+    return finding(CROSS, f"`{name}` stands twice in one cross", span, mend="name it once")
 
 
 def too_many_combinations(span: Span, count: int) -> Diagnostic:

@@ -66,4 +66,9 @@ def circle(here: Span, first: Span) -> Diagnostic:
 
 def too_deep(span: Span) -> Diagnostic:
     """A chain of imports that is too long."""
-    return finding(IMPORT, f"imports are nested more than {DEEPEST} levels deep", span)
+    return finding(
+        IMPORT,
+        f"imports are nested more than {DEEPEST} levels deep",
+        span,
+        mend="import the last file directly",
+    )

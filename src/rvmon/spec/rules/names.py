@@ -198,7 +198,12 @@ def unknown_function(span: Span, name: str, mend: str) -> Diagnostic:
 def recursive(names: list[str], span: Span) -> Diagnostic:
     """Definitions that use each other in a circle; the first name stands last again."""
     circle = " → ".join(f"`{name}`" for name in names)
-    return finding(RECURSIVE, f"`{names[0]}` is defined by itself: {circle}", span)
+    return finding(
+        RECURSIVE,
+        f"`{names[0]}` is defined by itself: {circle}",
+        span,
+        mend="for what goes on for ever there are `always`, `until` and their kin",
+    )
 
 
 def double_item(word: str, here: Span, first: Span) -> Diagnostic:

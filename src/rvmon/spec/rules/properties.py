@@ -58,14 +58,20 @@ FOREIGN_NAME = Rule(
     "Properties may read clocks and locations of a model, so an unknown name is no error there; "
     "one that is almost a signal probably is a slip.",
     """spec demo
-signal released : bool
+event asked, released
 
-property P1: E<> relased
+requirement R1
+  upon asked
+  then within 3 s released
+  property E<> relased
 """,
     """spec demo
-signal released : bool
+event asked, released
 
-property P1: E<> released
+requirement R1
+  upon asked
+  then within 3 s released
+  property E<> released
 """,
 )
 
@@ -120,7 +126,9 @@ def bare_time(span: Span) -> Diagnostic:
 
 def next_window(span: Span) -> Diagnostic:
     """`AX` or `EX` with an interval."""
-    return finding(BARE_TIME, "`AX` and `EX` take no interval", span)
+    return finding(
+        BARE_TIME, "`AX` and `EX` take no interval", span, mend="use `AF` or `EF` with it"
+    )
 
 
 def no_path_formula(span: Span) -> Diagnostic:

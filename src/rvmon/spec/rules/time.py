@@ -18,14 +18,14 @@ event asked, released
 
 requirement R1
   upon asked
-  then within 3 released
+  then within 3 (released or asked)
 """,
     """spec demo
 event asked, released
 
 requirement R1
   upon asked
-  then within 3 s released
+  then within 3 s (released or asked)
 """,
 )
 
@@ -195,7 +195,9 @@ def empty(span: Span) -> Diagnostic:
 
 def not_positive(span: Span, what: str) -> Diagnostic:
     """A duration of 0 where it makes no sense; `what` names its use."""
-    return finding(EMPTY_INTERVAL, f"{what} must be longer than 0", span)
+    return finding(
+        EMPTY_INTERVAL, f"{what} must be longer than 0", span, mend="give it some time: `1 ms`"
+    )
 
 
 def late_weak_window(operator: str, span: Span) -> Diagnostic:
@@ -220,4 +222,9 @@ def step_in_held_time(operator: str, span: Span) -> Diagnostic:
 
 def no_window(operator: str, span: Span) -> Diagnostic:
     """An interval at an operator that takes none."""
-    return finding(NO_WINDOW, f"`{operator}` takes no interval", span)
+    return finding(
+        NO_WINDOW,
+        f"`{operator}` takes no interval",
+        span,
+        mend="use `eventually`, `always`, `once` or `historically` with it",
+    )

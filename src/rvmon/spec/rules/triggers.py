@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Sequence
 
-from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
 from rvmon.spec.rules.syntax import short
@@ -240,7 +240,13 @@ def mixed_trigger(pulse: Span, level: Span) -> Diagnostic:
 
 def double_clause(word: str, here: Span, first: Span) -> Diagnostic:
     """A second clause of a kind."""
-    return finding(DOUBLE_CLAUSE, f"a requirement has one `{word}` clause", here, first)
+    return finding(
+        DOUBLE_CLAUSE,
+        f"a requirement has one `{word}` clause",
+        here,
+        Label(first, "first here"),
+        mend="join them, or remove one",
+    )
 
 
 def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:

@@ -99,14 +99,24 @@ UNKNOWN_UNIT = Rule(
     "always its unit.",
     """spec demo
 signal x : real [metres]
+event asked, released
 
 requirement R1
+  upon asked
+  then within 3 released
+
+requirement R2
   always x > 0
 """,
     """spec demo
 signal x : real [m]
+event asked, released
 
 requirement R1
+  upon asked
+  then within 3 s released
+
+requirement R2
   always x > 0
 """,
 )
@@ -213,7 +223,12 @@ def not_constant(span: Span) -> Diagnostic:
 
 def argument_count(span: Span, name: str, takes: str, given: int) -> Diagnostic:
     """Too many or too few arguments; `takes` says how many, in words."""
-    return finding(WRONG_ARGUMENTS, f"`{name}` takes {takes}, {given} given", span)
+    return finding(
+        WRONG_ARGUMENTS,
+        f"`{name}` takes {takes}, {given} given",
+        span,
+        mend="arguments are separated by commas",
+    )
 
 
 def argument_kind(span: Span, name: str, needed: str) -> Diagnostic:
@@ -251,7 +266,12 @@ def superfluous_unit(span: Span, unit: str, other: Span) -> Diagnostic:
 
 def no_root(span: Span, unit: str) -> Diagnostic:
     """A root of a unit that has none."""
-    return finding(UNIT_MISMATCH, f"[{unit}] has no square root", span)
+    return finding(
+        UNIT_MISMATCH,
+        f"[{unit}] has no square root",
+        span,
+        mend="the root of a square has a unit: `sqrt(x * x + y * y)`",
+    )
 
 
 def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
@@ -260,9 +280,25 @@ def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
     return finding(UNKNOWN_UNIT, f"no unit named `{short(part)}`", span, mend=mend)
 
 
+def swallowed_name(span: Span, number: str) -> Diagnostic:
+    """A name that is read as the unit of the number before it."""
+    name = short(span.text)
+    return finding(
+        UNKNOWN_UNIT,
+        f"`{name}` is read as the unit of `{number}`, and there is no such unit",
+        span,
+        mend=f"give the number its unit: `{number} s {name}`",
+    )
+
+
 def out_of_range(span: Span) -> Diagnostic:
     """A constant without a value that fits."""
-    return finding(OUT_OF_RANGE, f"`{short(span.text)}` is out of range", span)
+    return finding(
+        OUT_OF_RANGE,
+        f"`{short(span.text)}` is out of range",
+        span,
+        mend="numbers go up to about 1e308, and nothing is divided by 0",
+    )
 
 
 def label_use(span: Span) -> Diagnostic:

@@ -1,0 +1,87 @@
+"""Findings as full text, as lines and as JSON."""
+
+import json
+
+from rvmon.diagnostics import Diagnostic, Label, Severity, Source, Span
+from rvmon.diagnostics.render import render_concise, render_full, render_json
+from rvmon.diagnostics.snippet import snippet
+
+SOURCE = Source("specs/demo.rv", "spec demo\nevent released\n  then\twithin 3 s relased\n")
+PLACE = SOURCE.text.index("relased")
+FINDING = Diagnostic(
+    "RV012",
+    "unknown-signal",
+    Severity.ERROR,
+    "no signal or event named `relased`",
+    (
+        Label(Span(SOURCE, PLACE, PLACE + 7)),
+        Label(Span(SOURCE, 16, 24), "declared here"),
+    ),
+    "did you mean `released`?",
+)
+BARE = Diagnostic("RV006", "too-many-findings", Severity.WARNING, "so much")
+
+
+def test_full():
+    """Place, line, underline, other places, help; tabs do not shift the underline."""
+    assert render_full([FINDING, BARE]) == (
+        "error[RV012 unknown-signal]: no signal or event named `relased`\n"
+        "  --> specs/demo.rv:3:19\n"
+        "   |\n"
+        " 3 |   then within 3 s relased\n"
+        "   |                   ^^^^^^^\n"
+        "  ::: specs/demo.rv:2:7\n"
+        "   |\n"
+        " 2 | event released\n"
+        "   |       -------- declared here\n"
+        "help: did you mean `released`?\n"
+        "\n"
+        "warning[RV006 too-many-findings]: so much"
+    )
+
+
+def test_concise():
+    """One line per finding, fit for problem matchers."""
+    assert render_concise([FINDING, BARE]).splitlines() == [
+        "specs/demo.rv:3:19: error[RV012 unknown-signal]: no signal or event named `relased`"
+        " (help: did you mean `released`?)",
+        "warning[RV006 too-many-findings]: so much",
+    ]
+
+
+def test_json():
+    """All that a finding holds, with lines, columns and offsets."""
+    first, second = json.loads(render_json([FINDING, BARE]))
+    assert (first["code"], first["severity"], second["spans"]) == ("RV012", "error", [])
+    assert first["spans"][0]["start"] == {"line": 3, "column": 19, "offset": PLACE}
+    assert first["spans"][0]["end"]["column"] == 26
+    assert first["spans"][1]["text"] == "declared here"
+
+
+def lines(text, start, end):
+    """The line and its underline."""
+    shown = snippet(Span(Source("x", text), start, end)).splitlines()
+    return shown[2], shown[3]
+
+
+def test_places_at_the_edges():
+    """At the end of a text, over several lines, in an empty text."""
+    assert lines("ab", 2, 2) == (" 1 | ab", "   |   ^")
+    assert lines("", 0, 0) == (" 1 |", "   | ^")
+    assert lines("ab\ncd\n", 1, 5) == (" 1 | ab", "   |  ^")
+    assert lines("ab\n", 3, 3) == (" 2 |", "   | ^")
+
+
+def test_wide_and_unprintable_characters():
+    """Wide characters take two columns, what does not print is replaced."""
+    assert lines("数 x", 2, 3) == (" 1 | 数 x", "   |    ^")
+    assert lines("\x00\x1b x", 3, 4) == (" 1 | \ufffd\ufffd x", "   |    ^")
+    assert lines("a\r\nb", 0, 1) == (" 1 | a", "   | ^")
+
+
+def test_long_lines_are_cut_around_the_place():
+    """A line of thousands of characters shows the part that matters."""
+    line, underline = lines("x" * 5000 + "HERE" + "y" * 5000, 5000, 5004)
+    assert len(line) < 200
+    assert line[underline.index("^") :][:4] == "HERE"
+    assert underline.count("^") == 4
