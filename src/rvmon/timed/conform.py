@@ -75,8 +75,8 @@ def conform(
             return Conformance(number, Divergence(action.t, action.label, allowed))
         states = after
     meter = Meter(budget, None)
-    last = (end - tolerance) // RESOLUTION
-    if not watcher.reaches(states, last, meter) and not meter.stopped:
+    earliest, latest = (end - tolerance) // RESOLUTION, -(-(end + tolerance) // RESOLUTION)
+    if not watcher.reaches(states, earliest, latest, meter) and not meter.stopped:
         allowed = watcher.allowed(states, end // RESOLUTION, meter)
         return Conformance(len(actions), Divergence(end, "", allowed))
     return Conformance(len(actions), None, meter.stopped)
@@ -157,12 +157,14 @@ class _Watcher:
                 if label_of(move, self._network) == label:
                     yield target, normalise(fresh)
 
-    def reaches(self, states: Sequence[tuple[State, Zone]], instant: int, meter: Meter) -> bool:
-        """Whether some run can be quiet until an instant."""
+    def reaches(
+        self, states: Sequence[tuple[State, Zone]], earliest: int, latest: int, meter: Meter
+    ) -> bool:
+        """Whether some run can be quiet until an instant of a range."""
         timer = self._dim - 1
         return any(
-            constrain(zone[:], self._dim, timer, 0, -float(instant))
-            for _, zone in self.quiet(states, instant, meter)
+            constrain(zone[:], self._dim, timer, 0, -float(earliest))
+            for _, zone in self.quiet(states, latest, meter)
         )
 
     def allowed(
@@ -183,7 +185,7 @@ class _Watcher:
             Allowed(label, round(low) * RESOLUTION, round(high) * RESOLUTION)
             for label, (low, high) in sorted(spans.items(), key=lambda item: item[1])
         ]
-        if self.reaches(states, end, meter):
+        if self.reaches(states, end, end, meter):
             found.append(Allowed("", end * RESOLUTION, None))
         return tuple(found)
 

@@ -1,0 +1,141 @@
+"""`rvmon conform`: hold recorded runs against a network of timed automata."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError, TraceError, UnknownNameError
+
+if TYPE_CHECKING:
+    from rvmon.timed.conformance import Allowed, Conformance
+    from rvmon.timed.model import Network
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "conform",
+        help="hold recorded runs against a network of timed automata",
+        description="Say whether recordings (.csv, .jsonl) are runs of a network, as far as they "
+        "show: their events are the labels of its edges, or its channels. The first sample is the "
+        "network's start. Exit code 0: all conform; 1: some do not.",
+        epilog="example: rvmon conform model.ta monday.csv --observe started,stopped "
+        "--tolerance 0.1",
+    )
+    parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
+    parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings")
+    parser.add_argument(
+        "--observe",
+        metavar="LABELS",
+        help="labels that a recording would show (default: those with a column, or that occur)",
+    )
+    parser.add_argument(
+        "--tolerance", metavar="S", type=float, default=0.0, help="seconds either way (default: 0)"
+    )
+    parser.add_argument("--until", metavar="T", type=float, help="the runs went on for T seconds")
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compare, show, and return the exit code."""
+    from rvmon.timed.load import load_network
+    from rvmon.timed.recorded import labels_of
+    from rvmon.trace.time import ticks_of_seconds
+
+    if not arguments.tolerance >= 0:
+        raise RvmonError(f"--tolerance {arguments.tolerance}: give seconds, at least 0")
+    network = load_network(arguments.model)
+    labels = labels_of(network)
+    chosen = _chosen(arguments.observe, labels)
+    until = None if arguments.until is None else ticks_of_seconds(arguments.until)
+    tolerance = ticks_of_seconds(arguments.tolerance)
+    answers: dict[str, Conformance] = {}
+    broken = False
+    for path in arguments.traces:
+        try:
+            answers[path] = _compare(network, path, labels, chosen, until, tolerance)
+        except TraceError as error:
+            print(f"error: {error}", file=sys.stderr)
+            broken = True
+            continue
+        if arguments.format == "text":
+            _print(path, answers[path])
+    if arguments.format == "json":
+        print(json.dumps({path: _data(answer) for path, answer in answers.items()}, indent=2))
+    return 2 if broken else int(any(not answer.conforms for answer in answers.values()))
+
+
+def _chosen(listed: str | None, labels: tuple[str, ...]) -> frozenset[str] | None:
+    if listed is None:
+        return None
+    names = frozenset(name.strip() for name in listed.split(",") if name.strip())
+    for name in sorted(names - set(labels)):
+        raise UnknownNameError(f"no label `{name}` in the model: there are {', '.join(labels)}")
+    return names
+
+
+def _compare(
+    network: Network,
+    path: str,
+    labels: tuple[str, ...],
+    chosen: frozenset[str] | None,
+    until: int | None,
+    tolerance: int,
+) -> Conformance:
+    from rvmon.readers.recording import FileRecording
+    from rvmon.timed.conform import conform
+    from rvmon.timed.recorded import actions_in
+    from rvmon.trace.schema import Schema
+
+    wanted = frozenset(labels) if chosen is None else chosen
+    recording = FileRecording(path, Schema({}, {name: {} for name in wanted}))
+    actions, length, occurred = actions_in(recording, wanted)
+    if chosen is None:
+        chosen = wanted & (occurred if recording.names is None else recording.names)
+    end = length if until is None else until
+    return conform(network, actions, observed=chosen, end=end, tolerance=tolerance)
+
+
+def _print(path: str, answer: Conformance) -> None:
+    count = f"{answer.explained} action{'' if answer.explained == 1 else 's'} explained"
+    divergence = answer.divergence
+    if divergence is None:
+        word = f"not decided: {answer.undecided}" if answer.undecided else "conforms"
+        print(f"{path}: {word}; {count}")
+        return
+    what = f"`{divergence.label}`" if divergence.label else "nothing more happens"
+    print(f"{path}: diverges at {divergence.at / 1e9:g} s, {count} before: {what}")
+    print("  no run of the model does that; here it could do:")
+    for allowed in divergence.allowed:
+        print(f"    {_allowed_text(allowed)}")
+    if not divergence.allowed:
+        print("    nothing")
+
+
+def _allowed_text(allowed: Allowed) -> str:
+    if not allowed.label:
+        return "nothing, until the end"
+    latest = "" if allowed.latest is None else f" to {allowed.latest / 1e9:g}"
+    return f"`{allowed.label}` from {allowed.earliest / 1e9:g}{latest} s"
+
+
+def _data(answer: Conformance) -> dict[str, object]:
+    divergence = answer.divergence
+    return {
+        "conforms": answer.conforms,
+        "explained": answer.explained,
+        "remark": answer.undecided,
+        "divergence": None
+        if divergence is None
+        else {
+            "at": divergence.at,
+            "label": divergence.label,
+            "allowed": [
+                {"label": one.label, "earliest": one.earliest, "latest": one.latest}
+                for one in divergence.allowed
+            ],
+        },
+    }
