@@ -30,28 +30,27 @@ class TooManyClausesError(Exception):
     """A residual outgrew the limit that was set for it."""
 
 
-def implies(strong: Atom, weak: Atom) -> bool:
-    """Whether `weak` is at least as true as `strong`, whatever comes and wherever the trace ends.
+def _follows(atom: Atom, clause: Clause) -> bool:
+    """Whether another atom of `clause` implies `atom`, whatever comes and wherever the trace ends.
 
-    Both are pending. `U[0,b]`: the earlier deadline implies the later one; `R[0,b]`: the later one
-    the earlier. `U[a,inf)`: the later implies the earlier. For `R[a,inf)` the logic says the
-    opposite of the rule for the end, by which only an opened window counts: neither implies.
+    All are pending. `U[0,b]`: the earlier deadline implies the later one; `R[0,b]`: the later one
+    the earlier. `U[a,inf)`: the later implies the earlier, and also the opened window. For
+    `R[a,inf)` the logic says the opposite of the rule for the end, by which only an opened window
+    counts: neither implies.
     """
-    left, first = strong
-    right, second = weak
-    if left is right:
-        if first == second:
-            return True
-        match left:
-            case Until(low=0, high=int()):
-                return first < second
-            case Release(low=0, high=int()):
-                return first > second
-            case Until(high=None):
-                return first > second
-            case _:
-                return False
-    return isinstance(left, Until) and left.high is None and left.opened is right
+    node, clock = atom
+    match node:
+        case Until(high=None):
+            return any(
+                its > clock if other is node else isinstance(other, Until) and other.opened is node
+                for other, its in clause
+            )
+        case Until(low=0):
+            return any(other is node and its < clock for other, its in clause)
+        case Release(low=0, high=int()):
+            return any(other is node and its > clock for other, its in clause)
+        case _:
+            return False
 
 
 def either(left: Residual, right: Residual) -> Residual:
@@ -80,14 +79,8 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
 
 def _conjunction(clause: Clause) -> Clause:
     """Without the atoms that others of the clause imply."""
-    if len(clause) < 2:
-        return clause
-    kept = [
-        atom
-        for atom in clause
-        if not any(other is not atom and implies(other, atom) for other in clause)
-    ]
-    return frozenset(kept) if len(kept) < len(clause) else clause
+    implied = [atom for atom in clause if _follows(atom, clause)]
+    return clause.difference(implied) if implied else clause
 
 
 def _reduced(clauses: Iterable[Clause]) -> Residual:
@@ -104,7 +97,7 @@ def _reduced(clauses: Iterable[Clause]) -> Residual:
 
 
 def _clause_implies(strong: Clause, weak: Clause) -> bool:
-    return weak <= strong or all(any(implies(s, w) for s in strong) for w in weak)
+    return all(_follows(atom, strong) for atom in weak - strong)
 
 
 def substitute(
@@ -115,11 +108,13 @@ def substitute(
     Raises:
         TooManyClausesError: an intermediate result may have more than `limit` clauses.
     """
-    result = FAILS
+    found: set[Clause] = set()
     for clause in residual:
         made: Residual = frozenset([clause.difference(values)])
         for atom in clause:
             if atom in values:
                 made = both(made, values[atom], limit)
-        result = either(result, made)
-    return result
+        found |= made
+        if limit is not None and len(found) > limit:
+            found = set(_reduced(found))
+    return _reduced(found)
