@@ -69,6 +69,12 @@ class Lane:
         if starter.trigger is not None:
             self._starters_at[starter.place].append(starter)
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing is open in it and nothing will start, as in that of a decided attempt."""
+        judged = bool(self.judges) and not any(judge.attempts for judge in self.judges)
+        return judged and not self.starters
+
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`, positions there included, without a further sample."""
         while True:

@@ -94,6 +94,8 @@ class Lanes:
             self._history.append((t, values))
         for lane, instance in tuple(self._lanes):
             lane.sample(t, seen_by(instance, values))
+        if len(self._lanes) > 1:
+            self._lanes = [entry for entry in self._lanes if not entry[0].is_idle]
 
     def finish(self, end: int, reached: int) -> None:
         """Settle what is undecided; time has come to `end` before.
