@@ -3,7 +3,7 @@
     python -m benchmarks.monitor_cost --repeats 3
 
 Each repetition plays the same 200 tests against each robot with monitors and without, in turn, in
-one process; the least processor time of each counts, and the wall time on all cores is given besides.
+one process; the least processor time of each counts. The wall time on all cores stands beside it.
 """
 
 from __future__ import annotations
