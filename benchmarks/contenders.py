@@ -106,7 +106,7 @@ def contenders(environment: Environment, native: Native) -> Iterator[Contender]:
         yield Worker(label, Peer(here, "rvmon"), _ours(kind))
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _past(dialects.REELAY_DISCRETE)),
-        ("rtamt", "rtamt", "rtamt", _past(dialects.RTAMT_DISCRETE)),
+        ("rtamt", "rtamt", "rtamt", _few(_past(dialects.RTAMT_DISCRETE))),
         ("mstlo", "mstlo-python", "mstlo", _future),
     )
     for label, package, worker, request in peers:
@@ -140,6 +140,15 @@ def _past(dialect: Dialect) -> Request:
         return _rows(workload, rows, formulas, "discrete")
 
     return request
+
+
+def _few(request: Request) -> Request:
+    def limited(workload: Workload, rows: int) -> dict[str, Any]:
+        if len(workload.formulas) > 10:
+            raise UntranslatableError("too slow to be measured with more than 10 formulas")
+        return request(workload, rows)
+
+    return limited
 
 
 def _future(workload: Workload, rows: int) -> dict[str, Any]:

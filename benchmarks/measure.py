@@ -12,7 +12,7 @@ from benchmarks.peers.core import UntranslatableError
 from benchmarks.workload import Workload
 
 FEWEST_ROWS = 50
-PROBE_ROWS = 400
+"""Of a pass, however slow the contender; as many tell how slow it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
 
 def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
     """Find by a short pass how many rows fit into the time, and load them."""
-    probe = min(PROBE_ROWS, workload.rows)
+    probe = min(FEWEST_ROWS, workload.rows)
     contender.prepare(workload, probe)
     per_row = max(contender.run().cpu_ns / probe, 1)
     fitting = max(int(seconds * 1e9 / per_row), FEWEST_ROWS)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import resource
 import statistics
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,8 +16,7 @@ from benchmarks.ours import always_text, specification
 from benchmarks.peers import dialects
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.native import Native, packed
-
-from benchmarks import timescales
+from benchmarks.workload import Column, Workload
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,29 +26,34 @@ class Program:
     Attributes:
         label: who, and what it reads.
         command: exits 0 or 1.
+        violated: reads the first violated row from what it prints.
     """
 
     label: str
     command: tuple[str, ...]
+    violated: Callable[[str], int | None]
 
 
-def measure_processes(rows: int, repeats: int, native: Native, folder: Path) -> Iterator[Result]:
-    """One family, 1 row in 3 changing, and one with few changes, by every program there is."""
-    for name, high in (("AbsentAQ", 10), ("RespondGLB", 1000)):
-        family = next(family for family in timescales.FAMILIES if family.name == name)
-        columns = timescales.trace(family, high, rows)
-        formula = family.past(timescales.low_bound(high), high)
-        spec = folder / f"{name}{high}.rv"
-        spec.write_text(specification([always_text(formula)], columns, "sampled"))
-        files = _files(folder / f"{name}{high}", columns)
-        pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
-        programs = list(_programs(spec, files, native, pattern))
-        length = len(next(iter(columns.values())))
-        figures = tuple(_figures(programs, length, repeats))
-        yield Result("process", f"{name} {high}", "past", 1, length, 0.0, figures)
+def measure_process(workload: Workload, repeats: int, native: Native, folder: Path) -> Result:
+    """Judge a workload's only formula by every program there is, from files in the folder."""
+    (formula,) = workload.formulas
+    spec = folder / "spec.rv"
+    spec.write_text(specification([always_text(formula)], workload.columns, "sampled"))
+    files = _files(folder / "trace", workload.columns)
+    pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
+    programs = list(_programs(spec, files, native, pattern))
+    return Result(
+        workload.section,
+        workload.name,
+        workload.form,
+        1,
+        workload.rows,
+        workload.changing,
+        tuple(_figures(programs, workload.rows, repeats)),
+    )
 
 
-def _files(stem: Path, columns: Mapping[str, list[bool]]) -> dict[str, Path]:
+def _files(stem: Path, columns: Mapping[str, Column]) -> dict[str, Path]:
     """The same rows as CSV, JSON lines and bytes."""
     names = list(columns)
     cells = list(zip(*columns.values(), strict=True))
@@ -75,25 +80,40 @@ def _programs(
 ) -> Iterator[Program]:
     run = (sys.executable, "-m", "rvmon", "run", str(spec))
     for kind in ("csv", "jsonl"):
-        yield Program(f"rvmon run, {kind}", (*run, str(files[kind]), "--format", "json"))
+        judged = (*run, str(files[kind]), "--format", "json")
+        yield Program(f"rvmon run, {kind}", judged, _ours_violated)
     if native.binary is not None:
         for mode, kind in (("csv", "csv"), ("binary", "bin")):
-            yield Program(
-                f"reelay C++, {mode}", (str(native.binary), mode, str(files[kind]), pattern)
-            )
+            command = (str(native.binary), mode, str(files[kind]), pattern)
+            yield Program(f"reelay C++, {mode}", command, _reelay_violated)
+
+
+def _ours_violated(printed: str) -> int | None:
+    attempts = json.loads(printed)["requirements"]["R1"]["attempts"]
+    rows = [attempt["decided"] for attempt in attempts if attempt["verdict"] == "F"]
+    return min(rows, default=None)
+
+
+def _reelay_violated(printed: str) -> int | None:
+    row = int(printed.split()[1])
+    return None if row < 0 else row
 
 
 def _figures(programs: list[Program], rows: int, repeats: int) -> Iterator[Figure]:
     spent: dict[str, list[float]] = {program.label: [] for program in programs}
+    violated: dict[str, int | None] = {}
     for _ in range(repeats):
         for program in programs:
             before = _children()
-            done = subprocess.run(program.command, capture_output=True, check=False)
+            done = subprocess.run(program.command, capture_output=True, text=True, check=False)
             if done.returncode not in (0, 1):
-                raise RuntimeError(f"{program.label}: {done.stderr.decode()[:500]}")
+                raise RuntimeError(f"{program.label}: {done.stderr[:500]}")
             spent[program.label].append((_children() - before) * 1e9 / rows)
+            violated[program.label] = program.violated(done.stdout)
     for label, times in spent.items():
-        yield Figure(label, rows, statistics.median(times), min(times), max(times), ())
+        yield Figure(
+            label, rows, statistics.median(times), min(times), max(times), (violated[label],)
+        )
 
 
 def _children() -> float:

@@ -92,9 +92,18 @@ def bounds(
 
 def batches(rows: int) -> Iterator[Workload]:
     """Families for columns in memory: many and few rows that change."""
-    by_name = {family.name: family for family in timescales.FAMILIES}
     for name, high in _BATCHED:
-        family = by_name[name]
-        columns = timescales.trace(family, high, rows)
-        formula = family.past(timescales.low_bound(high), high)
-        yield Workload("batch", f"{name} {high}", "past", (formula,), columns)
+        yield _family("batch", name, high, rows)
+
+
+def processed(rows: int) -> Iterator[Workload]:
+    """Families for whole processes: many and few rows that change."""
+    for name, high in (("AbsentAQ", 10), ("RespondGLB", 1000)):
+        yield _family("process", name, high, rows)
+
+
+def _family(section: str, name: str, high: int, rows: int) -> Workload:
+    family = next(family for family in timescales.FAMILIES if family.name == name)
+    columns = timescales.trace(family, high, rows)
+    formula = family.past(timescales.low_bound(high), high)
+    return Workload(section, f"{name} {high}", "past", (formula,), columns)

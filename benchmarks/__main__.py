@@ -1,0 +1,168 @@
+"""Measure our monitors beside the peers and write the page of results.
+
+    python -m benchmarks [--quick] [--only SECTION …] [--rows N] [--repeats N] [--out FILE]
+
+Peers run in their own environment beside this file, made from the package index on the first run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+from benchmarks.agreement import Agreement, check
+from benchmarks.attempts import OpenAttempts, measure_open
+from benchmarks.contenders import contenders
+from benchmarks.findings import Findings
+from benchmarks.measure import Plan, Result, measure
+from benchmarks.peers import differences
+from benchmarks.peers.client import PeerError
+from benchmarks.peers.environment import prepare
+from benchmarks.peers.native import build
+from benchmarks.processes import measure_process
+from benchmarks.render import render
+from benchmarks.workload import Workload
+
+from benchmarks import suite
+
+OUT = Path(__file__).with_name("RESULTS.md")
+SECTIONS = ("online", "robot", "many", "bound", "batch", "process", "open", "differences")
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How much is measured.
+
+    Attributes:
+        rows: of the traces.
+        bounds: of the Timescales families.
+        seconds: of the robot's stream.
+        counts: of monitors on one stream.
+        attempts: held open.
+        traces: damaged ones per agreement.
+        repeats: passes of each contender.
+        pass_seconds: what one pass may take.
+    """
+
+    rows: int = 1_000_000
+    bounds: tuple[int, ...] = (10, 100, 1000)
+    seconds: int = 300
+    counts: tuple[int, ...] = (10, 100, 1000)
+    attempts: tuple[int, ...] = (1, 10, 100, 1_000, 10_000, 100_000)
+    traces: int = 6
+    repeats: int = 7
+    pass_seconds: float = 2.0
+
+    @property
+    def plan(self) -> Plan:
+        """Repeats and time of a pass."""
+        return Plan(self.repeats, self.pass_seconds)
+
+
+QUICK = Size(20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 2, 3, 0.2)
+
+
+def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
+    """What is measured in the chosen sections."""
+    if "online" in sections:
+        yield from suite.families(size.rows, size.bounds)
+    if "robot" in sections:
+        yield from suite.robots(size.seconds)
+    if "many" in sections:
+        yield from suite.many(size.rows // 10, size.counts)
+    if "bound" in sections:
+        yield from suite.bounds(size.rows)
+    if "batch" in sections:
+        yield from suite.batches(size.rows)
+
+
+def machine() -> str:
+    """Processor, cores, system and interpreter."""
+    name = platform.processor() or platform.machine()
+    for line in _lines(Path("/proc/cpuinfo")):
+        if line.startswith("model name"):
+            name = line.partition(":")[2].strip()
+            break
+    cores = sum(line.startswith("processor") for line in _lines(Path("/proc/cpuinfo")))
+    python = f"{platform.python_implementation()} {platform.python_version()}"
+    return f"{name}, {cores} cores, {platform.system()} {platform.release()}, {python}"
+
+
+def _lines(path: Path) -> list[str]:
+    return path.read_text().splitlines() if path.exists() else []
+
+
+def run(size: Size, sections: Sequence[str], command: str) -> Findings:
+    """Measure all chosen sections, telling what is under way."""
+    environment = prepare()
+    native = build(environment)
+    results: list[Result] = []
+    agreements: list[Agreement] = []
+    absent = dict(environment.missing)
+    for workload in workloads(size, sections):
+        _say(f"{workload.section}: {workload.name}, {workload.form}")
+        results.append(measure(workload, list(contenders(environment, native)), size.plan))
+        agreements += check(workload, environment, traces=size.traces)
+    for workload in suite.processed(size.rows) if "process" in sections else ():
+        _say(f"process: {workload.name}")
+        with tempfile.TemporaryDirectory() as folder:
+            results.append(measure_process(workload, size.repeats, native, Path(folder)))
+        agreements += check(workload, environment, traces=size.traces)
+    open_attempts: list[OpenAttempts] = []
+    if "open" in sections:
+        _say("open attempts")
+        try:
+            open_attempts += measure_open(size.repeats, size.attempts)
+        except PeerError as error:
+            absent["open attempts"] = str(error)
+    table = differences.table(environment) if "differences" in sections else []
+    versions = {"rvmon": version("rvmon"), **environment.versions}
+    if native.binary is None:
+        absent["reelay C++"] = native.reason
+    absent["R2U2"] = "the package index has none"
+    return Findings(
+        command,
+        machine(),
+        versions,
+        tuple(results),
+        tuple(open_attempts),
+        tuple(agreements),
+        tuple(table),
+        absent,
+    )
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def parse(argv: Sequence[str]) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks", description="Measure our monitors beside the peers."
+    )
+    parser.add_argument("--quick", action="store_true", help="a few minutes, for a first look")
+    parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, metavar="SECTION")
+    parser.add_argument("--out", type=Path, default=OUT, metavar="FILE")
+    return parser.parse_args(argv)
+
+
+def main(argv: Sequence[str]) -> int:
+    """Measure and write the page."""
+    options = parse(argv)
+    size = QUICK if options.quick else Size()
+    command = " ".join(["python -m benchmarks", *argv])
+    findings = run(size, options.only, command)
+    options.out.write_text(render(findings), encoding="utf-8")
+    _say(f"wrote {options.out}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,104 @@
+"""All that one run of the benchmarks found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from benchmarks.agreement import Agreement
+from benchmarks.attempts import OpenAttempts
+from benchmarks.measure import Result
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What is to be reached in one mode.
+
+    Attributes:
+        mode: what is measured.
+        section: whose results count.
+        ours: label of our form.
+        peer: label of the peer.
+        form: of the formulas.
+        times: the peer is to need at least so many times our CPU time.
+        names: the results that count; empty: all.
+        changing: only results where at most this share of the rows changes.
+    """
+
+    mode: str
+    section: str
+    ours: str
+    peer: str
+    form: str
+    times: float
+    names: tuple[str, ...] = ()
+    changing: float = 1.0
+
+
+GOALS = (
+    Goal("online, one step from Python", "online", "rvmon step", "reelay", "past", 5),
+    Goal("online, one step from Python", "online", "rvmon step", "rtamt", "past", 200),
+    Goal("online, one step from Python", "online", "rvmon step", "mstlo", "future", 5),
+    Goal("online, only what changed", "online", "rvmon step, changes", "reelay", "past", 5),
+    Goal("robot, 20 Hz and 1 kHz", "robot", "rvmon step", "reelay", "past", 5),
+    Goal("robot, 20 Hz and 1 kHz", "robot", "rvmon step", "mstlo", "future", 5),
+    Goal(
+        "100 monitors on one stream", "many", "rvmon step", "reelay", "past", 50, ("100 monitors",)
+    ),
+    Goal(
+        "100 monitors, only what changed",
+        "many",
+        "rvmon step, changes",
+        "reelay",
+        "past",
+        50,
+        ("100 monitors",),
+    ),
+    Goal(
+        "batch in memory, no compiler, at most 10 % of rows change",
+        "batch",
+        "rvmon evaluate",
+        "reelay C++",
+        "past",
+        1,
+        changing=0.1,
+    ),
+    Goal("batch in memory, no compiler", "batch", "rvmon evaluate", "reelay", "past", 30),
+    Goal("batch in memory, generated C", "batch", "rvmon evaluate, C", "reelay C++", "past", 10),
+    Goal("whole process, CSV", "process", "rvmon run, csv", "reelay C++, csv", "past", 0.5),
+    Goal("whole process, CSV", "process", "rvmon build, csv", "reelay C++, csv", "past", 2),
+    Goal(
+        "whole process, binary", "process", "rvmon build, binary", "reelay C++, binary", "past", 2
+    ),
+)
+"""Mstlo has no factor in the design; it is given reelay's."""
+
+FLATNESS = 1.2
+"""The most by which bound 100,000 may cost more than bound 10."""
+
+ATTEMPT_BYTES = 24
+"""The most memory of an open attempt."""
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """One run.
+
+    Attributes:
+        command: that prints it.
+        machine: processor, cores, system, interpreter.
+        versions: by name.
+        results: all measured workloads.
+        open_attempts: by number.
+        agreements: by contender and workload.
+        differences: lines of the table of readings.
+        absent: what was not measured, and why.
+    """
+
+    command: str
+    machine: str
+    versions: dict[str, str]
+    results: tuple[Result, ...] = ()
+    open_attempts: tuple[OpenAttempts, ...] = ()
+    agreements: tuple[Agreement, ...] = ()
+    differences: tuple[str, ...] = ()
+    absent: dict[str, str] = field(default_factory=dict)

@@ -1,0 +1,204 @@
+"""Findings as a page."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterator, Sequence
+
+from benchmarks.agreement import Agreement
+from benchmarks.findings import ATTEMPT_BYTES, FLATNESS, GOALS, Findings, Goal
+from benchmarks.measure import Figure, Result
+
+TITLES = {
+    "online": "Online, one step per row: Timescales families",
+    "robot": "Online, one step per row: a robot's requirements",
+    "many": "Many monitors on one stream of 20 signals",
+    "bound": "A deadline from 10 to 100,000 rows",
+    "batch": "Columns in memory",
+    "process": "Whole processes, from the file to the verdict",
+}
+
+
+def render(findings: Findings) -> str:
+    """The page, Markdown."""
+    lines = [
+        "# Results",
+        "",
+        f"Written by `{findings.command}`. CPU time per row of the trace, median of the passes",
+        "with the least and the most in brackets; contenders take turns. Times move with the",
+        "machine, ratios in one run hold. A ratio is only given where both sides judged alike.",
+        "",
+        f"* Machine: {findings.machine}",
+        f"* Versions: {', '.join(f'{k} {v}' for k, v in findings.versions.items())}",
+        *(f"* Not measured: {name}: {why}" for name, why in findings.absent.items()),
+        "",
+        "## Goals",
+        "",
+        *_goals(findings),
+    ]
+    for section, title in TITLES.items():
+        results = [result for result in findings.results if result.section == section]
+        if results:
+            lines += ["", f"## {title}", "", *_results(results)]
+    if findings.open_attempts:
+        lines += ["", "## Open attempts", "", *_open_attempts(findings)]
+    if findings.agreements:
+        lines += ["", "## Agreement", "", *_agreements(findings.agreements)]
+    if findings.differences:
+        lines += ["", "## Where the peers read otherwise", "", *findings.differences]
+    return "\n".join(lines) + "\n"
+
+
+def time_text(nanoseconds: float) -> str:
+    """Nanoseconds in a unit that people read.
+
+    >>> time_text(1.25), time_text(430.4), time_text(25_000), time_text(3.2e6)
+    ('1.2 ns', '430 ns', '25.0 µs', '3.2 ms')
+    """
+    if nanoseconds < 10:
+        return f"{nanoseconds:.1f} ns"
+    if nanoseconds < 10_000:
+        return f"{nanoseconds:.0f} ns"
+    if nanoseconds < 1e6:
+        return f"{nanoseconds / 1e3:.1f} µs"
+    return f"{nanoseconds / 1e6:.1f} ms"
+
+
+def ratio_text(ratio: float) -> str:
+    """A ratio with two digits that count.
+
+    >>> ratio_text(0.0712), ratio_text(4.96), ratio_text(231.4)
+    ('0.071×', '5.0×', '231×')
+    """
+    if ratio < 0.995:
+        return f"{ratio:.2g}×"
+    return f"{ratio:.1f}×" if ratio < 99.5 else f"{ratio:.0f}×"
+
+
+def _figure(result: Result, label: str) -> Figure | None:
+    return next((figure for figure in result.figures if figure.label == label), None)
+
+
+def _ratios(findings: Findings, goal: Goal) -> list[float]:
+    """Peer over ours for each result that counts, where both took part and judged alike."""
+    found = []
+    for result in findings.results:
+        counts = result.section == goal.section and result.form == goal.form
+        if not counts or (goal.names and result.name not in goal.names):
+            continue
+        ours, peer = _figure(result, goal.ours), _figure(result, goal.peer)
+        if ours is None or peer is None or result.changing > goal.changing:
+            continue
+        if _alike(findings.agreements, result, ours, peer):
+            found.append(peer.median / ours.median)
+    return found
+
+
+def _alike(agreements: Sequence[Agreement], result: Result, ours: Figure, peer: Figure) -> bool:
+    """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
+    name = peer.label.split()[0]
+    checked = [
+        a
+        for a in agreements
+        if a.label == name and a.form == result.form and a.name == result.name and a.compared
+    ]
+    whole = ours.rows == peer.rows == result.rows
+    if whole and result.form == "past" and ours.violated != peer.violated:
+        return False
+    return bool(checked) and all(a.equal == a.compared for a in checked)
+
+
+def _goals(findings: Findings) -> Iterator[str]:
+    yield "| mode | we | peer | ratio: median (least to most) | goal | |"
+    yield "|---|---|---|---|---|---|"
+    for goal in GOALS:
+        ratios = _ratios(findings, goal)
+        if not ratios:
+            text, mark = "not measured", ""
+        else:
+            median = statistics.median(ratios)
+            text = f"{ratio_text(median)} ({ratio_text(min(ratios))} to {ratio_text(max(ratios))})"
+            mark = "met" if median >= goal.times else "not met"
+        yield (
+            f"| {goal.mode} | {goal.ours} | {goal.peer} | {text} | "
+            f"≥ {ratio_text(goal.times)} | {mark} |"
+        )
+    flat = _flatness(findings)
+    if flat is not None:
+        mark = "met" if flat <= FLATNESS else "not met"
+        yield (
+            f"| bound 10 to 100,000 | rvmon step | – | {ratio_text(flat)} | "
+            f"≤ {ratio_text(FLATNESS)} | {mark} |"
+        )
+    if findings.open_attempts:
+        most = max(findings.open_attempts, key=lambda entry: entry.attempts)
+        least = min(findings.open_attempts, key=lambda entry: entry.attempts)
+        growth = most.median / least.median
+        mark = "met" if most.size <= ATTEMPT_BYTES and growth <= FLATNESS else "not met"
+        yield (
+            f"| {least.attempts} to {most.attempts:,} open attempts | rvmon step | – | "
+            f"{ratio_text(growth)} a sample, {most.size:.0f} bytes each | "
+            f"constant, ≤ {ATTEMPT_BYTES} bytes | {mark} |"
+        )
+
+
+def _flatness(findings: Findings) -> float | None:
+    """The most that the longest deadline costs over the shortest, of both forms."""
+    growths = []
+    for form in ("past", "future"):
+        times = [
+            figure.median
+            for result in findings.results
+            if result.section == "bound" and result.form == form
+            for figure in result.figures
+            if figure.label == "rvmon step"
+        ]
+        if len(times) > 1:
+            growths.append(times[-1] / times[0])
+    return max(growths, default=None)
+
+
+def _results(results: Sequence[Result]) -> Iterator[str]:
+    labels = list(dict.fromkeys(f.label for result in results for f in result.figures))
+    yield "| workload | form | rows | changing | " + " | ".join(labels) + " |"
+    yield "|---|---|---|---|" + "---|" * len(labels)
+    for result in results:
+        cells = [_cell(_figure(result, label), result) for label in labels]
+        yield (
+            f"| {result.name} | {result.form} | {result.rows:,} | {100 * result.changing:.0f} % | "
+            + " | ".join(cells)
+            + " |"
+        )
+
+
+def _cell(figure: Figure | None, result: Result) -> str:
+    if figure is None:
+        return "–"
+    text = f"{time_text(figure.median)} ({time_text(figure.least)}–{time_text(figure.most)})"
+    return text if figure.rows == result.rows else f"{text}, {figure.rows:,} rows"
+
+
+def _open_attempts(findings: Findings) -> Iterator[str]:
+    yield "| open attempts | CPU per sample | bytes per attempt |"
+    yield "|---|---|---|"
+    for entry in findings.open_attempts:
+        size = f"{entry.size:.0f}" if entry.attempts >= 1_000 else "–"
+        spread = f"({time_text(entry.least)}–{time_text(entry.most)})"
+        yield f"| {entry.attempts:,} | {time_text(entry.median)} {spread} | {size} |"
+
+
+def _agreements(agreements: Sequence[Agreement]) -> Iterator[str]:
+    yield "Verdicts compared row by row on damaged traces, and the instant of the first failure."
+    yield ""
+    yield "| peer | workload | form | equal | of | our FALSE among them |"
+    yield "|---|---|---|---|---|---|"
+    for entry in agreements:
+        if entry.compared:
+            yield (
+                f"| {entry.label} | {entry.name} | {entry.form} | {entry.equal} | "
+                f"{entry.compared} | {entry.false} |"
+            )
+    remarks = sorted({f"{e.label}: {e.remark}" for e in agreements if e.remark})
+    if remarks:
+        yield ""
+        yield "Not compared, and so without a ratio: " + "; ".join(remarks) + "."

@@ -1,0 +1,69 @@
+"""Measuring, without a clock."""
+
+from __future__ import annotations
+
+from benchmarks.contenders import Pass
+from benchmarks.measure import Plan, measure
+from benchmarks.peers.core import UntranslatableError
+from benchmarks.workload import Workload
+
+from rvmon.testing.build import p
+
+WORKLOAD = Workload("online", "a workload", "past", (p,), {"p": [True, True, False, True] * 50})
+
+
+class Fake:
+    """A contender that says what it needs."""
+
+    def __init__(self, label: str, per_row: int, calls: list[str], refuses: str = "") -> None:
+        self.label = label
+        self.per_row = per_row
+        self.calls = calls
+        self.refuses = refuses
+        self.rows = 0
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        assert workload is WORKLOAD
+        if self.refuses:
+            raise UntranslatableError(self.refuses)
+        self.rows = rows
+
+    def run(self) -> Pass:
+        self.calls.append(self.label)
+        return Pass(self.per_row * self.rows, (2,))
+
+    def close(self) -> None:
+        self.calls.append(f"{self.label} closed")
+
+
+def test_turns() -> None:
+    """Contenders pass in turn, each leads once, and all are closed."""
+    calls: list[str] = []
+    contenders = [Fake("a", 10, calls), Fake("b", 20, calls)]
+    result = measure(WORKLOAD, contenders, Plan(2, 1.0))
+    assert calls == ["a", "b", "a", "b", "b", "a", "a closed", "b closed"]
+    assert [(figure.label, figure.median, figure.rows) for figure in result.figures] == [
+        ("a", 10.0, 200),
+        ("b", 20.0, 200),
+    ]
+    assert result.figures[0].violated == (2,)
+
+
+def test_slow_contender_gets_fewer_rows() -> None:
+    """Who is slow gets as many rows as fit into the time, and never less than a few."""
+    result = measure(WORKLOAD, [Fake("a", 10_000_000, [])], Plan(1, 1.0))
+    assert result.figures[0].rows == 100
+    result = measure(WORKLOAD, [Fake("a", 1_000_000_000, [])], Plan(1, 1.0))
+    assert result.figures[0].rows == 50
+
+
+def test_refusal() -> None:
+    """Who cannot take part is named with the reason."""
+    result = measure(WORKLOAD, [Fake("a", 10, [], "no past")], Plan(1, 1.0))
+    assert result.figures == ()
+    assert result.refusals == (("a", "no past"),)
+
+
+def test_changing() -> None:
+    """The share of changing rows counts each row at which some column changes."""
+    assert WORKLOAD.changing == 100 / 199

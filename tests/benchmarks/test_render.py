@@ -1,0 +1,81 @@
+"""The page of results."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from benchmarks.agreement import Agreement
+from benchmarks.attempts import OpenAttempts
+from benchmarks.findings import Findings
+from benchmarks.measure import Figure, Result
+from benchmarks.render import render
+
+OURS = Figure("rvmon step", 1000, 100.0, 90.0, 130.0, (999,))
+REELAY = Figure("reelay", 1000, 900.0, 880.0, 950.0, (999,))
+RESULT = Result("online", "AbsentAQ 10", "past", 1, 1000, 0.25, (OURS, REELAY))
+ALIKE = Agreement("reelay", "AbsentAQ 10", "past", equal=300, compared=300, false=20)
+FINDINGS = Findings(
+    "python -m benchmarks",
+    "a machine",
+    {"rvmon": "0.1.0", "reelay": "1.0"},
+    (RESULT,),
+    (),
+    (ALIKE,),
+)
+
+
+def line(page: str, start: str) -> str:
+    """The line of a page that starts so."""
+    return next(text for text in page.splitlines() if text.startswith(start))
+
+
+def test_ratio_with_agreement() -> None:
+    """A goal shows the peer's time over ours, and whether that is enough."""
+    goal = line(render(FINDINGS), "| online, one step from Python | rvmon step | reelay |")
+    assert "| 9.0× (9.0× to 9.0×) | ≥ 5.0× | met |" in goal
+
+
+def test_no_ratio_without_agreement() -> None:
+    """Where verdicts were not compared, or differed, there is no ratio."""
+    start = "| online, one step from Python | rvmon step | reelay |"
+    for agreements in ((), (replace(ALIKE, equal=299),)):
+        page = render(replace(FINDINGS, agreements=agreements))
+        assert "not measured" in line(page, start)
+
+
+def test_no_ratio_with_other_violation() -> None:
+    """Where the timed passes found another first violation, there is no ratio."""
+    other = replace(RESULT, figures=(OURS, replace(REELAY, violated=(500,))))
+    page = render(replace(FINDINGS, results=(other,)))
+    assert "not measured" in line(page, "| online, one step from Python | rvmon step | reelay |")
+
+
+def test_missed_goal() -> None:
+    """A goal that is missed is said to be missed."""
+    slow = replace(RESULT, figures=(replace(OURS, median=600.0), REELAY))
+    page = render(replace(FINDINGS, results=(slow,)))
+    assert "| 1.5× (1.5× to 1.5×) | ≥ 5.0× | not met |" in page
+
+
+def test_tables() -> None:
+    """A section shows every contender with its spread, and who judged fewer rows."""
+    fewer = replace(REELAY, rows=50)
+    page = render(replace(FINDINGS, results=(replace(RESULT, figures=(OURS, fewer)),)))
+    row = line(page, "| AbsentAQ 10 |")
+    assert "| 1,000 | 25 % | 100 ns (90 ns–130 ns) | 900 ns (880 ns–950 ns), 50 rows |" in row
+
+
+def test_open_attempts() -> None:
+    """Open attempts are met only if time is constant and memory small."""
+    small = OpenAttempts(1, 100.0, 99.0, 101.0, 0.0)
+    large = OpenAttempts(100_000, 110.0, 99.0, 130.0, 20.0)
+    page = render(replace(FINDINGS, open_attempts=(small, large)))
+    assert "| 1.1× a sample, 20 bytes each | constant, ≤ 24 bytes | met |" in page
+    page = render(replace(FINDINGS, open_attempts=(small, replace(large, size=130.0))))
+    assert "| 1.1× a sample, 130 bytes each | constant, ≤ 24 bytes | not met |" in page
+
+
+def test_absent() -> None:
+    """What was not measured is named with its reason."""
+    page = render(replace(FINDINGS, absent={"mstlo-python": "no wheel"}))
+    assert "* Not measured: mstlo-python: no wheel" in page
