@@ -117,7 +117,7 @@ def _of_updates(checker: Checker, call: Call, scope: Scope) -> Quantity:
     rate = function is UpdateFunction.RATE
     return Quantity(
         UpdateValue(function, name),
-        unit=quotient(unit, parse_unit("s")) if rate else unit,
+        unit=quotient(unit, parse_unit("s")) if rate and unit.symbol else unit,
         integral=signal.type.kind is Kind.INT and not rate,
         labels=signal.type.labels,
         truth=signal.type.kind is Kind.BOOL,

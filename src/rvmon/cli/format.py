@@ -1,0 +1,53 @@
+"""`rvmon format`: lay specifications out in the canonical form."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "format",
+        help="lay specifications out in the canonical form",
+        description="Rewrite specifications in the canonical form; meaning and comments stay. "
+        "With - as SPEC, standard input is laid out on standard output.",
+        epilog="example: rvmon format --check specs/*.rv",
+    )
+    parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files")
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; exit with 1 if a file would change"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Lay out, and return the exit code."""
+    from rvmon.errors import SpecError
+    from rvmon.spec.formatter import format_text
+
+    changed = wrong = 0
+    for name in arguments.specs:
+        try:
+            text = sys.stdin.read() if name == "-" else Path(name).read_text(encoding="utf-8")
+            laid_out = format_text(text, name=name)
+            if name != "-" and laid_out != text and not arguments.check:
+                Path(name).write_text(laid_out, encoding="utf-8")
+        except SpecError as error:
+            print(error, file=sys.stderr)
+            wrong += 1
+            continue
+        except (OSError, UnicodeDecodeError) as error:
+            reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
+            print(f"error: {name}: {reason}", file=sys.stderr)
+            wrong += 1
+            continue
+        if name == "-" and not arguments.check:
+            print(laid_out, end="")
+        elif laid_out != text:
+            print(f"{'would change' if arguments.check else 'changed'}: {name}")
+        changed += laid_out != text
+    if wrong:
+        return 2
+    return int(arguments.check and changed > 0)
