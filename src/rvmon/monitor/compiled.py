@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 from rvmon.automaton.automaton import Automaton
@@ -15,12 +16,38 @@ from rvmon.dataflow.numbers import events_of, inputs_of
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
+from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import Obligation, lower
 from rvmon.formula.state import State
 from rvmon.monitor.wording import Words
 from rvmon.spec.checked import CheckedSpec, Compare, Requirement
 
 ENGINES = ("auto", "python", "automaton", "progression")
+
+
+@dataclass(frozen=True, slots=True)
+class CompileReport:
+    """What became of a requirement.
+
+    Attributes:
+        engine: `automaton`, or `progression` where that does not close.
+        why: why it has no automaton; empty if it has one.
+        letters: what its propositions can be, as its formula tells them apart.
+        horizon: ticks from the trigger within which an attempt is decided; `None` if unbounded.
+        locations: of the automaton, both verdicts included; 0 without one. So are the others.
+        clocks: the largest number that an attempt has.
+        classes: of letters that lead the same way everywhere.
+        bytes_per_attempt: of its packed state, a location and an instant per clock.
+    """
+
+    engine: str
+    why: str
+    letters: int
+    horizon: int | None
+    locations: int = 0
+    clocks: int = 0
+    classes: int = 0
+    bytes_per_attempt: int = 0
 
 
 class CompiledRequirement:
@@ -58,6 +85,24 @@ class CompiledRequirement:
     def refusal(self) -> str:
         """Why it has no automaton, or empty."""
         return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
+
+    @property
+    def report(self) -> CompileReport:
+        """How it is judged, and at what cost."""
+        reach, letters = horizon(self.obligation.owed), self.alphabet.size
+        automaton = self.automaton
+        if automaton is None:
+            return CompileReport("progression", self.refusal, letters, reach)
+        return CompileReport(
+            "automaton",
+            "",
+            letters,
+            reach,
+            len(automaton.locations),
+            automaton.clocks,
+            automaton.classes,
+            2 + 8 * automaton.clocks,
+        )
 
     @cached_property
     def _table(self) -> TableMachine | None:

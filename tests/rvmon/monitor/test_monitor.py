@@ -6,6 +6,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
+from rvmon.monitor import compile_spec
 from rvmon.verdict.verdict import Verdict
 
 SPEC = """spec handover "Handover"
@@ -29,6 +30,13 @@ requirement R2 "No release"
 requirement R3 "Far enough"
   upon pick.id > 3
   then immediately distance >= 5 cm
+"""
+
+SPAWNING = """spec spawning
+time held
+event a, b input
+requirement R
+  always (a -> eventually[20 ns, 90 ns] b)
 """
 
 
@@ -175,10 +183,7 @@ def test_an_unknown_option_is_named_with_those_there_are(options):
 
 def test_an_engine_that_cannot_judge_says_so():
     """A formula whose automaton does not close is refused by that engine, judged by `auto`."""
-    spec = rvmon.loads(
-        "spec s\ntime held\nevent a input\nevent b output\n"
-        "requirement R\n  always (a -> eventually[20 ns, 90 ns] b)\n"
-    )
+    spec = rvmon.loads(SPAWNING)
     with pytest.raises(RvmonError, match="R has no automaton"):
         spec.monitor(engine="automaton")
     monitor = spec.monitor()
@@ -193,3 +198,23 @@ def test_numpy_scalars_are_numbers(monitor):
     monitor.step(0, {"ready": numpy.bool_(True), "distance": numpy.float32(0.5)})
     monitor.step(1, {"sensed": True, "pick": {"id": numpy.int64(4)}, "distance": numpy.int8(1)})
     assert monitor.finish().verdicts["R3"] is Verdict.PASS
+
+
+def test_the_compile_report_says_what_became_of_a_requirement():
+    """Engine, size and horizon are known before a run; a refusal names what was too much."""
+    reports = {
+        name: one.report
+        for name, one in compile_spec(rvmon.loads(SPEC).checked).requirements.items()
+    }
+    assert (reports["R1"].engine, reports["R1"].locations, reports["R1"].clocks) == (
+        "automaton",
+        4,
+        1,
+    )
+    assert reports["R1"].horizon == 3 * 10**9
+    assert reports["R3"].clocks == 0
+    [report] = [
+        one.report for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
+    ]
+    assert report.engine == "progression"
+    assert "more than" in report.why
