@@ -1,0 +1,133 @@
+"""What a requirement can never do: trigger, fail, pass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.analysis.letters import combinations_of
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.location import FAILED, NOW, PASSED
+from rvmon.formula.state import FALSE, TRUE, State
+from rvmon.spec.checked import CheckedSpec, EndPolicy
+
+
+@dataclass(frozen=True, slots=True)
+class Possible:
+    """What a requirement may do; `False` is certain, `None` was not decided.
+
+    Attributes:
+        trigger: whether an attempt can start.
+        fail: whether one can fail.
+        pass_: whether one can pass.
+    """
+
+    trigger: bool | None = None
+    fail: bool | None = None
+    pass_: bool | None = None
+
+
+def possible(
+    spec: CheckedSpec, trigger: State | None, automaton: Automaton | None, policy: EndPolicy
+) -> Possible:
+    """What a requirement can do, found on its automaton.
+
+    More is taken to be possible than is, never less: past and complex comparisons are true or
+    false at will, and so is the order in which ages cross their bounds.
+
+    Args:
+        spec: declares the names.
+        trigger: of the requirement; `None` if it is the end of the trace.
+        automaton: of what is owed; `None` if it does not close.
+        policy: for what is undecided at the end.
+
+    Source: AUTOMATA 2, regions after Alur and Dill 1994.
+    """
+    if automaton is None:
+        found = None if trigger is None else combinations_of(spec, [trigger])
+        return Possible(trigger=None if found is None else (True,) in found.vectors)
+    propositions = automaton.alphabet.propositions
+    states = [*propositions, *([] if trigger is None else [trigger])]
+    found = combinations_of(spec, states)
+    if found is None:
+        return Possible()
+    first = {v for v in found.vectors if trigger is None or v[-1]}
+    if not first:
+        return Possible(trigger=False)
+    width = len(propositions)
+    reach = _Reach(automaton)
+    reach.run(
+        {automaton_letter(automaton, v[:width]) for v in first},
+        {automaton_letter(automaton, v[:width]) for v in found.vectors},
+    )
+    undecided = bool(reach.rows)
+    fail = reach.failed or (undecided and policy in (EndPolicy.STRONG, EndPolicy.FAIL))
+    held = policy is EndPolicy.DEFAULT and any(automaton.end_values[row] for row in reach.rows)
+    settled = policy in (EndPolicy.WEAK, EndPolicy.PASS)
+    return Possible(True, fail, reach.passed or held or (undecided and settled))
+
+
+def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
+    """The class of the letter in which the propositions have these truths."""
+    weights = automaton.alphabet.pessimistic
+    letter = sum(
+        own[TRUE] if truth else own[FALSE] for own, truth in zip(weights, truths, strict=True)
+    )
+    return automaton.class_of[letter]
+
+
+class _Reach:
+    """All rows of an automaton that runs can come to, time passing at will.
+
+    Attributes:
+        rows: of undecided locations.
+        failed: whether an attempt can fail.
+        passed: whether one can pass.
+    """
+
+    def __init__(self, automaton: Automaton) -> None:
+        self.automaton = automaton
+        self.rows: set[int] = set()
+        self.failed = False
+        self.passed = False
+
+    def run(self, first: set[int], letters: set[int]) -> None:
+        """Explore from the trigger; letters are given by their classes."""
+        waiting = list(self._step(self.automaton.initial, (), first))
+        seen = set(waiting)
+        while waiting:
+            location, regions = waiting.pop()
+            for later in self._later(location, regions):
+                row = self._row(location, later)
+                self.rows.add(row)
+                self.failed |= self.automaton.time_values[row] == FALSE
+                self.passed |= self.automaton.time_values[row] == TRUE
+                for reached in self._step(location, later, letters):
+                    if reached not in seen:
+                        seen.add(reached)
+                        waiting.append(reached)
+
+    def _later(self, location: int, regions: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
+        cuts = self.automaton.locations[location].cuts
+        return product(*(range(r, len(own) + 1) for r, own in zip(regions, cuts, strict=True)))
+
+    def _row(self, location: int, regions: tuple[int, ...]) -> int:
+        strides = self.automaton.strides[location]
+        return self.automaton.bases[location] + sum(map(int.__mul__, regions, strides))
+
+    def _step(
+        self, location: int, regions: tuple[int, ...], letters: Iterable[int]
+    ) -> Iterator[tuple[int, tuple[int, ...]]]:
+        automaton = self.automaton
+        row = self._row(location, regions)
+        for letter in letters:
+            edge = automaton.edges[row * automaton.classes + letter]
+            if edge < 0:
+                continue
+            target = automaton.targets[edge]
+            if target <= PASSED:
+                self.failed |= target == FAILED
+                self.passed |= target == PASSED
+                continue
+            yield target, tuple(0 if s == NOW else regions[s] for s in automaton.sources[edge])

@@ -1,0 +1,123 @@
+"""`rvmon explain`: a requirement, the difference of two, or a diagnostic's code."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError, UnknownNameError
+
+if TYPE_CHECKING:
+    from rvmon.monitor.compiled import CompiledSpec
+    from rvmon.session import Spec
+
+_CODE = re.compile(r"RV\d+", re.IGNORECASE)
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "explain",
+        help="a requirement, or a diagnostic's code, in plain words",
+        description="Explain a requirement: in plain words, its automaton, and the shortest runs "
+        "on which it passes, fails, is not triggered, stays open. Two: where they differ. "
+        "A diagnostic's code such as RV012: its page.",
+        epilog="example: rvmon explain specs/door.rv D1",
+    )
+    parser.add_argument("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
+    parser.add_argument(
+        "ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)"
+    )
+    parser.add_argument(
+        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
+    )
+    parser.add_argument("--svg", metavar="FILE", help="write the automaton as a picture")
+    parser.add_argument("--dot", action="store_true", help="print the automaton as DOT, no more")
+    parser.add_argument(
+        "--runs", metavar="N", type=int, default=4000, help="short runs to try (default: 4000)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Explain, and return the exit code."""
+    if _CODE.fullmatch(arguments.subject) and not Path(arguments.subject).exists():
+        _explain_code(arguments.subject.upper())
+        return 0
+    from rvmon.cli.constants import constants_of
+    from rvmon.monitor import compile_spec
+    from rvmon.session import load
+
+    spec = load(arguments.subject, const=constants_of(arguments.const))
+    ids = _ids(arguments.ids, spec)
+    if arguments.runs < 1:
+        raise RvmonError(f"error: --runs {arguments.runs}: expected a number from 1")
+    compiled = compile_spec(spec.checked)
+    if arguments.dot or arguments.svg:
+        _draw(compiled, ids, arguments)
+    if not arguments.dot:
+        _print(compiled, ids, difference=len(arguments.ids) == 2, runs=arguments.runs)
+    return 0
+
+
+def _ids(named: list[str], spec: Spec) -> list[str]:
+    known = ", ".join(spec.requirements) or "none"
+    for name in named:
+        if name not in spec.requirements:
+            raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
+    if len(named) > 2 or (len(named) == 2 and named[0] == named[1]):
+        raise RvmonError("error: expected one requirement, or two different ones to tell apart")
+    return named or list(spec.requirements)
+
+
+def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: int) -> None:
+    from rich.console import Console
+
+    from rvmon.explain.example import Budget
+    from rvmon.explain.requirement_text import difference_explained, explained
+
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    budget = Budget(runs=runs)
+    if difference:
+        for part in difference_explained(compiled, ids[0], ids[1], budget):
+            console.print(part)
+        return
+    for number, name in enumerate(ids):
+        if number:
+            console.print()
+        for part in explained(compiled, name, budget):
+            console.print(part)
+
+
+def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace) -> None:
+    from rvmon.explain.graph import graph_of
+    from rvmon.explain.graph_svg import graph_svg
+    from rvmon.explain.graph_text import graph_dot
+
+    for name in ids:
+        one = compiled.requirements[name]
+        if one.automaton is None:
+            raise RvmonError(f"error: {name} has no automaton to draw: {one.refusal}")
+        graph = graph_of(one, one.automaton, compiled.checked)
+        if arguments.dot:
+            print(graph_dot(graph, name), end="")
+        if arguments.svg:
+            if len(ids) > 1:
+                raise RvmonError("error: --svg draws one requirement: name it after the file")
+            try:
+                Path(arguments.svg).write_text(graph_svg(graph, name), encoding="utf-8")
+            except OSError as error:
+                raise RvmonError(f"error: {arguments.svg}: {error.strerror or error}") from None
+
+
+def _explain_code(code: str) -> None:
+    from rvmon.spec.rules.registry import all_rules
+
+    rules = all_rules()
+    if code not in rules:
+        known = ", ".join(rules)
+        raise UnknownNameError(f"error: no diagnostic `{code}`: there are {known}")
+    from rvmon.spec.pages import rule_page
+
+    print(rule_page(rules[code]), end="")

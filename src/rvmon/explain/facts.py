@@ -1,0 +1,70 @@
+"""What judging a requirement takes: engine, size, horizon, memory."""
+
+from __future__ import annotations
+
+from rvmon.automaton.automaton import Automaton
+from rvmon.dataflow.graph import graph_of
+from rvmon.formula.horizon import horizon
+from rvmon.formula.state import State, StateOp
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.spec.printer import format_duration
+
+Facts = dict[str, str]
+
+
+def facts_of(compiled: CompiledRequirement) -> Facts:
+    """By heading, one line each."""
+    automaton = compiled.automaton
+    facts = {
+        "engine": _engine(compiled, automaton),
+        "decided": _decided(compiled),
+        "memory": _memory(automaton),
+    }
+    past = _past(compiled)
+    return {**facts, "looks back": past} if past else facts
+
+
+def _engine(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
+    if automaton is None:
+        return f"progression, step by step: as an automaton it would have {compiled.refusal}"
+    clocks = automaton.clocks
+    return (
+        f"automaton of {_counted(len(automaton.locations), 'location')}, "
+        f"{_counted(clocks, 'clock')}, {_counted(automaton.classes, 'class', 'classes')} of inputs"
+    )
+
+
+def _decided(compiled: CompiledRequirement) -> str:
+    reach = horizon(compiled.obligation.owed)
+    if reach is None:
+        return "no bound: it may stay open until the recording ends"
+    return f"{format_duration(reach)} after its trigger at the latest" if reach else "at once"
+
+
+def _memory(automaton: Automaton | None) -> str:
+    if automaton is None:
+        return "per open attempt what it still owes, with a stamp for each part"
+    stamps = f", {_counted(automaton.clocks, 'time stamp')}" if automaton.clocks else ""
+    return f"per open attempt its location{stamps}"
+
+
+def _past(compiled: CompiledRequirement) -> str:
+    """How far its past operators look."""
+    trigger = compiled.obligation.trigger
+    states = [*compiled.alphabet.propositions, *([] if trigger is None else [trigger])]
+    nodes = graph_of(states).nodes
+    since = [node for node in nodes if node.op is StateOp.SINCE]
+    if not since:
+        return "to the position before" if any(map(_is_previous, nodes)) else ""
+    bounds = [node.high for node in since if node.high is not None]
+    if len(bounds) < len(since):
+        return "over all that was"
+    return f"over the last {format_duration(sum(bounds) if len(bounds) > 1 else bounds[0])} at most"
+
+
+def _is_previous(node: State) -> bool:
+    return node.op is StateOp.PREVIOUS
+
+
+def _counted(count: int, noun: str, plural: str = "") -> str:
+    return f"{count} {noun if count == 1 else plural or noun + 's'}"

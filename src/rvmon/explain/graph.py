@@ -1,0 +1,264 @@
+"""An automaton as people read it: places, and edges with conditions in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.analysis.letters import combinations_of
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.location import FAILED, NOW, PASSED
+from rvmon.explain.cubes import ANY, Cube, cubes_of
+from rvmon.formula.core import Core, Literal, Sense
+from rvmon.formula.residual import Clause
+from rvmon.formula.state import FALSE, TRUE, Elapsed, State
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Mode
+from rvmon.spec.printer import format_duration, format_formula
+
+MOST_PROPOSITIONS = 8
+"""Conditions over more propositions are counted, not spelled out."""
+
+CLOCKS = "xyzuvwabcd"
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A location.
+
+    Attributes:
+        name: a short one: `start`, `A`, `B`, …, `P`, `F`.
+        owed: what is still owed there; empty at the ends.
+    """
+
+    name: str
+    owed: str
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A step.
+
+    Attributes:
+        source: name of a place.
+        target: the same.
+        condition: on the input; empty for any.
+        when: on the clocks; empty for any.
+        sets: the clocks that are started or renamed, as text.
+    """
+
+    source: str
+    target: str
+    condition: str
+    when: str
+    sets: str
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """An automaton to be drawn; the first place is where an attempt starts."""
+
+    places: tuple[Place, ...]
+    edges: tuple[Edge, ...]
+
+
+def graph_of(compiled: CompiledRequirement, automaton: Automaton, spec: CheckedSpec) -> Graph:
+    """An automaton with its conditions in words.
+
+    Unknown inputs are left out, and combinations that inputs cannot bring about.
+    """
+    names = _names(automaton)
+    places = tuple(
+        Place(names[index], _owed(compiled, automaton, index))
+        for index in sorted(names, key=lambda index: (index <= PASSED, index != automaton.initial))
+    )
+    reader = _Reader(compiled, automaton, spec)
+    edges = [
+        Edge(names[index], names[target], condition, when, sets)
+        for index in range(PASSED + 1, len(automaton.locations))
+        for target, condition, when, sets in reader.edges(index)
+    ]
+    return Graph(places, tuple(edges))
+
+
+def _names(automaton: Automaton) -> dict[int, str]:
+    names = {FAILED: "F", PASSED: "P", automaton.initial: "start"}
+    letters = [chr(code) for code in range(ord("A"), ord("Z") + 1) if chr(code) not in "FP"]
+    rest = [index for index in range(len(automaton.locations)) if index not in names]
+    for number, index in enumerate(rest):
+        names[index] = letters[number] if number < len(letters) else f"L{index}"
+    return names
+
+
+def _owed(compiled: CompiledRequirement, automaton: Automaton, index: int) -> str:
+    location = automaton.locations[index]
+    if index <= PASSED:
+        return ""
+    if index == automaton.initial:
+        return "the trigger"
+    clauses = []
+    in_order = sorted(
+        sorted((clock, node.id, node) for node, clock in c) for c in location.residual
+    )
+    for ordered in in_order:
+        texts = [_obligation(compiled, node) for _, _, node in ordered]
+        clauses.append(" and ".join(dict.fromkeys(texts)))
+    return ", or ".join(dict.fromkeys(clauses))
+
+
+def _in_order(clause: Clause) -> list[tuple[int, int, Core]]:
+    return sorted((clock, node.id, node) for node, clock in clause)
+
+
+def _obligation(compiled: CompiledRequirement, node: Core) -> str:
+    episode = compiled.requirement.mode is Mode.WHENEVER and node is compiled.obligation.owed
+    return "what the episode brings" if episode else compiled.words.text(node)
+
+
+class _Reader:
+    """Puts the edges of an automaton into words."""
+
+    def __init__(
+        self, compiled: CompiledRequirement, automaton: Automaton, spec: CheckedSpec
+    ) -> None:
+        self.automaton = automaton
+        self.texts = _texts(compiled)
+        self.propositions = automaton.alphabet.propositions
+        self.letters = _two_valued(automaton)
+        trigger = compiled.obligation.trigger
+        states = [*self.propositions, *([] if trigger is None else [trigger])]
+        found = combinations_of(spec, states)
+        vectors = None if found is None else found.vectors
+        width = len(self.propositions)
+        self.later = self._feasible(vectors, width)
+        self.first = self._feasible(
+            vectors and {v for v in vectors if len(v) == width or v[-1]}, width
+        )
+
+    def _feasible(self, vectors: Set[tuple[bool, ...]] | None, width: int) -> Set[Cube]:
+        if vectors is None:
+            return self.letters.keys()
+        return {tuple(map(int, v[:width])) for v in vectors} & self.letters.keys()
+
+    def edges(self, index: int) -> Iterator[tuple[int, str, str, str]]:
+        """Target, condition on the input, condition on the clocks, clocks that are set."""
+        automaton = self.automaton
+        cuts = automaton.locations[index].cuts
+        can_be = self.first if index == automaton.initial else self.later
+        never = self.letters.keys() - can_be
+        found: dict[tuple[int, tuple[int, ...], tuple[Cube, ...]], list[tuple[int, ...]]] = {}
+        for regions in product(*(range(len(own) + 1) for own in cuts)):
+            row = automaton.bases[index] + sum(map(int.__mul__, regions, automaton.strides[index]))
+            groups: dict[tuple[int, tuple[int, ...]], list[Cube]] = {}
+            for cube in sorted(can_be, reverse=True):
+                letter = self.letters[cube]
+                edge = automaton.edges[row * automaton.classes + automaton.class_of[letter]]
+                if edge >= 0:
+                    key = (automaton.targets[edge], automaton.sources[edge])
+                    groups.setdefault(key, []).append(cube)
+            for (target, sources), letters in groups.items():
+                found.setdefault((target, sources, cubes_of(letters, never)), []).append(regions)
+        for (target, sources, cubes), rows in found.items():
+            yield target, self._condition(cubes), _when(rows, cuts), _sets(sources)
+
+    def _condition(self, cubes: Sequence[Cube]) -> str:
+        if len(self.propositions) > MOST_PROPOSITIONS:
+            return f"for {len(cubes)} combinations of inputs"
+        texts = [self._cube(cube) for cube in cubes]
+        return " or ".join(texts) if all(texts) else ""
+
+    def _cube(self, cube: Cube) -> str:
+        parts = [
+            self.texts[state] if truth == 1 else _negated(self.texts[state])
+            for state, truth in zip(self.propositions, cube, strict=True)
+            if truth != ANY
+        ]
+        return " and ".join(parts if len(parts) == 1 else map(_bracketed, parts))
+
+
+def _two_valued(automaton: Automaton) -> Mapping[Cube, int]:
+    """The letters without unknowns, by the truths of their propositions."""
+    weights = automaton.alphabet.pessimistic
+    if len(weights) > MOST_PROPOSITIONS:
+        return {}
+    digits = [(own[FALSE], own[TRUE]) for own in weights]
+    return {
+        truths: sum(own[truth] for own, truth in zip(digits, truths, strict=True))
+        for truths in product((1, 0), repeat=len(weights))
+    }
+
+
+def _texts(compiled: CompiledRequirement) -> dict[State, str]:
+    """The propositions in the words of the spec."""
+    texts: dict[State, str] = {}
+    requirement = compiled.requirement
+    for node, origin in compiled.obligation.origins.items():
+        if isinstance(node, Literal):
+            negative = origin.positive is (node.sense is not Sense.TRUE)
+            formula = origin.formula
+            if formula is requirement.consequent and requirement.mode is Mode.WHENEVER:
+                # What an episode owes at each instant is the whole implication.
+                formula = Binary(BinaryOp.IMPLIES, requirement.trigger, formula)
+            text = format_formula(formula)
+            texts.setdefault(node.proposition, _negated(text) if negative else text)
+    for number, state in enumerate(compiled.alphabet.propositions, 1):
+        if state.leaf is not None and not isinstance(state.leaf, Elapsed):
+            texts[state] = format_formula(state.leaf)
+        texts.setdefault(state, f"proposition {number}")
+    return texts
+
+
+def _bracketed(text: str) -> str:
+    """A part of a conjunction; in brackets if it has a connective of its own."""
+    loose = any(f" {word} " in text for word in ("or", "and", "->", "<->", "xor"))
+    return f"({text})" if loose and not text.startswith(("not (", "(")) else text
+
+
+def _negated(text: str) -> str:
+    plain = " " not in text or (text.endswith(")") and text.count("(") == 1 and " " not in text[:2])
+    if text.startswith("not "):
+        return text.removeprefix("not ").strip("()")
+    return f"not {text}" if plain else f"not ({text})"
+
+
+def _when(rows: Sequence[tuple[int, ...]], cuts: tuple[tuple[int, ...], ...]) -> str:
+    """The ages of the clocks in some rows; where they make up no box, the rows one by one."""
+    spans = [sorted({row[clock] for row in rows}) for clock in range(len(cuts))]
+    size = 1
+    for span in spans:
+        size *= len(span)
+    boxes = [spans] if size == len(rows) else [[[region] for region in row] for row in rows]
+    texts = [" and ".join(filter(None, map(_between, CLOCKS, box, cuts))) for box in boxes]
+    return " or ".join(filter(None, dict.fromkeys(texts)))
+
+
+def _between(clock: str, span: Sequence[int], cuts: tuple[int, ...]) -> str:
+    """The ages of one clock in a span of its regions."""
+    low = cuts[span[0] - 1] if span[0] else None
+    high = cuts[span[-1]] - 1 if span[-1] < len(cuts) else None
+    if low is None and high is None:
+        return ""
+    if low is None:
+        return f"{clock} ≤ {format_duration(high or 0)}"
+    least = _least(clock, low)
+    if high is None:
+        return least
+    return f"{least}, {clock} ≤ {format_duration(high)}"
+
+
+def _least(clock: str, low: int) -> str:
+    """At least `low`; a tick more than a round duration reads as above that."""
+    if len(format_duration(low - 1)) < len(format_duration(low)):
+        return f"{clock} > {format_duration(low - 1)}"
+    return f"{clock} ≥ {format_duration(low)}"
+
+
+def _sets(sources: tuple[int, ...]) -> str:
+    parts = []
+    for clock, source in zip(CLOCKS, sources, strict=False):
+        if source == NOW:
+            parts.append(f"{clock} := 0")
+        elif CLOCKS[source] != clock:
+            parts.append(f"{clock} := {CLOCKS[source]}")
+    return ", ".join(parts)

@@ -1,0 +1,130 @@
+"""`rvmon explain` as a person uses it."""
+
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from rvmon.cli import main
+
+SPEC = """
+spec door "A door"
+signal closed : bool input
+signal speed : real [m/s] output
+event knock input
+requirement D1 "Knocking opens the door"
+  upon knock
+  then within 2 s not closed
+requirement D2
+  upon knock
+  then within 3 s not closed
+requirement D3
+  upon start
+  then eventually knock
+requirement D4
+  always (closed -> speed <= 0 m/s)
+requirement D5
+  upon knock and closed and not closed
+  then within 2 s knock
+requirement D6
+  always (knock -> within 2 s for 1 s (closed and once[0, 1 s] knock))
+"""
+
+
+@pytest.fixture
+def door(tmp_path, monkeypatch):
+    """A folder with a spec."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "door.rv").write_text(SPEC)
+    return tmp_path
+
+
+def shown(capsys, *words):
+    """What the command prints."""
+    assert main(["explain", *words]) == 0
+    return capsys.readouterr().out
+
+
+def test_words_facts_automaton_and_runs(door, capsys):
+    """A requirement is told in words, with its automaton and a run for each verdict."""
+    text = shown(capsys, "door.rv", "D1")
+    assert "Each time that knock occurs:" in text
+    assert "within 2 s, closed is false." in text
+    assert "1 clock" in text
+    assert "x > 2 s ─▶ ✗ F" in text
+    for verdict in ("✓ P", "✗ F", "– NT", "? I"):
+        assert verdict in text.split("The shortest run")[1]
+    assert "2 s⁺" in text
+
+
+def test_all_requirements_within_80_columns(door, capsys):
+    """Without an id all are told; no line is wider than 80 columns."""
+    text = shown(capsys, "door.rv")
+    assert all(len(line) <= 80 for line in text.splitlines()), text
+    assert text.count("The shortest run on which it") == 6
+
+
+def test_what_cannot_be_is_said(door, capsys):
+    """It is said why there is no example."""
+    text = shown(capsys, "door.rv", "D3")
+    assert "fails: never, whatever comes" in text
+    assert "is not triggered: never, every run triggers it" in text
+    assert "nothing can trigger it" in shown(capsys, "door.rv", "D5")
+
+
+def test_too_small_a_budget_is_said(door, capsys):
+    """Where the search ends early nothing is claimed."""
+    assert "not decided" in shown(capsys, "door.rv", "D1", "--runs", "2")
+
+
+def test_the_difference_of_two(door, capsys):
+    """Two requirements: a run on which one fails and the other does not."""
+    text = shown(capsys, "door.rv", "D1", "D2")
+    difference = text.split("one fails and the other does not")[1]
+    rows = {line.split()[0]: line for line in difference.splitlines() if line.strip()}
+    assert "✗ F" in rows["D1"]
+    assert "✗ F" not in rows["D2"]
+
+
+def test_a_requirement_differs_not_from_its_twin(tmp_path, capsys):
+    """Equal requirements: none is found, and it is said after how many runs."""
+    path = tmp_path / "twins.rv"
+    path.write_text("event a\nrequirement R1\n upon a\n then immediately a\n"
+                    "requirement R2\n upon a\n then immediately a\n")  # fmt: skip
+    assert "No run was found" in shown(capsys, str(path), "R1", "R2")
+
+
+def test_dot_and_svg(door, capsys):
+    """The automaton as DOT and as well-formed SVG, with all its places and conditions."""
+    dot = shown(capsys, "door.rv", "D1", "--dot")
+    assert dot.startswith('digraph "D1" {')
+    assert '"A" -> "F" [label="x > 2 s"]' in dot
+    shown(capsys, "door.rv", "D1", "--svg", "d1.svg")
+    root = ET.fromstring((door / "d1.svg").read_text())  # noqa: S314 - we made it
+    texts = [element.text for element in root.iter() if element.tag.endswith("text")]
+    assert {"start", "A", "✓ P", "✗ F"} <= set(texts)
+
+
+def test_a_code_has_its_page(capsys):
+    """A diagnostic's code is explained by its page, in either case of letters."""
+    assert "# RV012 unknown-signal" in shown(capsys, "RV012")
+    assert "# RV012 unknown-signal" in shown(capsys, "rv012")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["door.rv", "D9"], "no requirement `D9`: there are D1"),
+        (["door.rv", "D1", "D1"], "two different ones"),
+        (["door.rv", "D1", "D2", "D3"], "two different ones"),
+        (["none.rv", "D1"], "none.rv"),
+        (["RV999"], "no diagnostic `RV999`"),
+        (["door.rv", "--svg", "x.svg"], "--svg draws one requirement"),
+        (["door.rv", "D1", "--svg", "no/such/x.svg"], "no/such/x.svg"),
+        (["door.rv", "D1", "--runs", "0"], "--runs 0"),
+        (["door.rv", "D1", "--const", "T"], "NAME=VALUE"),
+    ],
+)
+def test_wrong_words_are_answered_with_a_mend(door, capsys, words, said):
+    """One message, exit code 2, no traceback."""
+    assert main(["explain", *words]) == 2
+    assert said in capsys.readouterr().err
