@@ -91,8 +91,6 @@ WORD = re.compile(
     r"for each|at end|stale after|\d[\d.]*(?: (?:[numk]?s|min|h)\b)?"
     r"|[\w.]+|<->|->|==|!=|<=|>=|[^\w\s]|\s+"
 )
-    r"for each|at end|stale after|\d[\d.]*(?: (?:[numk]?s|min|h)\b)?|[\w.]+|<->|->|==|!=|<=|>=|[^\w\s]|\s+"
-)
 
 
 def _text_of(spec: CheckedSpec) -> str:
