@@ -75,7 +75,7 @@ def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: in
     from rich.console import Console
 
     from rvmon.explain.example import Budget
-    from rvmon.explain.requirement_text import difference_explained, explained
+    from rvmon.report.explain_text import difference_explained, explained
 
     console = Console(highlight=False, markup=False, soft_wrap=True)
     budget = Budget(runs=runs)

@@ -11,10 +11,10 @@ from rvmon.explain.example import Budget, Found
 from rvmon.explain.facts import facts_of
 from rvmon.explain.graph import graph_of
 from rvmon.explain.graph_text import graph_lines
-from rvmon.explain.picture import picture_of
 from rvmon.explain.search import difference_of, shortest_examples, verdict_of
 from rvmon.explain.words import requirement_in_words
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.report.example_text import picture_of
 from rvmon.spec.checked import BoundAtom, Constant, Mode, Requirement
 from rvmon.verdict.verdict import Verdict
 
