@@ -74,6 +74,8 @@ class _Construction:
         self.youngest: list[tuple[int, ...]] = []
         """Per location, for each clock the least age with which it is entered."""
         self.rows: dict[tuple[int, tuple[int, ...]], Node] = {}
+        self.least: dict[tuple[int, tuple[int, ...]], tuple[int, ...]] = {}
+        """Per row, the least ages with which it was explored."""
         self.diagrams = Diagrams(alphabet)
         self.todo: list[int] = []
 
@@ -111,14 +113,15 @@ class _Construction:
     def explore(self, index: int) -> None:
         location = self.locations[index]
         for regions in product(*(range(len(cuts) + 1) for cuts in location.cuts)):
-            if (index, regions) in self.rows:
-                continue
+            row = (index, regions)
             ages = _least_ages(location.cuts, regions, self.youngest[index])
-            if ages is None:
+            # A row that is now met younger leads on younger as well: its targets have to know.
+            if ages is None or self.least.get(row) == ages:
                 continue
-            if len(self.rows) >= self.budget.rows:
+            if row not in self.rows and len(self.rows) >= self.budget.rows:
                 raise DoesNotCloseError(f"more than {self.budget.rows} regions")
-            self.rows[index, regions] = self.diagram(location.residual, ages)
+            self.least[row] = ages
+            self.rows[row] = self.diagram(location.residual, ages)
 
     def diagram(self, residual: Residual, ages: tuple[int, ...]) -> Node:
         def read(literal: Literal) -> Residual:
