@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from hypothesis import note
 from hypothesis import strategies as st
 
 from rvmon.spec.checked import CheckedSpec, Formula
@@ -14,6 +15,7 @@ from rvmon.testing.case import Case
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
+from rvmon.testing.show import show_case
 
 _ANY_SPEC = Profile()
 _ANY_TRACE = TraceProfile()
@@ -64,7 +66,7 @@ def traces(draw: st.DrawFn, spec: CheckedSpec, profile: TraceProfile = _ANY_TRAC
             oracle is to judge.
         profile: what they may hold.
     """
-    return random_trace(_Drawn(draw), spec, profile)
+    return _noted(random_trace(_Drawn(draw), spec, profile))
 
 
 @st.composite
@@ -79,4 +81,10 @@ def cases(
         trace_profile: of the traces.
     """
     dice = _Drawn(draw)
-    return random_trace(dice, random_spec(dice, profile), trace_profile)
+    return _noted(random_trace(dice, random_spec(dice, profile), trace_profile))
+
+
+def _noted(case: Case) -> Case:
+    """The case itself; a failing test shows it as text."""
+    note(show_case(case))
+    return case
