@@ -12,6 +12,7 @@ from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
+    from rvmon.codegen.plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.spec.checked import CheckedSpec, Requirement
@@ -57,6 +58,20 @@ class Spec:
         from rvmon.monitor import compile_spec
 
         return compile_spec(self.checked)
+
+    def plan(self, *, only: Iterable[str] | None = None) -> Plan:
+        """What `rvmon.codegen` makes Python and C of that run without rvmon.
+
+        Args:
+            only: ids of the requirements; default all.
+
+        Raises:
+            UnknownNameError: there is no such requirement.
+            RvmonError: one of them is beyond generated code; which and why is said.
+        """
+        from rvmon.monitor.generated import plan_alone
+
+        return plan_alone(self._compiled, only)
 
     def monitor(
         self,

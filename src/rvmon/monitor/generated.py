@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rvmon.automaton.machine import INFINITY, Token
@@ -14,7 +14,7 @@ from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import LIMIT, Unit
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Inputs
-from rvmon.errors import TraceError
+from rvmon.errors import RvmonError, TraceError, UnknownNameError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.judge import Judge, Open
 from rvmon.monitor.lanes import Lanes
@@ -41,6 +41,36 @@ def plan_requirements(compiled: CompiledSpec, requirements: Sequence[CompiledReq
             for one in requirements
         ],
     )
+
+
+def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
+    """The plan of what is to run without rvmon.
+
+    Args:
+        compiled: the specification.
+        only: ids of its requirements; default all.
+
+    Raises:
+        UnknownNameError: there is no such requirement.
+        RvmonError: one of them is beyond generated code; which and why is said.
+    """
+    chosen = list(compiled.requirements.values())
+    if only is not None:
+        names = list(only)
+        for name in names:
+            if name not in compiled.requirements:
+                known = ", ".join(compiled.requirements)
+                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
+        chosen = [one for one in chosen if one.requirement.id in names]
+    for one in chosen:
+        what = "for each" if one.requirement.for_each else "let" if one.requirement.captures else ""
+        reason = f"uses `{what}`" if what else f"has no automaton: {one.refusal}"
+        if what or one.automaton is None:
+            raise RvmonError(
+                f"{one.requirement.id} {reason}; generated code cannot judge it: "
+                "leave it out with --only, or use `rvmon run`"
+            )
+    return plan_requirements(compiled, chosen)
 
 
 class Forms:

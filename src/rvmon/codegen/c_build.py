@@ -1,0 +1,86 @@
+"""Compiling generated C, once for each content, in a cache that any process may share or delete."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from rvmon.errors import RvmonError
+
+FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic")
+
+
+def compiler() -> str:
+    """The C compiler: `$CC`, or the first of cc, gcc, clang.
+
+    Raises:
+        RvmonError: there is none.
+    """
+    named = os.environ.get("CC")
+    for name in [named] if named else ["cc", "gcc", "clang"]:
+        found = shutil.which(name)
+        if found:
+            return found
+    raise RvmonError(
+        f"no C compiler found ({named or 'cc, gcc, clang'}): install one, or name it with CC=…"
+    )
+
+
+def cache_directory() -> Path:
+    """Where compiled monitors are kept: only this user can write there.
+
+    Raises:
+        RvmonError: the place belongs to someone else, or others may write there.
+    """
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    path = Path(base) / "rvmon"
+    try:
+        path.mkdir(parents=True, exist_ok=True, mode=0o700)
+        state = path.stat()
+    except OSError as error:
+        raise RvmonError(f"cannot keep compiled monitors in {path}: {error.strerror}") from None
+    if hasattr(os, "getuid") and (state.st_uid != os.getuid() or state.st_mode & 0o022):
+        raise RvmonError(f"{path} can be written by others: `chmod 700` it, or set XDG_CACHE_HOME")
+    return path
+
+
+def built(
+    texts: Mapping[str, str],
+    sources: Sequence[str],
+    suffix: str,
+    flags: Sequence[str],
+    libraries: Sequence[str] = ("-lm",),
+) -> Path:
+    """The path of what the compiler makes of some files; it is made if it is not in the cache.
+
+    Args:
+        texts: by file name.
+        sources: those of them that are compiled.
+        suffix: of the result.
+        flags: for the compiler, beside `FLAGS`.
+        libraries: for the linker.
+
+    Raises:
+        RvmonError: there is no compiler, or it failed.
+    """
+    command = [compiler(), *FLAGS, *flags]
+    key = hashlib.sha256(repr((sorted(texts.items()), command, sys.platform)).encode()).hexdigest()
+    target = cache_directory() / f"{key[:40]}{suffix}"
+    if target.exists():
+        return target
+    with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
+        for name, text in texts.items():
+            (Path(scratch) / name).write_text(text, encoding="utf-8")
+        made = Path(scratch) / "made"
+        words = [*command, *sources, "-o", str(made), *libraries]
+        done = subprocess.run(words, cwd=scratch, capture_output=True, text=True, check=False)  # noqa: S603
+        if done.returncode:
+            raise RvmonError(f"the C compiler failed: {' '.join(words)}\n{done.stderr}")
+        made.replace(target)  # atomic: others see the whole file or none
+    return target

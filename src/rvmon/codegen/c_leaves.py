@@ -1,0 +1,207 @@
+"""State formulas as C expressions over the fields of a generated monitor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import assert_never
+
+from rvmon.codegen.c_names import Names
+from rvmon.codegen.plan import Plan
+from rvmon.dataflow.numbers import events_of
+from rvmon.formula.state import Elapsed, Leaf, State, StateOp
+from rvmon.spec.checked import (
+    Arithmetic,
+    BoundAtom,
+    Captured,
+    Compare,
+    Constant,
+    EventAtom,
+    FieldValue,
+    Literal,
+    Numeric,
+    NumericOp,
+    Probe,
+    ProbeAtom,
+    SignalAtom,
+    SignalValue,
+    UpdateFunction,
+    UpdateValue,
+)
+
+_INFIX = {NumericOp.ADD: "+", NumericOp.SUB: "-", NumericOp.MUL: "*", NumericOp.DIV: "/"}
+_LIBRARY = {NumericOp.SQRT: "sqrt", NumericOp.HYPOT: "hypot"}
+
+
+def uses_library(plan: Plan) -> bool:
+    """Whether some expression needs `<math.h>`."""
+    return any(
+        f"{name}(" in "".join(node_body(plan, Names(plan), place))
+        for place in range(len(plan.graph.nodes))
+        for name in _LIBRARY.values()
+    )
+
+
+def node_body(plan: Plan, names: Names, place: int) -> list[str]:
+    """Statements of a function of `m` and `t` that returns the value of a node."""
+    state = plan.graph.nodes[place]
+    if isinstance(state.leaf, Compare) and (events := events_of(state.leaf.left, state.leaf.right)):
+        return list(_over_occurrences(names, state.leaf, events))
+    if isinstance(state.leaf, Elapsed):
+        return [
+            f"const int64_t due = sum(m->origin, {_integer(state.leaf.duration)});",
+            f"m->wake[{place}] = (t < due) ? due : NEVER;",
+            "return truth_of(true, t >= due);",
+        ]
+    return [f"return {_value(plan, names, place, state)};"]
+
+
+def _value(plan: Plan, names: Names, place: int, state: State) -> str:
+    operands = [f"m->truth[{operand}]" for operand in plan.graph.operands[place]]
+    if state.leaf is not None:
+        return leaf_value(names, state.leaf)
+    match state.op:
+        case StateOp.NOT:
+            return f"(uint8_t)(2U - {operands[0]})"
+        case StateOp.AND:
+            return _nested("both", operands)
+        case StateOp.OR:
+            return _nested("either", operands)
+        case StateOp.PREVIOUS:
+            return f"previous(m, {place}, {names.memory[place]}, t, {operands[0]})"
+        case StateOp.SINCE:
+            high = "NEVER" if state.high is None else _integer(state.high)
+            bounds = f"{_integer(state.low)}, {high}"
+            slot = names.memory[place]
+            return f"since(m, {place}, {slot}, t, {operands[0]}, {operands[1]}, {bounds})"
+        case StateOp.LEAF:
+            raise ValueError("a leaf reads something")
+        case _:
+            assert_never(state.op)
+
+
+def leaf_value(names: Names, leaf: Leaf) -> str:
+    """The truth of a leaf that reads no payload."""
+    match leaf:
+        case Constant(value=value):
+            return "(uint8_t)IS_TRUE" if value else "(uint8_t)IS_FALSE"
+        case Elapsed():
+            raise ValueError("elapsed time is looked up by place")
+        case BoundAtom():
+            return "truth_of(true, t == m->origin)"
+        case SignalAtom(name=name):
+            held = f"m->value[{names.signal(name)}]"
+            return f"truth_of({held} == {held}, {held} != 0.0)"
+        case EventAtom(name=name):
+            return f"m->occurs[{names.event(name)}]"
+        case ProbeAtom(probe=probe, name=name):
+            return _probe(names, probe, name)
+        case Compare():
+            return _comparison(names, leaf)
+        case _:
+            assert_never(leaf)
+
+
+def _probe(names: Names, probe: Probe, name: str) -> str:
+    match probe:
+        case Probe.KNOWN:
+            if name in names.plan.signals:
+                held = f"m->value[{names.signal(name)}]"
+                return f"truth_of(true, {held} == {held})"
+            return f"truth_of(true, m->occurs[{names.event(name)}] != IS_UNKNOWN)"
+        case Probe.UPDATED:
+            return f"truth_of(true, m->updated[{names.number(name)}] != 0U)"
+        case Probe.CHANGED:
+            number = names.number(name)
+            return f"((m->absent[{number}] != 0U) ? (uint8_t)IS_UNKNOWN : m->changed[{number}])"
+        case _:
+            assert_never(probe)
+
+
+def _comparison(names: Names, leaf: Compare) -> str:
+    left, right = _number(names, leaf.left), _number(names, leaf.right)
+    known = " && ".join(
+        f"({text} == {text})"
+        for side, text in ((leaf.left, left), (leaf.right, right))
+        if not isinstance(side, Literal)
+    )
+    return f"truth_of({known or 'true'}, {left} {leaf.op.value} {right})"
+
+
+def _over_occurrences(names: Names, leaf: Compare, events: Sequence[str]) -> Iterator[str]:
+    numbers = [names.event(event) for event in events]
+    yield "uint8_t found = IS_FALSE;"
+    for number in numbers:
+        yield f"int32_t p{number};"
+    absent = " || ".join(f"(m->silent[{number}] == IS_UNKNOWN)" for number in numbers)
+    yield f"if ({absent}) {{"
+    yield "    return (uint8_t)IS_UNKNOWN;"
+    yield "}"
+    for number in numbers:
+        yield f"for (p{number} = 0; p{number} < m->payloads[{number}]; p{number}++) {{"
+    known = " && ".join(f"(m->payload_known[p{n}][{n}] != 0U)" for n in numbers)
+    yield f"    const uint8_t one = ({known}) ? {_comparison(names, leaf)} : (uint8_t)IS_UNKNOWN;"
+    yield "    found = either(found, one);"
+    for _ in numbers:
+        yield "}"
+    yield "(void)t;"
+    yield "return found;"
+
+
+def _number(names: Names, expression: Numeric) -> str:
+    match expression:
+        case Literal(value=value):
+            return real(names.label(value) if isinstance(value, str) else value)
+        case SignalValue(name=name):
+            return f"m->value[{names.signal(name)}]"
+        case FieldValue(event=event, field=field):
+            return f"m->payload[p{names.event(event)}][{names.field(event, field)}]"
+        case UpdateValue(function=function, name=name):
+            return _update(names, function, name)
+        case Arithmetic(op=op, args=args):
+            return _arithmetic(op, [_number(names, arg) for arg in args])
+        case Captured():
+            raise ValueError("captured values are not generated")
+        case _:
+            assert_never(expression)
+
+
+def _update(names: Names, function: UpdateFunction, name: str) -> str:
+    signal = names.signal(name)
+    return f"{function.value}_of(&m->history[{signal}], m->value[{signal}])"
+
+
+def _arithmetic(op: NumericOp, args: list[str]) -> str:
+    if op in _INFIX:
+        return f"finite({args[0]} {_INFIX[op]} {args[1]})"
+    if op in _LIBRARY:
+        return f"finite({_LIBRARY[op]}({', '.join(args)}))"
+    match op:
+        case NumericOp.NEG:
+            return f"finite(-{args[0]})"
+        case NumericOp.ABS:
+            return f"finite(magnitude({args[0]}))"
+        case NumericOp.MIN:
+            return f"finite({_nested('lesser', args)})"
+        case _:
+            return f"finite({_nested('greater', args)})"
+
+
+def _nested(function: str, args: list[str]) -> str:
+    whole = args[0]
+    for arg in args[1:]:
+        whole = f"{function}({whole}, {arg})"
+    return whole
+
+
+def real(value: float) -> str:
+    """A number as a C literal of type double, exactly."""
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{value} is no number of a specification")
+    text = repr(number)
+    return f"({text})" if number < 0 else text
+
+
+def _integer(value: int) -> str:
+    return f"INT64_C({value})"

@@ -1,0 +1,124 @@
+"""The automata of a plan as C tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rvmon.codegen.plan import Plan, PlannedRule
+from rvmon.codegen.tables import TableData, tables_of
+from rvmon.spec.checked import EndPolicy, Mode
+from rvmon.verdict.attempt import Decision
+from rvmon.verdict.end import settle_at_end
+from rvmon.verdict.verdict import Verdict
+
+VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
+DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
+
+
+def automata_source(plan: Plan) -> Iterator[str]:
+    """The tables of all requirements, and the array `automata` of them."""
+    width = max((r.automaton.clocks for r in plan.rules if r.automaton), default=0) or 1
+    entries = []
+    for index, rule in enumerate(plan.rules):
+        if rule.automaton is None:
+            raise ValueError(f"{rule.requirement.id} has no automaton")
+        data = tables_of(rule.automaton)
+        yield ""
+        yield f"/* Requirement number {index}. */"
+        yield from _arrays(data, index, width)
+        yield array("uint8_t", f"outcomes{index}", outcomes(rule.requirement.at_end))
+        entries.append(_entry(plan, rule, data, index))
+    yield ""
+    yield "static const automaton automata[] = {"
+    yield from entries
+    yield "};"
+
+
+def outcomes(policy: EndPolicy) -> list[int]:
+    """What becomes of an undecided attempt: verdict plus 4 times the decision.
+
+    Counted through in binary: whether it holds by the rule for the end (1), can pass no more (2),
+    can fail no more (4).
+    """
+    found = []
+    for state in range(8):
+        verdict, decision = settle_at_end(
+            policy,
+            held=bool(state & 1),
+            cannot_pass=bool(state & 2),
+            cannot_fail=bool(state & 4),
+        )
+        found.append(VERDICTS.index(verdict) + 4 * DECISIONS.index(decision))
+    return found
+
+
+def _arrays(data: TableData, index: int, width: int) -> Iterator[str]:
+    cut_first, strides = [0], []
+    cuts: list[int] = []
+    for location, own in enumerate(data.cuts):
+        for clock in range(width):
+            some = own[clock] if clock < len(own) else ()
+            cuts += some
+            cut_first.append(len(cuts))
+            strides.append(data.strides[location][clock] if clock < len(own) else 0)
+    edges = sorted({edge for row in data.rows for edge in row if edge is not None})
+    number = {edge: position for position, edge in enumerate(edges)}
+    sources = [
+        source for _, own in edges for source in (*own, *(0 for _ in range(width - len(own))))
+    ]
+    clause_first, test_first = [0], [0]
+    tests: list[tuple[int, int, bool]] = []
+    for clauses in data.end_clauses:
+        for clause in clauses:
+            tests += clause
+            test_first.append(len(tests))
+        clause_first.append(len(test_first) - 1)
+    yield array("uint16_t", f"class_of{index}", data.class_of)
+    yield array("int32_t", f"bases{index}", data.bases)
+    yield array("uint8_t", f"clocks{index}", [len(own) for own in data.cuts])
+    yield array("int32_t", f"strides{index}", strides)
+    yield array("int32_t", f"cut_first{index}", cut_first)
+    yield array("int64_t", f"cuts{index}", cuts)
+    flat = [0 if edge is None else number[edge] for row in data.rows for edge in row]
+    yield array("int32_t", f"edges{index}", flat)
+    yield array("uint16_t", f"targets{index}", [target for target, _ in edges])
+    yield array("int8_t", f"sources{index}", sources)
+    yield array("uint8_t", f"time_values{index}", data.time_values)
+    yield array("int32_t", f"clause_first{index}", clause_first)
+    yield array("int32_t", f"test_first{index}", test_first)
+    shown = ", ".join(
+        f"{{{clock}, INT64_C({age}), {str(at_end).lower()}}}" for clock, age, at_end in tests
+    )
+    yield f"static const end_test tests{index}[] = {{{shown or '{0, 0, false}'}}};"
+
+
+def _entry(plan: Plan, rule: PlannedRule, data: TableData, index: int) -> str:
+    trigger = -1 if rule.trigger is None else plan.graph.index[rule.trigger]
+    requirement = rule.requirement
+    classes = len(data.rows[0]) if data.rows else 1
+    tables = ", ".join(
+        f"{name}{index}"
+        for name in (
+            "class_of",
+            "bases",
+            "clocks",
+            "strides",
+            "cut_first",
+            "cuts",
+            "edges",
+            "targets",
+            "sources",
+            "time_values",
+            "clause_first",
+            "test_first",
+            "tests",
+        )
+    )
+    flags = f"{str(requirement.pulse).lower()}, {str(requirement.mode is Mode.WHENEVER).lower()}"
+    return f"    {{{data.initial}, {classes}, {tables}, {trigger}, {flags}, outcomes{index}}},"
+
+
+def array(kind: str, name: str, values: Sequence[int]) -> str:
+    """A constant array; one of no elements holds a zero that nobody reads."""
+    texts = [f"INT64_C({v})" if kind == "int64_t" else str(v) for v in values] or ["0"]
+    return f"static const {kind} {name}[] = {{{', '.join(texts)}}};"

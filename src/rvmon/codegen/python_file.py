@@ -1,0 +1,117 @@
+"""A plan as one Python file that runs alone."""
+
+from __future__ import annotations
+
+import re
+from importlib.resources import files
+
+from rvmon.codegen.c_tables import DECISIONS, VERDICTS, outcomes
+from rvmon.codegen.plan import Plan, PlannedRule
+from rvmon.codegen.python_source import unit_source
+from rvmon.codegen.tables import tables_of
+from rvmon.errors import RvmonError
+from rvmon.spec.checked import Type
+from rvmon.trace.schema import Kind
+
+_RUNTIME = ("past", "table", "rule", "unit", "alone")
+
+_HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 or later and nothing else.
+
+    monitor = SpecMonitor()
+    for attempt in monitor.step(0.5, {{"signal": True}}):      # seconds, and what was updated
+        print(attempt.requirement, attempt.number, attempt.verdict)
+    print(monitor.finish_ns())                               # verdict by requirement
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections import deque, namedtuple
+from heapq import heapify, heappop, heappush
+from itertools import product
+from operator import add, eq, ge, gt, le, lt, mul, ne, neg, sub, truediv
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    Token = tuple[int, tuple[int, ...]]
+    Drive = Callable[[Token, int], tuple[Token, int]]
+
+'''
+
+
+def python_file(plan: Plan) -> str:
+    """The text of a module that judges what a plan holds.
+
+    Raises:
+        RvmonError: a requirement has no automaton.
+    """
+    parts = [_HEAD.format(spec=ascii(plan.spec.name)[1:-1])]
+    parts += [_body(name) for name in _RUNTIME]
+    parts.append(unit_source(plan))
+    parts.append("\n\nclass SpecMonitor(Monitor):\n")
+    parts.append(f'    """Judges {", ".join(rule.requirement.id for rule in plan.rules)}."""\n\n')
+    parts.append("    UNIT = Generated\n")
+    parts.append(f"    NAMES = {tuple(rule.requirement.id for rule in plan.rules)!r}\n")
+    parts.append(f"    KINDS = {_kinds(plan)}\n")
+    parts.append("    TABLES = (\n")
+    parts += [_tables(rule) for rule in plan.rules]
+    parts.append("    )\n    OUTCOMES = (\n")
+    parts += [f"        {_outcomes(rule)!r},\n" for rule in plan.rules]
+    parts.append("    )\n")
+    return "".join(parts)
+
+
+def _body(name: str) -> str:
+    """A module of the runtime without its docstring and imports."""
+    text = files("rvmon.codegen").joinpath("runtime", f"{name}.py").read_text(encoding="utf-8")
+    text = text.split('"""', 2)[2]
+    text = re.sub(r"^if TYPE_CHECKING:\n(?:    .*\n|\n)+?(?=\S)", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^(?:from|import) .*\n", "", text, flags=re.MULTILINE)
+    text = text.replace("  # noqa: B905", "")
+    return "\n" + text.strip("\n") + "\n\n\n"
+
+
+def _tables(rule: PlannedRule) -> str:
+    if rule.automaton is None:
+        raise RvmonError(
+            f"{rule.requirement.id} has no automaton of bounded size, so no file can be made of "
+            "it: leave it out with --only, or judge it with `rvmon run`"
+        )
+    data = tables_of(rule.automaton)
+    fields = (
+        ("initial location", data.initial),
+        ("cuts", data.cuts),
+        ("bases", data.bases),
+        ("strides", data.strides),
+        ("classes of letters", data.class_of),
+        ("edges", data.rows),
+        ("decided by time", data.time_values),
+        ("at the end", data.end_clauses),
+    )
+    lines = [f"            {value!r},  # {title}\n" for title, value in fields]
+    return f"        (  # {rule.requirement.id}\n{''.join(lines)}        ),\n"
+
+
+def _outcomes(rule: PlannedRule) -> tuple[tuple[str, str], ...]:
+    return tuple(
+        (VERDICTS[number & 3].value, DECISIONS[number >> 2].value)
+        for number in outcomes(rule.requirement.at_end)
+    )
+
+
+def _kinds(plan: Plan) -> str:
+    signals = [f"{name!r}: {_kind(signal.type)}" for name, signal in plan.spec.signals.items()]
+    events = []
+    for name, event in plan.spec.events.items():
+        fields = ", ".join(f"{field!r}: {_kind(type_)}" for field, type_ in event.fields.items())
+        events.append(f"{name!r}: {{{fields}}}")
+    return f"{{{', '.join([*signals, *events])}}}"
+
+
+def _kind(type_: Type) -> str:
+    if type_.kind is Kind.LABEL:
+        return repr(type_.labels)
+    return {Kind.BOOL: "bool", Kind.INT: "int", Kind.REAL: "float"}[type_.kind]

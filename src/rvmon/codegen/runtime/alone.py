@@ -1,0 +1,202 @@
+"""A monitor that runs without rvmon: records, verdicts, the end of a trace."""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from typing import TYPE_CHECKING, Any
+
+from rvmon.codegen.runtime.rule import Rule
+from rvmon.codegen.runtime.table import FAILED, PASSED, Table
+from rvmon.codegen.runtime.unit import LIMIT, Unit
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+Attempt = namedtuple("Attempt", "requirement number triggered decided verdict decision")
+"""`decided` is None and `verdict` "I" for what stayed open; instants are nanoseconds."""
+
+
+class Open:
+    """An undecided attempt."""
+
+    __slots__ = ("better", "number", "token", "triggered")
+
+    def __init__(self, number: int, triggered: int, token: Any) -> None:
+        self.number = number
+        self.triggered = triggered
+        self.token = token
+        self.better: Any = None
+
+
+class Monitor:
+    """Judges a stream of samples.
+
+    Args:
+        absent: names of signals and events without a source: unknown throughout.
+    """
+
+    UNIT: type[Unit]
+    """The generated class."""
+    NAMES: tuple[str, ...] = ()
+    """The requirements."""
+    TABLES: tuple[Any, ...] = ()
+    """Per requirement, the arguments of its table."""
+    OUTCOMES: tuple[Sequence[tuple[str, str]], ...] = ()
+    """Per requirement what becomes of an undecided attempt, counted through in binary: it holds
+    by the rule for the end (1), it can pass no more (2), it can fail no more (4)."""
+    KINDS: Mapping[str, Any]
+    """Per signal what values it takes: a class, or its labels; per event its fields."""
+
+    def __init__(self, absent: Sequence[str] = ()) -> None:
+        machines = [Table(*tables) for tables in self.TABLES]
+        self.unit = self.UNIT(machines, frozenset(absent))
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the run."""
+        self.unit.restart(self)
+        self.attempts: list[Attempt] = []
+        self.fresh: list[Attempt] = []
+        self.counts = [0] * len(self.NAMES)
+        self.last: int | None = None
+        self.reached: int | None = None
+        self.finished = False
+
+    # What the generated code calls.
+
+    def opened(self, rule: Rule, triggered: int, token: Any) -> Open:
+        """A new attempt."""
+        self.counts[rule.index] += 1
+        return Open(self.counts[rule.index], triggered, token)
+
+    def parted(self, rule: Rule, attempt: Open) -> None:
+        """Hear that unknown input made the two runs of an attempt part."""
+
+    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Any) -> None:
+        """Hear of a decision."""
+        self.unit.news = True
+        upon_end = self.unit.RULES[rule.index][1] < 0
+        at = attempt.triggered if upon_end else t
+        self._record(rule, attempt, at, "P" if verdict else "F", "prefix")
+
+    def _record(
+        self, rule: Rule, attempt: Open, t: int | None, verdict: str, decision: str
+    ) -> None:
+        name = self.NAMES[rule.index]
+        made = Attempt(name, attempt.number, attempt.triggered, t, verdict, decision)
+        self.fresh.append(made)
+
+    def told(self) -> list[Attempt]:
+        """The records since the last call, in order."""
+        self.unit.news = False
+        ranks = {name: rank for rank, name in enumerate(self.NAMES)}
+        self.fresh.sort(
+            key=lambda one: (one.decided is None, one.decided or 0, ranks[one[0]], one.number)
+        )
+        found, self.fresh = self.fresh, []
+        self.attempts += found
+        return found
+
+    def other(self, t: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample that needs a closer look."""
+        if self.finished:
+            raise ValueError("the run is finished: call reset() before the next")
+        if t.__class__ is not int or not self.unit.after < t < LIMIT:
+            raise ValueError(
+                f"sample at {t!r}: expected whole nanoseconds, later than {self.unit.after}"
+            )
+        plain = {name: self._plain(name, value) for name, value in values.items()}
+        self.unit.through(t - 1)
+        self.unit.take(t, plain)
+        return self.told()
+
+    def _plain(self, name: str, value: Any) -> Any:
+        if name not in self.KINDS or name in self.unit.absent:
+            raise ValueError(f"no signal or event named {name!r} is expected")
+        kind = self.KINDS[name]
+        if isinstance(kind, dict):
+            if value is None or value is True or value is False:
+                return value
+            if not isinstance(value, dict) or not set(value) <= set(kind):
+                raise ValueError(f"{name}: expected True, False, None or its payload")
+            return {
+                field: self._scalar(f"{name}.{field}", kind[field], one)
+                for field, one in value.items()
+            }
+        return self._scalar(name, kind, value)
+
+    def _scalar(self, name: str, kind: Any, value: Any) -> Any:
+        if value is None or value != value:
+            return None
+        if isinstance(kind, tuple):
+            if value in kind:
+                return value
+        elif kind is float:
+            if isinstance(value, (float, int)) and not isinstance(value, bool):
+                return value
+        elif value.__class__ is kind:
+            return value
+        raise ValueError(f"{name}: {value!r} is no value of it")
+
+    # What users call.
+
+    def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample at `t` seconds; returns the attempts that it decided."""
+        return self.unit.step(round(t * 1000000000), values)
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample at whole nanoseconds, later than all before; only what was updated.
+
+        Signals by value, None if one became unknown; events True, or their payload as a dict.
+        """
+        return self.unit.step(t_ns, values)
+
+    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
+        """Say that no sample before `t_ns` will come."""
+        if self.finished:
+            raise ValueError("the run is finished: call reset() before the next")
+        self._see()
+        if self.reached is None or t_ns > self.reached:
+            self.unit.advance(t_ns)
+            self.reached = t_ns
+            self.unit.after = max(self.unit.after, t_ns - 1)
+        return self.told()
+
+    def _see(self) -> None:
+        """Note the last sample, which only the generated code knows of."""
+        after = self.unit.after
+        if after > -LIMIT and (self.reached is None or after > self.reached - 1):
+            self.last = self.reached = after
+
+    def finish_ns(self, t_ns: int | None = None) -> dict[str, str]:
+        """End the run, at `t_ns` if that is later; returns the verdict of each requirement."""
+        if not self.finished:
+            self._see()
+            self.finished = True
+            if self.last is not None:
+                self._close(t_ns)
+            self.unit.after = LIMIT
+        found = {}
+        for name in self.NAMES:
+            seen = {one.verdict for one in self.attempts if one.requirement == name}
+            found[name] = next((verdict for verdict in "FIP" if verdict in seen), "NT")
+        return found
+
+    def _close(self, t_ns: int | None) -> None:
+        known = [self.last or 0] if t_ns is None else [self.last or 0, t_ns]
+        if self.unit.GAP is not None and self.reached is not None:
+            known.append(self.reached - 1)
+        end = max(known)
+        reached = end if self.reached is None else max(end, self.reached)
+        self.unit.through(end)
+        self.unit.close(end, reached)
+        for rule in self.unit.rules:
+            for attempt in rule.attempts:
+                held = rule.machine.holds_at_end(attempt.token, end, reached)
+                state = 1 if held else 0
+                state += 2 if attempt.token[0] == FAILED else 0
+                state += 4 if attempt.better is not None and attempt.better[0] == PASSED else 0
+                verdict, decision = self.OUTCOMES[rule.index][state]
+                at = None if decision == "open" else end
+                self._record(rule, attempt, at, verdict, decision)
+        self.told()
