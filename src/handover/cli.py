@@ -77,7 +77,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "--tests", metavar="N", type=_positive, default=100, help="of each random strategy (100)"
     )
     _add_common(parser)
-    parser.set_defaults(run=_demo, command="demo")
+    parser.set_defaults(run=_demo, command="demo", spec=None, no_monitors=False)
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from handover.campaign.documents import table_document, to_json
-from handover.campaign.execute import INTERRUPTED, execute
+from handover.campaign.execute import INTERRUPTED, WORKER_DIED, execute
 from handover.campaign.files import write_tables, write_tests
 from handover.campaign.model_checking import check_model
 from handover.campaign.outcome import Results
 from handover.campaign.plan import Plan, plan
+from handover.campaign.program import typed
 from handover.campaign.strategies import STRATEGIES
 from handover.campaign.summarise import summarise
 from handover.campaign.summary import CampaignSummary
 from handover.campaign.text import print_summary
-from handover.campaign.write_pages import write_pages
+from handover.campaign.write_pages import REPORT, write_pages
 from rvmon.errors import UnknownNameError
 from rvmon.session import Spec, load
 from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 DEMO_STRATEGIES = ("pseudorandom", "constrained", "model-based", "directed")
 DEMO_ROBOTS = ("legacy", "correct")
@@ -29,61 +34,77 @@ DEMO_ROBOTS = ("legacy", "correct")
 
 def run_campaign(arguments: argparse.Namespace) -> int:
     """Run `handover run` and return its exit code."""
-    chosen = plan(
-        ("legacy" if arguments.legacy else "correct",),
-        _strategies(arguments.strategy),
-        tests=arguments.tests,
-        seed=arguments.seed,
-        spec=None if arguments.spec is None else Path(arguments.spec),
-        monitors=not arguments.no_monitors,
-    )
-    summary, results = _campaign(chosen, arguments)
+    robots = ("legacy" if arguments.legacy else "correct",)
+    summary, results = _campaign(robots, _strategies(arguments.strategy), arguments)
     if arguments.format == "json":
         print(to_json(table_document(summary)).decode(), end="")
     else:
         _show(summary, results)
     if summary.cut_short:
-        return 130 if summary.cut_short == INTERRUPTED else 3
+        return _exit_code(summary)
     return int(arguments.strict and not _all_well(summary))
 
 
 def run_demo(arguments: argparse.Namespace) -> int:
     """Run `handover demo` and return its exit code."""
-    chosen = plan(DEMO_ROBOTS, DEMO_STRATEGIES, tests=arguments.tests, seed=arguments.seed)
-    summary, results = _campaign(chosen, arguments)
+    summary, results = _campaign(DEMO_ROBOTS, DEMO_STRATEGIES, arguments)
     _show(summary, results)
     if arguments.out:
-        print(f"Look at {Path(arguments.out) / 'report.html'}")
-    if summary.cut_short:
-        return 130 if summary.cut_short == INTERRUPTED else 3
-    return 0
+        print(f"Look at {Path(arguments.out) / REPORT}")
+    return _exit_code(summary)
 
 
-def _campaign(chosen: Plan, arguments: argparse.Namespace) -> tuple[CampaignSummary, Results]:
+def _exit_code(summary: CampaignSummary) -> int:
+    return {"": 0, INTERRUPTED: 130, WORKER_DIED: 3}[summary.cut_short]
+
+
+def _campaign(
+    robots: Sequence[str], strategies: Sequence[str], arguments: argparse.Namespace
+) -> tuple[CampaignSummary, Results]:
+    """Plan, load the requirements, play, count, write."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    with _told("generating tests", console):
+        chosen = plan(
+            robots,
+            strategies,
+            tests=arguments.tests,
+            seed=arguments.seed,
+            spec=Path(arguments.spec) if arguments.spec else None,
+            monitors=not arguments.no_monitors,
+        )
     # Wrong requirements are told before anything is played.
     specs = {robot: load(path) for robot, path in chosen.specs.items()} if chosen.monitors else {}
-    results = _execute(chosen, arguments.jobs)
+    results = _execute(chosen, arguments.jobs, console)
     texts = {robot: _texts(specs.get(robot)) for robot in chosen.specs}
     checked = {}
     if "model-based" in chosen.tests and chosen.monitors:
-        checked = check_model(dict.fromkeys(name for one in texts.values() for name in one))
+        with _told("model checking", console):
+            checked = check_model(dict.fromkeys(name for one in texts.values() for name in one))
     summary = summarise(results, texts, checked)
     if arguments.out:
         folder = Path(arguments.out)
-        write_tables(folder, summary)
-        write_tests(folder, results)
-        write_pages(folder, summary, results, specs, _again(arguments))
+        with _told("writing tables and pages", console):
+            write_tables(folder, summary)
+            write_tests(folder, results)
+            write_pages(folder, summary, results, specs, _again(arguments))
     return summary, results
+
+
+def _told(what: str, console: Console) -> AbstractContextManager[object]:
+    """Tell a person at a terminal what is being done."""
+    return console.status(what) if console.is_terminal else nullcontext()
 
 
 def _again(arguments: argparse.Namespace) -> str:
     """The command that runs the same campaign."""
-    words = ["handover", arguments.command, "--tests", arguments.tests, "--seed", arguments.seed]
+    words = [arguments.command, "--tests", arguments.tests, "--seed", arguments.seed]
     if arguments.command == "run":
         words += ["--strategy", arguments.strategy]
         words += ["--legacy"] if arguments.legacy else []
         words += ["--spec", arguments.spec] if arguments.spec else []
-    return shlex.join(str(word) for word in (*words, "--out", arguments.out))
+    return typed([*words, "--out", arguments.out])
 
 
 def _texts(spec: Spec | None) -> Mapping[str, str]:
@@ -92,15 +113,12 @@ def _texts(spec: Spec | None) -> Mapping[str, str]:
     return {name: requirement.text for name, requirement in spec.requirements.items()}
 
 
-def _execute(chosen: Plan, jobs: int | None) -> Results:
-    from rich.console import Console
+def _execute(chosen: Plan, jobs: int | None, console: Console) -> Results:
     from rich.progress import MofNCompleteColumn, Progress
 
-    console = Console(stderr=True)
     columns = (*Progress.get_default_columns(), MofNCompleteColumn())
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
+    silent = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=silent) as bar:
         task = bar.add_task("tests", total=len(chosen.jobs()))
         return execute(chosen, jobs=jobs, progress=lambda count: bar.advance(task, count))
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import shlex
 from dataclasses import replace
 from pathlib import Path
 
 from handover.campaign.pages import simulated_page
+from handover.campaign.program import typed
 from handover.checker import Checker, spec_path
 from handover.driver import run_test
 from handover.driver.run import Run
@@ -27,11 +27,10 @@ def run_replay(arguments: argparse.Namespace) -> int:
     run, report = play_again(test, robot, spec)
     _show(arguments.format, spec, run, report)
     if arguments.out:
-        words = ["handover", "replay", arguments.test]
-        command = shlex.join([*words, "--legacy"] if arguments.legacy else words)
+        words = ["replay", arguments.test, *(["--legacy"] if arguments.legacy else [])]
         # The file is named after the test's file: what it says inside is no path.
         target = Path(arguments.out) / Path(arguments.test).stem
-        _write(target, run, report, spec, command)
+        _write(target, run, report, spec, typed(words))
     return int(Verdict.FAIL in report.verdicts.values())
 
 

@@ -50,9 +50,8 @@ def summarise(
             unfitted={
                 strategy: _counts(group, names)
                 for strategy, group in _by_strategy(_replaced(outcomes, repeated)).items()
-            }
-            if repeated
-            else {},
+                if any(one.job.test.strategy == strategy for one in repeated)
+            },
             known=tuple(_known(one) for one in outcomes if one.job.test.expected),
         )
     return CampaignSummary(

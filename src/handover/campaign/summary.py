@@ -70,7 +70,8 @@ class RobotSummary:
         spec: name of the requirements' file.
         requirements: id → text; empty if nothing was judged.
         strategies: without the tests on mutated robots.
-        unfitted: counts by strategy and requirement without the fitted loss of signals.
+        unfitted: counts by strategy and requirement without the fitted loss of signals, of the
+            strategies in which signals got lost.
         known: directed tests with their answers, also those on mutated robots.
     """
 

@@ -86,10 +86,10 @@ def fitted_note(table: VerdictTable, unfitted: VerdictTable) -> str:
     for strategy, requirement in sorted(FITTED):
         with_fit, without = (_cell(one, strategy, requirement) for one in (table, unfitted))
         if with_fit and without:
-            shown.append(f"{requirement} {strategy} ({with_fit}, {without} without it)")
+            shown.append(f"{strategy} {requirement} ({with_fit} with it, {without} without)")
     if not shown:
         return ""
-    return "The start-up loss is fitted, so this cell is no evidence: " + ", ".join(shown) + "."
+    return f"The loss of signals at start-up is fitted to {', '.join(shown)}: that is no evidence."
 
 
 def _cell(table: VerdictTable, strategy: str, requirement: str) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from rich.markup import escape
+
 from handover.campaign.summary import CampaignSummary, KnownAnswer, RobotSummary
 from handover.campaign.tables import ROBOTS, comparable, fitted_note, unfitted_table, verdict_table
 from rvmon.report.percent import percent_text
@@ -18,7 +20,10 @@ LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive.
 
 
 def print_summary(summary: CampaignSummary, console: Console) -> None:
-    """Print the tables of all robots, the coverage of their code, and known answers."""
+    """Print requirements, the tables of all robots, the coverage of their code, known answers."""
+    for name, text in next(iter(summary.robots.values())).requirements.items():
+        console.print(f"[bold]{name}[/]  {escape(text)}")
+    console.print()
     for robot, figures in summary.robots.items():
         if figures.requirements and figures.strategies:
             _print_verdicts(summary, robot, console)

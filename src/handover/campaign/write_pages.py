@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from handover.campaign.examples import choose_examples, comparable_jobs
 from handover.campaign.outcome import Outcome, Results
 from handover.campaign.pages import judged, simulated_page
 from handover.campaign.plan import Job
+from handover.campaign.program import typed
 from handover.campaign.replay import play_again
 from handover.campaign.report_page import report_page
 from handover.campaign.summary import CampaignSummary
@@ -89,7 +89,7 @@ def _replayed(job: Job, spec: Spec, replays: Replays) -> tuple[Run, Report]:
 
 
 def _command(folder: Path, job: Job) -> str:
-    words = ["handover", "replay", str(folder / "tests" / f"{job.test.name}.json")]
+    words: list[object] = ["replay", folder / "tests" / f"{job.test.name}.json"]
     if job.robot == "legacy" and job.test.robot is None:
         words.append("--legacy")
-    return shlex.join(words)
+    return typed(words)

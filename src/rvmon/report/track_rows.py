@@ -110,7 +110,8 @@ def _add_number(
         for points in polylines(some, lowest, highest):
             drawing.append(e("polyline", {"class": kind, "points": _points(points)}))
     plot.append(drawing)
-    for bound in (low, high):
+    constants = {threshold.value for threshold in track.thresholds}
+    for bound in sorted({low, high} - constants):
         top = (highest - bound) / (highest - lowest)
         plot.append(e("span", {"class": "scale", "style": f"top:{top:.2%}"}, f"{bound:.3g}"))
     for piece in pieces:
