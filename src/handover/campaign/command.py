@@ -22,6 +22,7 @@ from handover.campaign.summary import CampaignSummary
 from handover.campaign.text import print_summary
 from handover.campaign.write_pages import REPORT, write_pages
 from rvmon.errors import UnknownNameError
+from rvmon.report.folder import made
 from rvmon.session import Spec, load
 from rvmon.verdict.verdict import Verdict
 
@@ -65,6 +66,7 @@ def _campaign(
     from rich.console import Console
 
     console = Console(stderr=True)
+    folder = made(arguments.out) if arguments.out else None
     with _told("generating tests", console):
         chosen = plan(
             robots,
@@ -83,8 +85,7 @@ def _campaign(
         with _told("model checking", console):
             checked = check_model(dict.fromkeys(name for one in texts.values() for name in one))
     summary = summarise(results, texts, checked)
-    if arguments.out:
-        folder = Path(arguments.out)
+    if folder is not None:
         with _told("writing tables and pages", console):
             write_tables(folder, summary)
             write_tests(folder, results)

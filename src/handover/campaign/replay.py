@@ -14,6 +14,7 @@ from handover.driver import run_test
 from handover.driver.run import Run
 from handover.generator.abstract_test import AbstractTest
 from handover.generator.files import load as load_test
+from rvmon.report.folder import made
 from rvmon.session import Spec, load
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -29,7 +30,7 @@ def run_replay(arguments: argparse.Namespace) -> int:
     if arguments.out:
         words = ["replay", arguments.test, *(["--legacy"] if arguments.legacy else [])]
         # The file is named after the test's file: what it says inside is no path.
-        target = Path(arguments.out) / Path(arguments.test).stem
+        target = made(arguments.out) / Path(arguments.test).stem
         _write(target, run, report, spec, typed(words))
     return int(Verdict.FAIL in report.verdicts.values())
 
@@ -51,7 +52,6 @@ def play_again(
 
 def _write(target: Path, run: Run, report: Report, spec: Spec, command: str) -> None:
     """Write the page, and the bus messages as JSON lines, which `rvmon run` reads."""
-    target.parent.mkdir(parents=True, exist_ok=True)
     page = simulated_page(run, report, spec, command=command)
     lines = [json.dumps({"t_ns": t_ns, **values}) + "\n" for t_ns, values in run.samples]
     target.with_name(f"{target.name}.html").write_text(page, encoding="utf-8")

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from rvmon.report.folder import made
 from rvmon.report.markup import Child, e, page
 from rvmon.report.run_html import run_page
 from rvmon.report.run_page import JudgedRun, RunPage
@@ -39,8 +40,11 @@ def write_run_pages(
 
     Returns:
         The files, the index last.
+
+    Raises:
+        RvmonError: the folder cannot be written to.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    made(folder)
     passing = [report for report in reports if Verdict.PASS in report.verdicts.values()]
     others = [_judged(report, read) for report in passing[:COMPARED]]
     several = len(reports) > 1

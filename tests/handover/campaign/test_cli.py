@@ -112,6 +112,7 @@ def test_a_bad_test_is_told_in_one_message(tmp_path, capsys, content, told):
         (["run", "--spec", "gone.rv"], "gone.rv"),
         (["run", "--tests", "0"], "at least 1"),
         (["run", "--tests", "many"], "at least 1"),
+        (["run", "--out", "README.md"], "cannot write to README.md"),
         (["fly"], "invalid choice"),
     ],
 )
