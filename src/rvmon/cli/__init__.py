@@ -20,7 +20,10 @@ COMMANDS = {
     "run": "judge recordings by a specification",
     "format": "lay specifications out in the canonical form",
     "explain": "a requirement, or a diagnostic's code, in plain words",
+    "why": "an attempt taken apart: why it passed, failed or stayed open",
     "init": "a starter specification from a recording",
+    "compile": "a specification as Python or C that runs alone",
+    "build": "a specification as a program that judges recordings",
     "verify": "model-check a network of timed automata",
     "conform": "hold recorded runs against a network of timed automata",
 }

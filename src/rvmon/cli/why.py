@@ -1,0 +1,121 @@
+"""`rvmon why`: one attempt of a recording, taken apart."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.trace.sample import Sample
+
+if TYPE_CHECKING:
+    from rvmon.session import Spec
+    from rvmon.trace.sample import Recording
+    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.report import Report
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "why",
+        help="an attempt taken apart: why it passed, failed or stayed open",
+        description="Take one attempt apart: when each part of its requirement was true.",
+        epilog="example: rvmon why specs/door.rv monday.csv D1#3",
+    )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument("trace", metavar="TRACE", help="a recording: .csv, .jsonl or .ndjson")
+    parser.add_argument(
+        "attempt",
+        metavar="ID#N",
+        help="an attempt such as R1#3; R1 alone means its first failed one, else its first open "
+        "one, else its first",
+    )
+    parser.add_argument(
+        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
+    )
+    parser.add_argument("--until", metavar="T", type=float, help="the recording ended at T seconds")
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge the recording, take the attempt apart, show it, and return the exit code."""
+    from rvmon.cli.constants import constants_of
+    from rvmon.explain.dissect import dissect
+    from rvmon.session import load
+    from rvmon.trace.time import ticks_of_seconds
+
+    if arguments.trace == "-":
+        raise RvmonError("error: standard input can be read once only: save the recording first")
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    name, number = _named(arguments.attempt, spec)
+    recording = spec.recording(arguments.trace)
+    samples = _in_order(recording)
+    monitor = spec.monitor(only=[name], sources=recording.names)
+    for sample in samples:
+        monitor.step_ns(sample.t, sample.values)
+    until = None if arguments.until is None else ticks_of_seconds(arguments.until)
+    report = monitor.finish_ns(until)
+    attempt = _chosen(report, name, number)
+    assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
+    anatomy = dissect(spec.checked, samples, report.end, attempt, recording.names)
+    if arguments.format == "json":
+        import msgspec
+
+        print(msgspec.json.encode(anatomy).decode())
+        return 0
+    from rich.console import Console
+
+    from rvmon.report.why_text import why_lines
+
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    for line in why_lines(anatomy, spec.requirements[name]):
+        console.print(line)
+    return 0
+
+
+def _in_order(recording: Recording) -> list[Sample]:
+    """The samples in order of time, equal stamps merged (under `max delay` they may come late)."""
+    merged: dict[int, Sample] = {}
+    for sample in recording:
+        known = merged.get(sample.t)
+        values = sample.values if known is None else {**known.values, **sample.values}
+        merged[sample.t] = Sample(sample.t, values)
+    return [merged[t] for t in sorted(merged)]
+
+
+def _named(text: str, spec: Spec) -> tuple[str, int | None]:
+    found = re.fullmatch(r"(?P<name>[^#]+)(#(?P<number>\d{1,9}))?", text)
+    if found is None:
+        raise RvmonError(
+            f"error: `{text}` names no attempt: write R1#3, or R1 for the first failed"
+        )
+    name = found["name"]
+    if name not in spec.requirements:
+        known = ", ".join(spec.requirements) or "none"
+        raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
+    return name, int(found["number"]) if found["number"] else None
+
+
+def _chosen(report: Report, name: str, number: int | None) -> Attempt:
+    attempts = sorted(report.attempts, key=lambda attempt: attempt.number)
+    if not attempts:
+        raise RvmonError(f"error: {name} was not triggered in this recording: no attempt to show")
+    if number is None:
+        return _most_telling(attempts)
+    for attempt in attempts:
+        if attempt.number == number:
+            return attempt
+    raise UnknownNameError(
+        f"error: no attempt {name}#{number}: there are {name}#1 to {name}#{attempts[-1].number}"
+    )
+
+
+def _most_telling(attempts: Sequence[Attempt]) -> Attempt:
+    for verdict in ("F", "I"):
+        for attempt in attempts:
+            if attempt.verdict.value == verdict:
+                return attempt
+    return attempts[0]

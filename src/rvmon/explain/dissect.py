@@ -1,0 +1,60 @@
+"""An attempt taken apart: the truth of each subformula over its window."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rvmon.explain.anatomy import Anatomy, Strand
+from rvmon.explain.eye import Eye, subformulas
+from rvmon.explain.spans import both, outside
+from rvmon.explain.tempo import small_step
+from rvmon.spec.checked import BoundAtom, CheckedSpec, Constant, Formula
+from rvmon.spec.printer import format_formula
+from rvmon.trace.sample import Sample
+from rvmon.verdict.attempt import Attempt
+
+AROUND = 0.15
+"""What is shown before the trigger and after the decision, as a share of what lies between."""
+
+
+def dissect(
+    spec: CheckedSpec,
+    samples: Sequence[Sample],
+    end: int,
+    attempt: Attempt,
+    names: frozenset[str] | None = None,
+) -> Anatomy:
+    """Take an attempt apart.
+
+    Args:
+        spec: the specification.
+        samples: the recording, in order.
+        end: the last instant of the recording, ticks.
+        attempt: of one of its requirements on this recording.
+        names: the signals and events that have a source; `None`: all.
+
+    Source: SEMANTICS 2; Kleene's value by a pessimistic and an optimistic reading (SEMANTICS 1).
+    """
+    requirement = spec.requirements[attempt.requirement]
+    last = end if attempt.decided is None else attempt.decided
+    length = last - attempt.triggered
+    margin = max(int(length * AROUND), 2) if length else small_step(spec, [requirement])
+    begin = samples[0].t
+    start, stop = max(attempt.triggered - margin, begin), min(last + margin, end)
+    eye = Eye(spec, requirement, samples, end, attempt, names)
+    strands = []
+    parts: list[tuple[str, Formula]] = [("owed", requirement.consequent)]
+    if not isinstance(requirement.trigger, BoundAtom) and not _is_true(requirement.trigger):
+        parts.insert(0, ("trigger", requirement.trigger))
+    for part, whole in parts:
+        for depth, formula in subformulas(whole, 0):
+            truth = eye.truth(formula)
+            shown = ((start, stop),)
+            true = both(truth.sure, shown)
+            false = outside(both(truth.may, shown), start, stop)
+            strands.append(Strand(depth, format_formula(formula), part, true, false))
+    return Anatomy(attempt, start, stop, begin, tuple(strands))
+
+
+def _is_true(formula: Formula) -> bool:
+    return isinstance(formula, Constant) and formula.value

@@ -1,0 +1,308 @@
+"""The truth of formulas over a whole recording, in spans of ticks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import assert_never
+
+from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.graph import Graph, graph_of
+from rvmon.dataflow.inputs import Inputs
+from rvmon.explain.spans import FOREVER, Spans, both, outside, union, until
+from rvmon.formula.core import Constant as CoreConstant
+from rvmon.formula.core import Literal, Sense
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import has_future, lower
+from rvmon.formula.state import FALSE, TRUE, State
+from rvmon.monitor.instances import Instance, seen_by
+from rvmon.monitor.lane import Lane
+from rvmon.spec.checked import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    CheckedSpec,
+    Formula,
+    Interval,
+    Mode,
+    Requirement,
+    TimeModel,
+    Unary,
+    UnaryOp,
+)
+from rvmon.trace.sample import Sample, Scalar
+from rvmon.verdict.attempt import Attempt
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """Where a formula is surely true, and where it may be (unknown or true), on all ticks."""
+
+    sure: Spans
+    may: Spans
+
+
+def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
+    """The formula, then what it is made of; a negation of an atom is not taken apart."""
+    yield depth, formula
+    match formula:
+        case Unary(operand=Unary() | Binary() as operand):
+            yield from subformulas(operand, depth + 1)
+        case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
+            yield from subformulas(operand, depth + 1)
+        case Binary(left=left, right=right):
+            yield from subformulas(left, depth + 1)
+            yield from subformulas(right, depth + 1)
+        case _:
+            pass
+
+
+class Eye:
+    """Sees the truth of formulas over a recording.
+
+    Positions are ticks in held time; else a truth lasts from its position to the next, and only
+    the position itself counts as one at which something came true.
+    """
+
+    def __init__(
+        self,
+        spec: CheckedSpec,
+        requirement: Requirement,
+        samples: Sequence[Sample],
+        end: int,
+        attempt: Attempt,
+        names: frozenset[str] | None,
+    ) -> None:
+        self.end = end
+        self.begin = samples[0].t
+        self.captured = attempt.captured
+        self.factory = Factory()
+        self.period = spec.period
+        self.requirement = requirement
+        self.states: dict[int, State | bool] = {}
+        formulas = [requirement.trigger, requirement.consequent]
+        for whole in formulas:
+            for _, formula in subformulas(whole, 0):
+                self._note(formula)
+        roots = [state for state in self.states.values() if isinstance(state, State)]
+        self.log = _log(spec, roots, samples, end, self._instance(attempt), attempt.captured, names)
+        self.positions = _positions(spec, samples, end)
+        self.made: dict[int, Truth] = {}
+
+    def _instance(self, attempt: Attempt) -> Instance | None:
+        each = self.requirement.for_each
+        if each is None:
+            return None
+        return Instance(1, each.value, attempt.captured[each.name])
+
+    def _note(self, formula: Formula) -> None:
+        """Bring what speaks of present and past only into the form that the flow reads."""
+        if has_future(formula) or formula == BoundAtom(Bound.END):
+            return
+        plain = replace(self.requirement, mode=Mode.UPON, consequent=formula)
+        plain = replace(plain, trigger=BoundAtom(Bound.START))
+        owed = lower(plain, self.factory, self.period).owed
+        match owed:
+            case Literal(proposition=proposition, sense=Sense.TRUE):
+                self.states[id(formula)] = proposition
+            case Literal(proposition=proposition):
+                self.states[id(formula)] = self.factory.negation(proposition)
+            case CoreConstant(value=value):
+                self.states[id(formula)] = value
+            case _:
+                raise AssertionError("a state formula is a literal or a constant")
+
+    def truth(self, formula: Formula) -> Truth:
+        """Where a formula is true."""
+        known = self.made.get(id(formula))
+        if known is None:
+            # Behind the end nothing is known, not even of `true`.
+            found = self._truth(formula)
+            sure = both(found.sure, ((self.begin, self.end),))
+            known = Truth(sure, union([*found.may, (self.end + 1, FOREVER)]))
+            self.made[id(formula)] = known
+        return known
+
+    def _truth(self, formula: Formula) -> Truth:
+        state = self.states.get(id(formula))
+        if isinstance(state, bool):
+            whole: Spans = ((self.begin, FOREVER),) if state else ()
+            return Truth(whole, whole)
+        if state is not None:
+            return self.log[state]
+        match formula:
+            case Unary():
+                return self._unary(formula)
+            case Binary():
+                return self._binary(formula)
+            case _:
+                return Truth((), ((self.begin, FOREVER),))
+
+    def _not(self, truth: Truth) -> Truth:
+        return Truth(
+            outside(truth.may, self.begin, FOREVER), outside(truth.sure, self.begin, FOREVER)
+        )
+
+    def _unary(self, formula: Unary) -> Truth:
+        operand = self.truth(formula.operand)
+        window = formula.interval or Interval()
+        always = self.truth_of(True)
+        match formula.op:
+            case UnaryOp.NOT:
+                return self._not(operand)
+            case UnaryOp.EVENTUALLY:
+                return self._until(always, operand, window)
+            case UnaryOp.ALWAYS:
+                return self._not(self._until(always, self._not(operand), window))
+            case UnaryOp.NEXT:
+                return self._next(operand)
+            case op:
+                raise AssertionError(f"{op} is no operator of the future")
+
+    def truth_of(self, value: bool) -> Truth:
+        """A constant."""
+        whole: Spans = ((self.begin, FOREVER),) if value else ()
+        return Truth(whole, whole)
+
+    def _binary(self, formula: Binary) -> Truth:
+        left, right = self.truth(formula.left), self.truth(formula.right)
+        window = formula.interval or Interval()
+        match formula.op:
+            case BinaryOp.AND:
+                return self._and(left, right)
+            case BinaryOp.OR:
+                return self._or(left, right)
+            case BinaryOp.IMPLIES:
+                return self._or(self._not(left), right)
+            case BinaryOp.IFF | BinaryOp.XOR:
+                other = right if formula.op is BinaryOp.IFF else self._not(right)
+                neither = self._and(self._not(left), self._not(other))
+                return self._or(self._and(left, other), neither)
+            case BinaryOp.UNTIL:
+                return self._until(left, right, window)
+            case BinaryOp.RELEASE:
+                return self._release(left, right, window)
+            case BinaryOp.WEAK_UNTIL:
+                return self._release(right, self._or(left, right), window)
+            case BinaryOp.STRONG_RELEASE:
+                return self._until(right, self._and(left, right), window)
+            case BinaryOp.SINCE:
+                raise AssertionError("`since` is no operator of the future")
+            case _:
+                assert_never(formula.op)
+
+    def _and(self, left: Truth, right: Truth) -> Truth:
+        return Truth(both(left.sure, right.sure), both(left.may, right.may))
+
+    def _or(self, left: Truth, right: Truth) -> Truth:
+        return Truth(union([*left.sure, *right.sure]), union([*left.may, *right.may]))
+
+    def _release(self, left: Truth, right: Truth, window: Interval) -> Truth:
+        return self._not(self._until(self._not(left), self._not(right), window))
+
+    def _until(self, left: Truth, right: Truth, window: Interval) -> Truth:
+        sure = self._until_of(left.sure, right.sure, window.low, window.high)
+        may = self._until_of(left.may, right.may, window.low, window.high)
+        # A window that ends with the recording is not over: it may yet be met.
+        longer = None if window.high is None else window.high + 1
+        unseen: Spans = ((self.end + 1, FOREVER),)
+        open_ = self._until_of(left.may, both(right.may, unseen), window.low, longer)
+        return Truth(sure, union([*may, *open_]))
+
+    def _until_of(self, left: Spans, right: Spans, low: int, high: int | None) -> Spans:
+        if self.positions is None:
+            return until(left, right, low, high)
+        return self._lasting(until(left, self._at_positions(right), low, high))
+
+    def _next(self, operand: Truth) -> Truth:
+        return Truth(self._next_of(operand.sure), self._next_of(operand.may))
+
+    def _next_of(self, spans: Spans) -> Spans:
+        steps = pairwise([*(self.positions or ()), self.end + 1])
+        kept = [(here, after - 1) for here, after in steps if _holds(spans, after)]
+        return union([*kept, *self._behind(spans)])
+
+    def _at_positions(self, spans: Spans) -> Spans:
+        """Of a set only the positions; behind the last one all ticks may be one."""
+        positions = self.positions or ()
+        return union([*((p, p) for p in positions if _holds(spans, p)), *self._behind(spans)])
+
+    def _lasting(self, spans: Spans) -> Spans:
+        """The truth at each position, until the next."""
+        steps = pairwise([*(self.positions or ()), self.end + 1])
+        kept = [(here, after - 1) for here, after in steps if _holds(spans, here)]
+        return union([*kept, *self._behind(spans)])
+
+    def _behind(self, spans: Spans) -> Spans:
+        """What of a set lies behind the end of the recording."""
+        return both(spans, ((self.end + 1, FOREVER),))
+
+
+def _holds(spans: Spans, t: int) -> bool:
+    return any(low <= t <= high for low, high in spans)
+
+
+def _positions(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequence[int] | None:
+    """The positions; `None` where every tick is one."""
+    match spec.time:
+        case TimeModel.HELD:
+            return None
+        case TimeModel.SAMPLED:
+            return [sample.t for sample in samples]
+        case TimeModel.CLOCKED:
+            period = spec.period or 1
+            return range(-(-samples[0].t // period) * period, end + 1, period)
+        case _:
+            assert_never(spec.time)
+
+
+class _Log(Flow):
+    """A flow that remembers when its values changed.
+
+    Attributes:
+        history: per node, the instants from which on it had a value, and that value.
+    """
+
+    def __init__(
+        self, graph: Graph, inputs: Inputs, gap: int | None, captured: Mapping[str, Scalar]
+    ) -> None:
+        super().__init__(graph, inputs, gap, captured)
+        self.history: list[list[tuple[int, int]]] = [[] for _ in self.values]
+
+    def evaluate(self, t: int) -> list[int]:
+        """See `Flow`."""
+        changed = super().evaluate(t)
+        begun = any(self.history)
+        for place in changed if begun else range(len(self.values)):
+            self.history[place].append((t, self.values[place]))
+        return changed
+
+
+def _log(
+    spec: CheckedSpec,
+    roots: Sequence[State],
+    samples: Sequence[Sample],
+    end: int,
+    instance: Instance | None,
+    captured: Mapping[str, Scalar],
+    names: frozenset[str] | None,
+) -> dict[State, Truth]:
+    """The truth of state formulas over a recording; behind its end they may be anything."""
+    gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+    flow = _Log(graph_of(roots), Inputs(spec, names), gap, captured)
+    lane = Lane(flow)
+    for sample in samples:
+        lane.through(sample.t - 1)
+        lane.sample(sample.t, seen_by(instance, sample.values))
+    lane.through(end)
+    found = {}
+    for root in roots:
+        entries = flow.history[flow.graph.index[root]]
+        stops = [*(t - 1 for t, _ in entries[1:]), end][: len(entries)]
+        spans = [(t, stop, value) for (t, value), stop in zip(entries, stops, strict=True)]
+        sure = union((t, stop) for t, stop, value in spans if value == TRUE)
+        may = union([*((t, stop) for t, stop, v in spans if v != FALSE), (end + 1, FOREVER)])
+        found[root] = Truth(sure, may)
+    return found

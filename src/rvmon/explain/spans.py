@@ -1,0 +1,62 @@
+"""Sets of ticks as sorted, disjoint, closed intervals, and the temporal operators on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+Spans = tuple[tuple[int, int], ...]
+"""Closed intervals of ticks, ascending, none touching the next."""
+
+FOREVER = 1 << 63
+"""Later than any tick."""
+
+
+def union(intervals: Iterable[tuple[int, int]]) -> Spans:
+    """The ticks of some intervals; empty ones are dropped.
+
+    >>> union([(5, 7), (1, 2), (3, 4)])
+    ((1, 7),)
+    """
+    merged: list[tuple[int, int]] = []
+    for low, high in sorted(intervals):
+        if low > high:
+            continue
+        if merged and low <= merged[-1][1] + 1:
+            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
+        else:
+            merged.append((low, high))
+    return tuple(merged)
+
+
+def both(left: Spans, right: Spans) -> Spans:
+    """The ticks that lie in both."""
+    return union((max(a, c), min(b, d)) for a, b in left for c, d in right)
+
+
+def outside(spans: Spans, low: int, high: int) -> Spans:
+    """The ticks from `low` to `high` that lie in none.
+
+    >>> outside(((2, 3),), 0, 5)
+    ((0, 1), (4, 5))
+    """
+    edges = [(low - 1, low - 1), *spans, (high + 1, high + 1)]
+    return union((a + 1, b - 1) for (_, a), (b, _) in pairwise(edges))
+
+
+def until(left: Spans, right: Spans, low: int, high: int | None) -> Spans:
+    """The ticks t with an s of `right` in [t + low, t + high], and `left` at all ticks in [t, s).
+
+    Source: SEMANTICS 2; intervals shifted back after AUTOMATA 4.
+
+    >>> until(((0, 9),), ((10, 10),), 0, 3)
+    ((7, 10),)
+    """
+    last = FOREVER if high is None else high
+    found = list(right) if low == 0 else []
+    for first, end in left:
+        for start, stop in right:
+            earliest, latest = max(start, first), min(stop, end + 1)
+            if earliest <= latest:
+                found.append((max(first, earliest - last), latest - low))
+    return union(found)

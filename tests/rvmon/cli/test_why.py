@@ -1,0 +1,90 @@
+"""`rvmon why` as a person uses it."""
+
+import json
+
+import pytest
+
+from rvmon.cli import main
+
+SPEC = """
+spec door "A door"
+signal closed : bool input
+event knock input
+requirement D1 "Knocking opens the door"
+  upon knock
+  then within 2 s not closed
+requirement D2
+  upon fall(closed)
+  then immediately not knock
+"""
+TRACE = "t,closed,knock\n0,1,\n1,,1\n2,0,\n3,1,\n4,,1\n8,,1\n9,,\n"
+
+
+@pytest.fixture
+def door(tmp_path, monkeypatch):
+    """A folder with a spec and a recording: D1 passes, fails, stays open."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "door.rv").write_text(SPEC)
+    (tmp_path / "a.csv").write_text(TRACE)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("named", "verdict"), [("D1#1", "P"), ("D1#2", "F"), ("D1#3", "I"), ("D1", "F"), ("D2", "P")]
+)
+def test_attempts_are_shown_with_their_verdict(door, capsys, named, verdict):
+    """The attempt named, or the most telling one; no line is wider than 80 columns."""
+    assert main(["why", "door.rv", "a.csv", named]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split()[1] == verdict
+    assert all(len(line) <= 80 for line in lines)
+    assert any(line.strip() == "owed" for line in lines)
+
+
+def test_rows_show_truth_over_the_window(door, capsys):
+    """The row of the trigger has its moment, that of the failed part is false to the deadline."""
+    assert main(["why", "door.rv", "a.csv", "D1#2"]) == 0
+    rows = {line[:34].strip(): line[34:] for line in capsys.readouterr().out.splitlines()}
+    assert rows["knock"].count("●") == 1
+    assert set(rows["not closed"]) == {"▁"}
+    assert rows["within 2 s not closed"][0] == "▁"
+
+
+def test_the_same_as_data(door, capsys):
+    """As JSON: the attempt, the window and the spans of every part."""
+    assert main(["why", "door.rv", "a.csv", "D1#1", "--format", "json"]) == 0
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["attempt"]["decided"] == 2 * 10**9
+    rows = {row["text"]: row for row in shown["strands"]}
+    assert rows["knock"]["true"] == [[10**9, 10**9]]
+    assert rows["not closed"]["true"][0][0] == 2 * 10**9
+
+
+def test_late_samples_are_put_in_order(tmp_path, capsys):
+    """Under `max delay` a recording out of order is taken apart in order."""
+    text = SPEC.replace('"A door"\n', '"A door"\nmax delay 5 s\n')
+    (tmp_path / "a.rv").write_text(text)
+    (tmp_path / "a.csv").write_text("t,closed,knock\n0,1,\n2,0,\n1,,1\n9,,\n")
+    assert main(["why", str(tmp_path / "a.rv"), str(tmp_path / "a.csv"), "D1#1"]) == 0
+    assert capsys.readouterr().out.startswith("D1#1  P")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["door.rv", "a.csv", "D1#9"], "there are D1#1 to D1#3"),
+        (["door.rv", "a.csv", "D9"], "no requirement `D9`"),
+        (["door.rv", "a.csv", "D1#x"], "names no attempt"),
+        (["door.rv", "none.csv", "D1"], "none.csv"),
+        (["none.rv", "a.csv", "D1"], "none.rv"),
+        (["door.rv", "-", "D1"], "save the recording"),
+        (["door.rv", "b.csv", "D1"], "line 3"),
+        (["door.rv", "c.csv", "D1"], "not triggered"),
+    ],
+)
+def test_wrong_words_are_answered_with_a_mend(door, capsys, words, said):
+    """One message, exit code 2, no traceback."""
+    (door / "b.csv").write_text("t,closed,knock\n0,1,\n1,maybe,\n")
+    (door / "c.csv").write_text("t,closed,knock\n0,1,\n1,1,\n")
+    assert main(["why", *words]) == 2
+    assert said in capsys.readouterr().err
