@@ -140,7 +140,7 @@ def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol])
 
 def _sync(written: syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
     match resolver.symbol(written.channel, scope):
-        case ChannelSymbol(slot) if len(slot.indices) == len(slot.sizes):
+        case ChannelSymbol(slot) if len(slot.indices) == len(slot.extents):
             return Sync(slot, written.sends)
         case ChannelSymbol():
             raise model_error("TA004", "an array of channels", written.span, "give an index")
@@ -169,7 +169,7 @@ def _update(written: syntax.UpdateText, scope: Scope, resolver: Resolver) -> Upd
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
         return Reset(clock, value, written.span)
     match resolver.symbol(written.target, scope):
-        case VariableSymbol(slot) if len(slot.indices) == len(slot.sizes):
+        case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
             return Assignment(replace(slot, span=written.target.span), value)
         case _:
             mend = "only variables and clocks can be set"

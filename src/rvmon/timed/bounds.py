@@ -42,6 +42,11 @@ class ClockBounds:
             tuple(map(max, self.lower, other.lower)), tuple(map(max, self.upper, other.upper))
         )
 
+    def levelled(self) -> ClockBounds:
+        """The larger of the lower and the upper bound in both places."""
+        both = tuple(map(max, self.lower, self.upper))
+        return ClockBounds(both, both)
+
 
 def no_bounds(clocks: int) -> ClockBounds:
     """What holds where no clock is compared with anything."""
@@ -95,9 +100,9 @@ def value_range(expression: Expression, network: Network) -> tuple[int, int]:
         case Constant(value):
             return value, value
         case VariableValue(slot):
-            variables = network.variables[slot.first : slot.first + prod(slot.sizes)]
+            variables = network.variables[slot.first : slot.first + prod(map(len, slot.extents))]
             return min(v.low for v in variables), max(v.high for v in variables)
-        case Lookup(values, _):
+        case Lookup(values, _, _):
             return min(values), max(values)
         case Choice(_, then, otherwise):
             return _hull(value_range(then, network), value_range(otherwise, network))

@@ -62,7 +62,7 @@ def compile_edge(network: Network, automaton: int, number: int) -> CompiledEdge:
     if edge.sync is not None:
         slot = edge.sync.slot
         channel = slot_evaluator(slot)
-        channels = range(slot.first, slot.first + prod(slot.sizes))
+        channels = range(slot.first, slot.first + prod(map(len, slot.extents)))
     return CompiledEdge(
         automaton,
         number,

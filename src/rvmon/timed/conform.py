@@ -90,7 +90,6 @@ class _Quiet:
     begin: Sequence[tuple[State, Zone]]
     observed: frozenset[str]
     latest: int
-    simulates: bool = True
 
     @property
     def dim(self) -> int:

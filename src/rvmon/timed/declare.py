@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from math import prod
 from typing import TypeVar, assert_never
 
-from rvmon.diagnostics import Diagnostic, Label, Span
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 from rvmon.errors import ModelError
 from rvmon.timed import syntax
 from rvmon.timed.model import Channel, Clock, Slot, Variable
 from rvmon.timed.resolve import MAX_VALUES, Resolver, values_of
-from rvmon.timed.rules import model_error
+from rvmon.timed.rules import model_error, refusal
 from rvmon.timed.scope import (
     ChannelSymbol,
     ClockSymbol,
@@ -28,6 +28,7 @@ from rvmon.timed.scope import (
 from rvmon.timed.syntax import BaseType
 
 Part = TypeVar("Part", Clock, Variable, Channel)
+Read = TypeVar("Read")
 
 
 @dataclass(slots=True)
@@ -50,6 +51,21 @@ class Findings:
         """Note a finding; template instances repeat those of their template."""
         start = diagnostic.spans[0].span.start if diagnostic.spans else -1
         self.found.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
+
+    def raise_errors(self) -> None:
+        """Raise all errors found so far, if there are any."""
+        errors = [d for d in self.found.values() if d.severity is Severity.ERROR]
+        if errors:
+            raise refusal(*errors)
+
+    def attempt(self, read: Callable[[], Read], default: Read) -> Read:
+        """What `read` returns, or the default if it finds something wrong, which is noted."""
+        try:
+            return read()
+        except ModelError as error:
+            for diagnostic in error.diagnostics:
+                self.add(diagnostic)
+            return default
 
     @contextmanager
     def collect(self) -> Iterator[None]:
@@ -87,37 +103,37 @@ def _symbol(item: syntax.Declared, scope: Scope, parts: Parts, resolver: Resolve
     kind = resolver.type(item.type, scope)
     if isinstance(item, syntax.TypeDefinition):
         return TypeSymbol(kind)
-    sizes = tuple(array_size(size, scope, resolver) for size in item.sizes)
-    if prod(sizes) > MAX_VALUES:
+    extents = tuple(array_extent(size, scope, resolver) for size in item.sizes)
+    if prod(map(len, extents)) > MAX_VALUES:
         raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", item.span)
-    value = None if item.initial is None else _initial(item.initial, sizes, kind, scope, resolver)
+    value = None if item.initial is None else _initial(item.initial, extents, kind, scope, resolver)
     name = scope.prefix + item.name
     if kind.const:
         if value is None:
             mend = f"write const {item.name} = …"
             raise model_error("TA006", f"the constant `{item.name}` has no value", item.span, mend)
-        return ConstantSymbol(value)
+        return ConstantSymbol(value, extents)
     match kind.base:
         case BaseType.CLOCK | BaseType.CHANNEL if value is not None:
             raise model_error("TA004", f"`{item.name}` cannot have an initial value", item.span)
         case BaseType.CLOCK:
             first = len(parts.clocks)
-            parts.clocks += _spread(sizes, lambda suffix: Clock(name + suffix))
-            return ClockSymbol(Slot(first, sizes))
+            parts.clocks += _spread(extents, lambda suffix: Clock(name + suffix))
+            return ClockSymbol(Slot(first, extents))
         case BaseType.CHANNEL:
             first = len(parts.channels)
             parts.channels += _spread(
-                sizes, lambda suffix: Channel(name + suffix, kind.broadcast, kind.urgent)
+                extents, lambda suffix: Channel(name + suffix, kind.broadcast, kind.urgent)
             )
-            parts.channel_spans += [item.span] * prod(sizes)
-            return ChannelSymbol(Slot(first, sizes))
+            parts.channel_spans += [item.span] * prod(map(len, extents))
+            return ChannelSymbol(Slot(first, extents))
         case BaseType.INT | BaseType.BOOL | BaseType.NAMED:
             first = len(parts.variables)
-            numbers = iter(_flatten(_default(kind, sizes) if value is None else value))
+            numbers = iter(_flatten(_default(kind, extents) if value is None else value))
             parts.variables += _spread(
-                sizes, lambda suffix: _variable(name + suffix, kind, next(numbers))
+                extents, lambda suffix: _variable(name + suffix, kind, next(numbers))
             )
-            return VariableSymbol(Slot(first, sizes))
+            return VariableSymbol(Slot(first, extents))
         case _:
             assert_never(kind.base)
 
@@ -126,23 +142,20 @@ def _variable(name: str, kind: ResolvedType, initial: int) -> Variable:
     return Variable(name, kind.low, kind.high, initial, kind.base is BaseType.BOOL)
 
 
-def array_size(size: syntax.Size, scope: Scope, resolver: Resolver) -> int:
-    """The number of elements that a size gives; a type's values are the indices.
+def array_extent(size: syntax.Size, scope: Scope, resolver: Resolver) -> range:
+    """The indices that a size gives: those below a number, or a type's values.
 
     Raises:
-        ModelError: the size is not a constant above 0, or the type does not start at 0.
+        ModelError: the size is not a constant above 0, or the type has too many values.
     """
     kind = _size_type(size, scope, resolver)
     if kind is not None:
-        if kind.low != 0:
-            mend = "array indices start at 0"
-            raise model_error("TA007", "the index type does not start at 0", size.span, mend)
-        return len(values_of(kind, size.span))
+        return values_of(kind, size.span)
     assert not isinstance(size, syntax.TypeText)  # noqa: S101 - it would have a type
     number = resolver.constant(size, scope)
     if number < 1:
         raise model_error("TA007", f"an array of {number} elements", size.span)
-    return number
+    return range(number)
 
 
 def _size_type(size: syntax.Size, scope: Scope, resolver: Resolver) -> ResolvedType | None:
@@ -155,22 +168,22 @@ def _size_type(size: syntax.Size, scope: Scope, resolver: Resolver) -> ResolvedT
 
 def _initial(
     written: syntax.Initial,
-    sizes: tuple[int, ...],
+    extents: tuple[range, ...],
     kind: ResolvedType,
     scope: Scope,
     resolver: Resolver,
 ) -> ConstantValue:
     if not isinstance(written, syntax.Values):
-        if sizes:
+        if extents:
             mend = "write {a, b, …}"
             raise model_error("TA004", "an array needs a list of values", written.span, mend)
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
         return value
-    if not sizes or len(written.items) != sizes[0]:
-        expected = f"{sizes[0]} values" if sizes else "one value"
+    if not extents or len(written.items) != len(extents[0]):
+        expected = f"{len(extents[0])} values" if extents else "one value"
         raise model_error("TA004", f"{expected} expected, {len(written.items)} found", written.span)
-    return tuple(_initial(item, sizes[1:], kind, scope, resolver) for item in written.items)
+    return tuple(_initial(item, extents[1:], kind, scope, resolver) for item in written.items)
 
 
 def check_range(value: int, kind: ResolvedType, span: Span) -> None:
@@ -179,10 +192,10 @@ def check_range(value: int, kind: ResolvedType, span: Span) -> None:
         raise model_error("TA007", f"{value} is outside [{kind.low}, {kind.high}]", span)
 
 
-def _default(kind: ResolvedType, sizes: tuple[int, ...]) -> ConstantValue:
+def _default(kind: ResolvedType, extents: tuple[range, ...]) -> ConstantValue:
     value: ConstantValue = 0 if kind.low <= 0 <= kind.high else kind.low
-    for size in reversed(sizes):
-        value = (value,) * size
+    for extent in reversed(extents):
+        value = (value,) * len(extent)
     return value
 
 
@@ -192,12 +205,12 @@ def _flatten(value: ConstantValue) -> list[int]:
     return [number for item in value for number in _flatten(item)]
 
 
-def _spread(sizes: tuple[int, ...], make: Callable[[str], Part]) -> list[Part]:
-    return [make(suffix) for suffix in _suffixes(sizes)]
+def _spread(extents: tuple[range, ...], make: Callable[[str], Part]) -> list[Part]:
+    return [make(suffix) for suffix in _suffixes(extents)]
 
 
-def _suffixes(sizes: tuple[int, ...]) -> list[str]:
-    """`[0]`, `[1]`, … for each element of an array; one empty text for a single thing."""
-    if not sizes:
+def _suffixes(extents: tuple[range, ...]) -> list[str]:
+    """The index of each element of an array, such as `[0]`; one empty text for a single thing."""
+    if not extents:
         return [""]
-    return [f"[{i}]{rest}" for i in range(sizes[0]) for rest in _suffixes(sizes[1:])]
+    return [f"[{i}]{rest}" for i in extents[0] for rest in _suffixes(extents[1:])]

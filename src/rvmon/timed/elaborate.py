@@ -14,7 +14,7 @@ from rvmon.timed.instantiate import processes_of
 from rvmon.timed.model import Automaton, Expression, LeadsToFormula, Network, Query
 from rvmon.timed.parse import parse_query
 from rvmon.timed.resolve import Resolver, suggest
-from rvmon.timed.rules import finding, refusal
+from rvmon.timed.rules import finding
 from rvmon.timed.scope import AutomatonKey, AutomatonSymbol, Names, Scope
 
 MAX_EDGES = 100_000
@@ -53,7 +53,7 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
     names = Names(top, symbols)
     queries = _queries(document.queries, names, findings)
     _check_channels(parts, automata, findings)
-    _raise_errors(findings)
+    findings.raise_errors()
     return Network(
         document.name,
         document.title,
@@ -97,14 +97,8 @@ def query_on(network: Network, text: str) -> Query:
     """
     findings = Findings()
     queries = _queries([parse_query(text)], network.names, findings)
-    _raise_errors(findings)
+    findings.raise_errors()
     return queries[0]
-
-
-def _raise_errors(findings: Findings) -> None:
-    errors = [d for d in findings.found.values() if d.severity is Severity.ERROR]
-    if errors:
-        raise refusal(*errors)
 
 
 def _queries(
@@ -135,7 +129,7 @@ def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findi
     for edge in (edge for automaton in automata for edge in automaton.edges):
         if edge.sync is not None:
             slot = edge.sync.slot
-            used = range(slot.first, slot.first + prod(slot.sizes))
+            used = range(slot.first, slot.first + prod(map(len, slot.extents)))
             (senders if edge.sync.sends else receivers).update(used)
     for index, (channel, span) in enumerate(zip(parts.channels, parts.channel_spans, strict=True)):
         match index in senders, index in receivers:

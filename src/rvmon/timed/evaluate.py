@@ -91,8 +91,8 @@ def evaluator(expression: Expression) -> Evaluator:
         case VariableValue(slot):
             element = slot_evaluator(slot)
             return lambda locations, values: values[element(locations, values)]
-        case Lookup(table, index, span):
-            return _lookup(table, evaluator(index), span)
+        case Lookup(table, extent, index, span):
+            return _lookup(table, extent, evaluator(index), span)
         case InLocation(automaton, location):
             return lambda locations, _values: int(locations[automaton] == location)
         case UnaryOperation(op, operand):
@@ -110,11 +110,13 @@ def evaluator(expression: Expression) -> Evaluator:
             assert_never(expression)
 
 
-def _lookup(table: tuple[int, ...], index: Evaluator, span: Span | None) -> Evaluator:
+def _lookup(
+    table: tuple[int, ...], extent: range, index: Evaluator, span: Span | None
+) -> Evaluator:
     def element(locations: Locations, values: Values) -> int:
         position = index(locations, values)
-        check_index(position, len(table), span)
-        return table[position]
+        check_index(position, extent, span)
+        return table[position - extent.start]
 
     return element
 
@@ -144,23 +146,26 @@ def _binary_evaluator(op: BinaryOp, left: Evaluator, right: Evaluator) -> Evalua
 
 def slot_evaluator(slot: Slot) -> Evaluator:
     """Make a function that gives the index of the variable or channel that a slot names."""
-    if not slot.sizes:
+    if not slot.extents:
         return lambda _locations, _values: slot.first
     indices = [evaluator(index) for index in slot.indices]
 
     def element(locations: Locations, values: Values) -> int:
         offset = 0
-        for size, index in zip(slot.sizes, indices, strict=True):
+        for extent, index in zip(slot.extents, indices, strict=True):
             position = index(locations, values)
-            check_index(position, size, slot.span)
-            offset = offset * size + position
+            check_index(position, extent, slot.span)
+            offset = offset * len(extent) + position - extent.start
         return slot.first + offset
 
     return element
 
 
-def check_index(position: int, size: int, span: Span | None) -> None:
+def check_index(position: int, extent: range, span: Span | None) -> None:
     """Refuse an index outside its array."""
-    if not 0 <= position < size:
-        mend = f"the indices are 0 to {size - 1}: guard the edge, or narrow the index's type"
+    if position not in extent:
+        mend = (
+            f"the indices are {extent.start} to {extent.stop - 1}: "
+            "guard the edge, or narrow the index's type"
+        )
         raise model_error("TA007", f"index {position} is outside the array", span, mend)

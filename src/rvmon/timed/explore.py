@@ -10,7 +10,7 @@ from itertools import count
 from rvmon.timed.meter import Meter, paused_collector
 from rvmon.timed.pieces import Piece
 from rvmon.timed.search import Found, LinkT, Node, Problem, SiteT
-from rvmon.timed.zones import Zone, is_simulated, is_within
+from rvmon.timed.zones import Zone, is_simulated
 
 
 def explore(
@@ -119,8 +119,6 @@ def explore_best(
 
 
 def _cover_test(problem: Problem[SiteT, LinkT]) -> Callable[[SiteT, Zone, Zone], bool]:
-    if not problem.simulates:
-        return lambda _site, zone, other: is_within(zone, other)
     dim = problem.dim
 
     def covers(site: SiteT, zone: Zone, other: Zone) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.timed import syntax
-from rvmon.timed.declare import Findings, array_size, check_range, refuse_double
+from rvmon.timed.declare import Findings, array_extent, check_range, refuse_double
 from rvmon.timed.resolve import Resolver, suggest, values_of
 from rvmon.timed.rules import model_error
 from rvmon.timed.scope import (
@@ -112,20 +112,20 @@ def _argument(
     parameter: syntax.Parameter, written: syntax.Expression, scope: Scope, resolver: Resolver
 ) -> Symbol:
     kind = resolver.type(parameter.type, scope)
-    sizes = tuple(array_size(size, scope, resolver) for size in parameter.sizes)
-    if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not sizes:
+    extents = tuple(array_extent(size, scope, resolver) for size in parameter.sizes)
+    if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
         return ConstantSymbol(value)
     symbol = resolver.symbol(written, scope)
     match symbol:
         case ClockSymbol(slot):
-            fits = kind.base is BaseType.CLOCK and slot.sizes[len(slot.indices) :] == sizes
+            fits = kind.base is BaseType.CLOCK and slot.extents[len(slot.indices) :] == extents
         case ChannelSymbol(slot):
-            fits = kind.base is BaseType.CHANNEL and slot.sizes[len(slot.indices) :] == sizes
+            fits = kind.base is BaseType.CHANNEL and slot.extents[len(slot.indices) :] == extents
         case VariableSymbol(slot):
             fits = kind.base in (BaseType.INT, BaseType.BOOL)
-            fits = fits and slot.sizes[len(slot.indices) :] == sizes
+            fits = fits and slot.extents[len(slot.indices) :] == extents
         case _:
             fits = isinstance(symbol, ConstantSymbol) and kind.const
     if not fits:

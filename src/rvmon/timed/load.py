@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from rvmon.diagnostics import Source
@@ -10,10 +11,11 @@ from rvmon.timed.elaborate import elaborate
 from rvmon.timed.model import Network
 from rvmon.timed.parse import parse_document
 from rvmon.timed.rules import model_error
+from rvmon.timed.uppaal import read_uppaal
 
 
 def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None) -> Network:
-    """Read a model from a `.ta` file.
+    """Read a model from a `.ta` file, or from one in UPPAAL's XML.
 
     Args:
         path: of the file.
@@ -38,7 +40,7 @@ def loads_network(
     """Read a model from a text.
 
     Args:
-        text: as in a `.ta` file.
+        text: as in a `.ta` file, or UPPAAL's XML.
         name: what findings call it.
         constants: other values for constants of the model.
 
@@ -48,4 +50,9 @@ def loads_network(
     >>> loads_network("automaton a { location l start l }").automata[0].locations[0].name
     'l'
     """
-    return elaborate(parse_document(Source(name, text)), constants)
+    source = Source(name, text)
+    if not text.lstrip().startswith("<"):
+        return elaborate(parse_document(source), constants)
+    document, warnings = read_uppaal(source)
+    network = elaborate(document, constants)
+    return replace(network, warnings=(*network.warnings, *warnings))

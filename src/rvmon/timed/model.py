@@ -32,12 +32,13 @@ class Slot:
 
     Attributes:
         first: index of the array's first element.
-        sizes: of the array, outermost dimension first; empty for a single one.
-        indices: one for each dimension; each must be at least 0 and below its size.
+        extents: the indices of each dimension of the array, the outermost first; empty for a
+            single one.
+        indices: one for each dimension; each must lie in its extent.
     """
 
     first: int
-    sizes: tuple[int, ...] = ()
+    extents: tuple[range, ...] = ()
     indices: tuple[Expression, ...] = ()
     span: Span | None = field(default=None, compare=False)
 
@@ -51,9 +52,10 @@ class VariableValue:
 
 @dataclass(frozen=True, slots=True)
 class Lookup:
-    """An element of a constant array, chosen by the variables."""
+    """An element of a constant array, chosen by the variables; `extent` are its indices."""
 
     values: tuple[int, ...]
+    extent: range
     index: Expression
     span: Span | None = field(default=None, compare=False)
 

@@ -23,6 +23,7 @@ STARTS = (
     "expression",
     "sync",
     "updates",
+    "instances",
     "system",
     "query",
 )
@@ -75,7 +76,7 @@ def parse_part(text: str, start: str, place: Place) -> Any:
         tree = _parser().parse(text, start=start)
         return SyntaxBuilder(place).transform(tree)
     except lark.exceptions.UnexpectedInput as error:
-        raise _syntax_error(error, text, place) from None
+        raise _syntax_error(error, text, start, place) from None
     except lark.exceptions.VisitError as error:
         raise error.orig_exc from None
     except RecursionError:
@@ -88,18 +89,31 @@ def _parser() -> lark.Lark:
     return lark.Lark(grammar, parser="lalr", start=list(STARTS), propagate_positions=True)
 
 
-def _syntax_error(error: lark.exceptions.UnexpectedInput, text: str, place: Place) -> ModelError:
+def _syntax_error(
+    error: lark.exceptions.UnexpectedInput, text: str, rule: str, place: Place
+) -> ModelError:
     token = getattr(error, "token", None)
     expected = getattr(error, "expected", None) or getattr(error, "allowed", None) or ()
     at_end = token is not None and token.type == "$END"
     start = len(text) if at_end else error.pos_in_stream or 0
     length = 0 if at_end else len(token) if token is not None else 1
     found = "the end" if at_end else f"`{text[start : start + length]}`"
+    if found in _UNSUPPORTED:
+        return model_error("TA016", _UNSUPPORTED[found], place(start, start + length))
+    if found == "`(`" and rule in ("declarations", "system"):
+        mend = "write its body out where it is used"
+        return model_error(
+            "TA016", "functions are not supported", place(start, start + length), mend
+        )
     words = _words(set(expected))
     message = f"found {found}" + (f", expected {words}" if words else "")
     return refusal(finding("TA001", message, place(start, start + length)))
 
 
+_UNSUPPORTED = {
+    "`'`": "rates of clocks (stop-watches, hybrid models) are not supported",
+    "`{`": "blocks of statements are not supported",
+}
 _OPERATORS = {
     "AND", "OR", "IMPLY", "EQUALITY", "RELATION", "PLUS", "MINUS", "FACTOR", "LSQB", "DOT",
     "RECEIVE", "__ANON_2", "__ANON_3",

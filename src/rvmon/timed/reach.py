@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import inf
 
-from rvmon.timed.deadlock import Deadlocks, blurred, is_time_bounded
-from rvmon.timed.discrete import Move, State
+from rvmon.timed.deadlock import Deadlocks, is_time_bounded
+from rvmon.timed.discrete import State
 from rvmon.timed.federation import piece_of, subtract_all, universe
 from rvmon.timed.guards import with_deadlock
 from rvmon.timed.model import Expression, Network
@@ -29,8 +28,6 @@ class Reachability(Steps):
     Attributes:
         timer: the last clock, if there is a bound or `timed`.
     """
-
-    simulates = True
 
     def __init__(
         self,
@@ -58,34 +55,22 @@ class Reachability(Steps):
         return next((piece for piece in pieces if meets(zone, self.dim, piece)), None)
 
 
-class DeadlockReachability:
+class DeadlockReachability(Steps):
     """Reach a formula that speaks of `deadlock`; sites are discrete states, links are moves.
 
-    Zones are coarsened up to bisimulation only, since simulation would invent deadlocks.
+    A state that can do more than another may be alive where that is dead, so only states that can
+    do the same stand for each other.
 
     Args:
         network: where to look.
         formula: normalised.
     """
 
-    simulates = False
-
     def __init__(self, network: Network, formula: Expression) -> None:
-        self.steps = Steps(network, formula)
-        self.dim = self.steps.dim
-        self._deadlocks = Deadlocks(self.steps.space)
+        super().__init__(network, formula, bisimilar=True)
+        self._deadlocks = Deadlocks(self.space)
         self._if_dead = piece_maker(with_deadlock(formula, value=True))
         self._if_alive = piece_maker(with_deadlock(formula, value=False))
-
-    def start(self) -> Iterator[tuple[State, Zone]]:
-        """The initial state with all delays."""
-        for state, zone in self.steps.start():
-            yield state, blurred(state, zone, self.dim)
-
-    def successors(self, site: State, zone: Zone) -> Iterator[tuple[Move, State, Zone]]:
-        """All moves that some valuation of the zone can take."""
-        for move, state, fresh in self.steps.successors(site, zone):
-            yield move, state, blurred(state, fresh, self.dim)
 
     def goal(self, site: State, zone: Zone) -> Piece | None:
         """A part of the zone where the formula holds."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
-from rvmon.timed.deadlock import blurred
 from rvmon.timed.discrete import Move, State
 from rvmon.timed.guards import normal_form
 from rvmon.timed.liveness import Escape, Staying
@@ -18,7 +17,7 @@ from rvmon.timed.syntax import BinaryOp
 from rvmon.timed.zones import STRICT, Zone, cut, reset, zero
 
 
-class UnboundedResponse:
+class UnboundedResponse(Steps):
     """Find where `left` holds and from where a run need never meet `right`.
 
     Sites are discrete states, links are moves.
@@ -31,12 +30,9 @@ class UnboundedResponse:
         proper_only: whether a way counts only if time passes on it without bound.
 
     Attributes:
-        steps: of the network.
         staying: the search from there.
         escape: the way found; `None` while there is none.
     """
-
-    simulates = False
 
     def __init__(
         self,
@@ -47,22 +43,11 @@ class UnboundedResponse:
         *,
         proper_only: bool,
     ) -> None:
-        self.steps = Steps(network, BinaryOperation(BinaryOp.AND, left, right))
-        self.dim = self.steps.dim
-        self.inside = Inside(self.steps.space, piece_maker(normal_form(right, positive=False)))
+        super().__init__(network, BinaryOperation(BinaryOp.AND, left, right), bisimilar=True)
+        self.inside = Inside(self.space, piece_maker(normal_form(right, positive=False)))
         self.staying = Staying(self.inside, meter, proper_only=proper_only)
         self.escape: Escape | None = None
         self._left = piece_maker(left)
-
-    def start(self) -> Iterator[tuple[State, Zone]]:
-        """The initial state with all delays."""
-        for state, zone in self.steps.start():
-            yield state, blurred(state, zone, self.dim)
-
-    def successors(self, site: State, zone: Zone) -> Iterator[tuple[Move, State, Zone]]:
-        """All moves that some valuation of the zone can take."""
-        for move, state, fresh in self.steps.successors(site, zone):
-            yield move, state, blurred(state, fresh, self.dim)
 
     def goal(self, site: State, zone: Zone) -> Piece | None:
         """Where `left` holds in the zone, if `right` need never come from there."""
@@ -93,8 +78,6 @@ class BoundedResponse:
         right: normalised.
         bound: units of time.
     """
-
-    simulates = True
 
     def __init__(
         self, network: Network, left: Expression | None, right: Expression, bound: int

@@ -27,28 +27,33 @@ class ResolvedType:
 
 @dataclass(frozen=True, slots=True)
 class ConstantSymbol:
-    """A constant, a parameter's value, or a bound variable of a quantifier or `select`."""
+    """A constant, a parameter's value, or a bound variable of a quantifier or `select`.
+
+    Attributes:
+        extents: the indices of each dimension, if it is an array.
+    """
 
     value: ConstantValue
+    extents: tuple[range, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class VariableSymbol:
-    """A variable, or an array of them while the slot has fewer indices than sizes."""
+    """A variable, or an array of them while the slot has fewer indices than extents."""
 
     slot: Slot
 
 
 @dataclass(frozen=True, slots=True)
 class ClockSymbol:
-    """A clock, or an array of them while the slot has fewer indices than sizes."""
+    """A clock, or an array of them while the slot has fewer indices than extents."""
 
     slot: Slot
 
 
 @dataclass(frozen=True, slots=True)
 class ChannelSymbol:
-    """A channel, or an array of them while the slot has fewer indices than sizes."""
+    """A channel, or an array of them while the slot has fewer indices than extents."""
 
     slot: Slot
 
@@ -62,9 +67,10 @@ class TypeSymbol:
 
 @dataclass(frozen=True, slots=True)
 class ChosenSymbol:
-    """An element of a constant array, chosen by the variables."""
+    """An element of a constant array, chosen by the variables; `extent` are its indices."""
 
     values: tuple[int, ...]
+    extent: range
     index: Expression
 
 

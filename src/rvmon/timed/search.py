@@ -38,18 +38,11 @@ class Problem(Protocol[SiteT, LinkT_co]):
 
     Attributes:
         dim: of all zones.
-        simulates: whether a state may be dropped for one that simulates it; otherwise only for one
-            that includes it.
     """
 
     @property
     def dim(self) -> int:
         """One more than the number of clocks."""
-        ...
-
-    @property
-    def simulates(self) -> bool:
-        """Whether simulation is enough for dropping a state."""
         ...
 
     def start(self) -> Iterable[tuple[SiteT, Zone]]:

@@ -29,6 +29,8 @@ class Space:
         observers: number of clocks of queries, counted behind those of the network.
         uppers: upper bounds of those, as `zones.is_simulated` takes them.
         lowers: their lower bounds, likewise.
+        bisimilar: whether a state may stand for another only if both can do the same, not if it
+            can do more.
     """
 
     def __init__(
@@ -38,11 +40,14 @@ class Space:
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
         lowers: Sequence[tuple[int, float]] = (),
+        *,
+        bisimilar: bool = False,
     ) -> None:
         self.network = network
         self.dim = 1 + len(network.clocks) + observers
         self._extra = extra or no_bounds(len(network.clocks))
         self._uppers, self._lowers = tuple(uppers), tuple(lowers)
+        self._bisimilar = bisimilar
         self._vectors: dict[tuple[int, ...], Vector] = {}
         self._states: dict[tuple[tuple[int, ...], tuple[int, ...]], State] = {}
         self._edges: list[list[list[CompiledEdge]]] = []
@@ -123,6 +128,8 @@ class Space:
         bounds = self._extra
         for i, place in enumerate(locations):
             bounds = bounds.joined(self._bounds[i][place])
+        if self._bisimilar:
+            bounds = bounds.levelled()
         candidates = list(self._candidates(locations, leaving))
         broadcasts = list(self._broadcasts(leaving))
         urgent = [c for c in candidates if self._is_urgent(c.edges[0])] + [

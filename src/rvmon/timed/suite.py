@@ -89,8 +89,6 @@ class _Site:
 class _Tour:
     """Goes everywhere; `watched` is the automaton whose last edge tells sites apart."""
 
-    simulates = True
-
     def __init__(self, network: Network, watched: int | None) -> None:
         self._steps = Steps(network, Constant(1))
         self._watched = watched

@@ -20,6 +20,7 @@ class Steps:
         observers: number of further clocks.
         uppers: upper bounds of those, as `zones.is_simulated` takes them.
         lowers: their lower bounds, likewise.
+        bisimilar: as `Space` takes it.
     """
 
     def __init__(
@@ -29,9 +30,11 @@ class Steps:
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
         lowers: Sequence[tuple[int, float]] = (),
+        *,
+        bisimilar: bool = False,
     ) -> None:
         bounds = formula_bounds(formula, network)
-        self.space = Space(network, bounds, observers, uppers, lowers)
+        self.space = Space(network, bounds, observers, uppers, lowers, bisimilar=bisimilar)
         self.dim = self.space.dim
         # Without strict bounds no zone ever needs to be tidied.
         self._strict = has_strict_bounds(network, formula)

@@ -34,12 +34,12 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
         ModelError: it has none: a clock, an array, a channel or a type.
     """
     match symbol:
-        case ConstantSymbol(int(value)):
+        case ConstantSymbol(int(value), _):
             return Constant(value)
-        case VariableSymbol(slot) if len(slot.indices) == len(slot.sizes):
+        case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
             return VariableValue(replace(slot, span=span))
-        case ChosenSymbol(values, index):
-            return Lookup(values, index, span)
+        case ChosenSymbol(values, extent, index):
+            return Lookup(values, extent, index, span)
         case ClockSymbol():
             mend = "a clock can only be compared with a number, or be set"
             raise model_error("TA009", "a clock has no value here", span, mend)
@@ -59,11 +59,11 @@ def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
         ModelError: the symbol is no array, or the index is outside it.
     """
     match symbol:
-        case ConstantSymbol(tuple() as values):
+        case ConstantSymbol(tuple() as values, (extent, *inner)):
             if not isinstance(index, Constant):
-                return ChosenSymbol(_flat(values, span), index)
-            check_index(index.value, len(values), span)
-            return ConstantSymbol(values[index.value])
+                return ChosenSymbol(_flat(values, span), extent, index)
+            check_index(index.value, extent, span)
+            return ConstantSymbol(values[index.value - extent.start], tuple(inner))
         case VariableSymbol(slot):
             return VariableSymbol(_deeper(slot, index, span))
         case ClockSymbol(slot):
@@ -84,22 +84,22 @@ def _flat(values: tuple[ConstantValue, ...], span: Span) -> tuple[int, ...]:
 
 
 def _deeper(slot: Slot, index: Expression, span: Span) -> Slot:
-    if len(slot.indices) == len(slot.sizes):
+    if len(slot.indices) == len(slot.extents):
         raise model_error("TA004", "more indices than the array has dimensions", span)
     if isinstance(index, Constant):
-        check_index(index.value, slot.sizes[len(slot.indices)], span)
-    return settle(Slot(slot.first, slot.sizes, (*slot.indices, index), span))
+        check_index(index.value, slot.extents[len(slot.indices)], span)
+    return settle(Slot(slot.first, slot.extents, (*slot.indices, index), span))
 
 
 def settle(slot: Slot) -> Slot:
     """The same slot without its array, if its indices are constant and complete."""
-    if len(slot.indices) < len(slot.sizes):
+    if len(slot.indices) < len(slot.extents):
         return slot
     offset = 0
-    for size, index in zip(slot.sizes, slot.indices, strict=True):
+    for extent, index in zip(slot.extents, slot.indices, strict=True):
         if not isinstance(index, Constant):
             return slot
-        offset = offset * size + index.value
+        offset = offset * len(extent) + index.value - extent.start
     return Slot(slot.first + offset, (), (), slot.span)
 
 
@@ -109,8 +109,8 @@ def clock_of(slot: Slot, span: Span) -> int:
     Raises:
         ModelError: the variables would have to choose it, or it is an array.
     """
-    if slot.sizes:
-        missing = len(slot.indices) < len(slot.sizes)
+    if slot.extents:
+        missing = len(slot.indices) < len(slot.extents)
         message = "an array of clocks" if missing else "the index of a clock is not constant"
         raise model_error("TA006", message, span, "use a number or a parameter as index")
     return slot.first

@@ -173,6 +173,9 @@ class SyntaxBuilder(Transformer[Token, Any]):
             self._token_span(name),
         )
 
+    def instances(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Instance, ...]:
+        return tuple(items)
+
     def parameter_list(self, meta: Meta, items: Sequence[Any]) -> Any:
         return items[0]
 

@@ -23,7 +23,7 @@ from rvmon.timed.run import Ending, Run
 from rvmon.timed.search import UNLIMITED, Budget, Node, Watch
 from rvmon.timed.start import check_start
 from rvmon.timed.stay import Inside
-from rvmon.timed.symbolic import Steps, lowest, settle_in
+from rvmon.timed.symbolic import Steps, lowest
 from rvmon.timed.syntax import PathOp
 from rvmon.timed.witness import (
     bounded_path,
@@ -31,9 +31,8 @@ from rvmon.timed.witness import (
     make_run,
     plain_path,
     state_of,
-    zone_after,
 )
-from rvmon.timed.zones import Zone, cut, normalise, zero
+from rvmon.timed.zones import Zone, cut, zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,17 +186,12 @@ def _unlikeliness(before: float, move: Move | None, _zone: Zone) -> float:
 def _reach_deadlock(question: _Question, formula: Expression) -> Run | None:
     problem = DeadlockReachability(question.network, formula)
     found = explore(problem, question.meter)
-    if found.node is None:
+    if found.node is None or found.piece is None:
         return None
-    steps, last = plain_path(found.node), found.node.site
-    # The search blurs zones; the run needs valuations that are really there.
-    zone = zone_after(steps, problem.dim)
-    settle_in(last, zone, problem.dim)
-    piece = problem.goal(last, normalise(zone))
-    assert piece is not None  # noqa: S101 - blurring keeps what can happen
-    steps.append(mark_step(last, piece))
-    ending = problem.ending(last, piece)
-    return make_run(question.network, found.node.path()[0].site, steps, ending)
+    last = found.node.site
+    steps = [*plain_path(found.node), mark_step(last, found.piece)]
+    start, ending = found.node.path()[0].site, problem.ending(last, found.piece)
+    return make_run(question.network, start, steps, ending)
 
 
 # Staying away.
