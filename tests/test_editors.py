@@ -1,0 +1,97 @@
+"""The editor grammar colours specifications by the words of the language."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from rvmon.spec.words import FUNCTIONS, INFIX_WORDS, RESERVED
+
+ROOT = Path(__file__).parents[1]
+VSCODE = ROOT / "editors" / "vscode"
+GRAMMAR = json.loads((VSCODE / "syntaxes" / "rv.tmLanguage.json").read_text(encoding="utf-8"))
+SPECS = sorted([*ROOT.glob("specs/*.rv"), *ROOT.glob("src/rvmon/spec/patterns/*.rv")])
+
+
+def rules():
+    """The patterns in order, compiled."""
+    for pattern in GRAMMAR["patterns"]:
+        rule = GRAMMAR["repository"][pattern["include"][1:]]
+        yield re.compile(rule["match"]), rule
+
+
+RULES = list(rules())
+
+
+def tokens(line):
+    """What a TextMate engine makes of a line: at each place the first rule that matches."""
+    place = 0
+    found = []
+    while place < len(line):
+        for pattern, rule in RULES:
+            match = pattern.match(line, place)
+            if match and match.end() > place:
+                if "name" in rule:
+                    found.append((match[0].strip(), rule["name"]))
+                for group, capture in rule.get("captures", {}).items():
+                    if match[int(group)]:
+                        found.append((match[int(group)], capture["name"]))
+                place = match.end()
+                break
+        else:
+            place += 1
+    return found
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.name)
+def test_specifications_are_coloured(path):
+    """Every word, number and text of a specification has a colour, words of the language theirs."""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        coloured = tokens(line)
+        code = re.sub(r'"[^"]*"|#.*', "", line)
+        assert len(re.findall(r"[A-Za-z_]\w*", code)) == 0 or coloured
+        for text, name in coloured:
+            if text in RESERVED:
+                assert name.startswith(("keyword", "constant.language")), (line, text, name)
+        if line.lstrip().startswith("#"):
+            assert coloured[0][1].startswith("comment")
+
+
+@pytest.mark.parametrize("word", sorted(RESERVED | INFIX_WORDS))
+def test_every_word_of_the_language_is_known(word):
+    """A word that is added to the language has to be added here."""
+    name = "A[" if word in "AE" else f"{word} x"
+    assert tokens(name.replace("A", word, 1) if word in "AE" else name)[0][1].startswith(
+        ("keyword", "constant.language")
+    )
+
+
+@pytest.mark.parametrize("function", sorted(FUNCTIONS))
+def test_functions(function):
+    """Functions are coloured before their bracket."""
+    assert tokens(f"x and {function}(y)")[2] == (function, "support.function.rv")
+
+
+def test_numbers_with_units():
+    """Units belong to their number, operators do not."""
+    assert tokens("d < 5.5 mm/s and x")[2:4] == [
+        ("5.5", "constant.numeric.rv"),
+        ("mm/s", "keyword.other.unit.rv"),
+    ]
+    assert ("until", "keyword.control.temporal.rv") in tokens("x < 5 until y")
+
+
+def test_problem_matcher_reads_concise_findings():
+    """The pattern of the problem matcher fits `rvmon check --format concise`."""
+    from rvmon.diagnostics.render import render_concise
+    from rvmon.errors import SpecError
+    from rvmon.spec import compile_text
+
+    package = json.loads((VSCODE / "package.json").read_text(encoding="utf-8"))
+    pattern = package["contributes"]["problemMatchers"][0]["pattern"]["regexp"]
+    with pytest.raises(SpecError) as caught:
+        compile_text("requirement R always a", name="a.rv")
+    found = re.fullmatch(pattern, render_concise(caught.value.diagnostics))
+    assert found is not None
+    assert found.groups()[:5] == ("a.rv", "1", "22", "error", "RV012")
