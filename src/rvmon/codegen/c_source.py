@@ -49,7 +49,7 @@ class _Writer:
         places = {  # the first two hold others
             "HELPERS": "\n".join(self._helpers()),
             "TABLES": "\n".join(self._tables()),
-            "SPEC": _comment(self.plan.spec.name),
+            "SPEC": comment(self.plan.spec.name),
             "GUARD": f"{prefix.upper()}_MONITOR_H",
             "HEADER": f"{prefix}.h",
             "PREFIX": prefix.upper(),
@@ -58,7 +58,7 @@ class _Writer:
             "NAMES": "\n".join(self._constants()),
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }
-        source = _template("monitor.c.in")
+        source = template("monitor.c.in")
         if not self._count(StateOp.SINCE):
             source = _without(source, "PAST")
         source = source.replace("@PAST_BEGIN@\n", "").replace("@PAST_END@\n", "")
@@ -67,10 +67,10 @@ class _Writer:
         return CFiles(
             prefix,
             {
-                f"{prefix}.h": _filled(_template("monitor.h.in"), places),
-                f"{prefix}.c": _filled(source, places),
-                f"{prefix}.hpp": _filled(_template("monitor.hpp.in"), places),
-                f"{prefix}_batch.c": _filled(_template("batch.c.in"), places),
+                f"{prefix}.h": filled(template("monitor.h.in"), places),
+                f"{prefix}.c": filled(source, places),
+                f"{prefix}.hpp": filled(template("monitor.hpp.in"), places),
+                f"{prefix}_batch.c": filled(template("batch.c.in"), places),
             },
         )
 
@@ -105,11 +105,11 @@ class _Writer:
         ):
             yield ""
             for number, name in enumerate(listed):
-                yield f"#define {upper}_{what}_{number} {number} /* {_comment(name)} */"
+                yield f"#define {upper}_{what}_{number} {number} /* {comment(name)} */"
         for (event, field), number in names.fields.items():
-            yield f"#define {upper}_FIELD_{number} {number} /* {_comment(f'{event}.{field}')} */"
+            yield f"#define {upper}_FIELD_{number} {number} /* {comment(f'{event}.{field}')} */"
         for label, number in names.labels.items():
-            yield f"#define {upper}_LABEL_{number} {number} /* {_comment(label)} */"
+            yield f"#define {upper}_LABEL_{number} {number} /* {comment(label)} */"
 
     def _timed(self) -> list[int]:
         return [
@@ -135,7 +135,7 @@ class _Writer:
         if self._count(StateOp.SINCE):
             calls += "sum("
         chosen: list[str] = []
-        for block in reversed(_template("helpers.c.in").split("\n\n")):
+        for block in reversed(template("helpers.c.in").split("\n\n")):
             name = block.split("(", 1)[0].rsplit(" ", 1)[-1]
             if f"{name}(" in calls:
                 chosen.append(block)
@@ -235,7 +235,7 @@ class _Writer:
             worse.append([weight for weights in alphabet.pessimistic for weight in weights])
             better.append([weight for weights in alphabet.optimistic for weight in weights])
         yield ""
-        yield "/* Per requirement its propositions, and what false, unknown and true of each add. */"
+        yield "/* The propositions of each requirement; what false, unknown and true add. */"
         yield from lists("proposition_first", "propositions", places)
         yield array("int32_t", "worse_weights", [w for own in worse for w in own])
         yield array("int32_t", "better_weights", [w for own in better for w in own])
@@ -284,7 +284,7 @@ class _Writer:
         uses = self.plan.uses.get(name)
         places = self.plan.graph.by_name.get(name, ())
         stale_after = self.plan.spec.signals[name].stale_after
-        yield f"if (sample->signal[{number}] != {prefix}_NOTHING) {{ /* {_comment(name)} */"
+        yield f"if (sample->signal[{number}] != {prefix}_NOTHING) {{ /* {comment(name)} */"
         yield f"    const bool known = sample->signal[{number}] == {prefix}_YES;"
         yield f"    const double value = known ? sample->value[{number}] : unknown_value();"
         if stale_after is not None:
@@ -323,7 +323,7 @@ class _Writer:
         prefix = self.names.prefix
         number = self.names.event(name)
         places = self.plan.graph.by_name[name]
-        yield f"if (sample->event[{number}] != {prefix}_NOTHING) {{ /* {_comment(name)} */"
+        yield f"if (sample->event[{number}] != {prefix}_NOTHING) {{ /* {comment(name)} */"
         if self.plan.uses[name].marked:
             yield f"    m->updated[{self.names.number(name)}] = 1;"
             yield "    m->gathered = true;"
@@ -364,19 +364,21 @@ def lists(first: str, name: str, values: Sequence[Sequence[int]]) -> Iterator[st
     yield array("int32_t", name, [value for own in values for value in own])
 
 
-def _comment(text: str) -> str:
+def comment(text: str) -> str:
     """A text that cannot end a comment."""
     return ascii(text)[1:-1].replace("*/", "* /").replace("/*", "/ *").replace("\\", "/")
 
 
-def _template(name: str) -> str:
+def template(name: str) -> str:
+    """The text of a file of this package's folder `c`."""
     return files("rvmon.codegen").joinpath("c", name).read_text(encoding="utf-8")
 
 
-def _filled(template: str, places: dict[str, str]) -> str:
-    for name, text in places.items():
-        template = template.replace(f"@{name}@", text)
-    return template
+def filled(text: str, places: dict[str, str]) -> str:
+    """A template with its `@PLACES@` filled, in the order given."""
+    for name, part in places.items():
+        text = text.replace(f"@{name}@", part)
+    return text
 
 
 def _without(text: str, part: str) -> str:

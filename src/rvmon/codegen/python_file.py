@@ -15,7 +15,7 @@ from rvmon.trace.schema import Kind
 
 _RUNTIME = ("past", "table", "rule", "unit", "alone")
 
-_HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 or later and nothing else.
+_HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 and nothing else.
 
     monitor = SpecMonitor()
     for attempt in monitor.step(0.5, {{"signal": True}}):      # seconds, and what was updated

@@ -62,6 +62,8 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
                 known = ", ".join(compiled.requirements)
                 raise UnknownNameError(f"no requirement `{name}`: there are {known}")
         chosen = [one for one in chosen if one.requirement.id in names]
+    if compiled.checked.max_delay is not None:
+        raise RvmonError("generated code cannot sort samples: leave out `max delay`")
     for one in chosen:
         what = "for each" if one.requirement.for_each else "let" if one.requirement.captures else ""
         reason = f"uses `{what}`" if what else f"has no automaton: {one.refusal}"

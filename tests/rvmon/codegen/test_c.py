@@ -42,7 +42,8 @@ requirement R2 "b"
   then within 2 s mode == green
 requirement R3 "c"
   upon rise(p) or changed(x)
-  then (abs(delta(x)) < 1 or rate(x) > 2 or prev(x) + 1 > max(x, 2)) until[0 s, 4 s] (f or not known(x))
+  then (abs(delta(x)) < 1 or rate(x) > 2 or prev(x) + 1 > max(x, 2))
+    until[0 s, 4 s] (f or not known(x))
 requirement R4 "d"
   upon end
   then p
@@ -113,7 +114,7 @@ def test_all_operators_compile_strictly_and_run_clean(tmp_path):
         ["g++", "-std=c++11", *STRICT[1:], *check, "main.cpp", "everything.o", "-o", "main"],
         ["./main"],
     ):
-        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)  # noqa: S603
         assert done.returncode == 0, done.stderr
     assert len(done.stdout.splitlines()) > 20
 

@@ -72,7 +72,7 @@ class Monitor:
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
 
-    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Any) -> None:
+    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, _: Any) -> None:
         """Hear of a decision."""
         self.unit.news = True
         upon_end = self.unit.RULES[rule.index][1] < 0

@@ -1,0 +1,49 @@
+"""`rvmon build`: a specification as a program that judges recordings by itself."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+
+from rvmon.errors import RvmonError
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "build",
+        help="a specification as a program that judges recordings",
+        description="Compile a specification to a program (by a C compiler: $CC, cc, gcc or "
+        "clang). It reads a recording (.csv, .jsonl, .bin, or - for JSON lines on standard input) "
+        "and prints the verdicts as `rvmon run --format json` does, without reasons.",
+        epilog="example: rvmon build specs/door.rv -o door && ./door monday.csv",
+    )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument("-o", "--output", metavar="BINARY", required=True, help="the program")
+    parser.add_argument("--only", metavar="IDS", help="these requirements: R1,R3")
+    parser.add_argument(
+        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Generate, compile and copy, and return the exit code."""
+    from rvmon.cli.constants import constants_of
+    from rvmon.codegen.c_build import built
+    from rvmon.codegen.c_program import program_source
+    from rvmon.codegen.c_source import c_files
+    from rvmon.session import load
+
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    ids = None if arguments.only is None else [name.strip() for name in arguments.only.split(",")]
+    plan = spec.plan(only=ids)
+    made = c_files(plan)
+    name = f"{made.prefix}_program.c"
+    texts = {**made.texts, name: program_source(plan)}
+    path = built(texts, [f"{made.prefix}.c", name], ".program", ["-O3"])
+    try:
+        shutil.copyfile(path, arguments.output)
+        shutil.copymode(path, arguments.output)
+    except OSError as error:
+        raise RvmonError(f"cannot write {arguments.output}: {error.strerror}") from None
+    return 0

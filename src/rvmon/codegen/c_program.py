@@ -1,0 +1,88 @@
+"""A plan as a C program that reads recordings and prints verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_source import comment, filled, template
+from rvmon.codegen.plan import Plan
+from rvmon.spec.checked import Type
+from rvmon.trace.schema import Kind
+
+_PARTS = ("program.c.in", "read_csv.c.in", "read_jsonl.c.in", "program_main.c.in")
+
+_KINDS = {
+    Kind.BOOL: "KIND_BOOL",
+    Kind.INT: "KIND_INT",
+    Kind.REAL: "KIND_REAL",
+    Kind.LABEL: "KIND_LABEL",
+}
+
+
+def program_source(plan: Plan) -> str:
+    """The source of the program; it includes the header of `rvmon.codegen.c_source.c_files`."""
+    names = Names(plan)
+    places = {
+        "ENTRIES": "\n".join(_entries(plan, names)),
+        "SPEC": comment(plan.spec.name),
+        "HEADER": f"{names.prefix}.h",
+        "PREFIX": names.prefix.upper(),
+        "prefix": names.prefix,
+    }
+    return filled("\n".join(template(part) for part in _PARTS), places)
+
+
+def _entries(plan: Plan, names: Names) -> Iterator[str]:
+    spec = plan.spec
+    things: list[tuple[str, int, int, Type | None]] = [
+        (name, names.signal(name), -1, signal.type) for name, signal in spec.signals.items()
+    ]
+    things += [(name, names.event(name), -1, None) for name in spec.events]
+    things += [
+        (f"{event}.{field}", number, names.event(event), spec.events[event].fields[field])
+        for (event, field), number in names.fields.items()
+    ]
+    for place, (_, _, _, type_) in enumerate(things):
+        labels = type_.labels if type_ is not None else ()
+        if labels:
+            yield from _labels(place, labels, names)
+    yield "static const entry entries[] = {"
+    for place, (name, number, event, type_) in enumerate(things):
+        kind = _KINDS[Kind.BOOL if type_ is None else type_.kind]
+        labels = type_.labels if type_ is not None else ()
+        tables = f"labels{place}, label_numbers{place}" if labels else "NULL, NULL"
+        is_event = "true" if type_ is None else "false"
+        yield f"    {{{c_string(name)}, {number}, {event}, {kind}, {is_event}, {tables}}},"
+    if not things:
+        yield '    {"", 0, -1, KIND_BOOL, false, NULL, NULL},'
+    yield "};"
+    yield f"#define N_ENTRIES {max(len(things), 1)}"
+    yield ""
+    ids = ", ".join(c_string(rule.requirement.id) for rule in plan.rules)
+    yield f"static const char *const requirements[] = {{{ids}}};"
+
+
+def _labels(place: int, labels: Sequence[str], names: Names) -> Iterator[str]:
+    texts = ", ".join(c_string(label) for label in labels)
+    yield f"static const char *const labels{place}[] = {{{texts}, NULL}};"
+    numbers = ", ".join(str(names.label(label)) for label in labels)
+    yield f"static const int32_t label_numbers{place}[] = {{{numbers}}};"
+
+
+def c_string(text: str) -> str:
+    r"""A C string literal of the UTF-8 bytes of a text.
+
+    >>> print(c_string('say "é"'))
+    "say \"\303\251\""
+    """
+    made = ""
+    for byte in text.encode():
+        plain = chr(byte)
+        if plain in '"\\?':
+            made += "\\" + plain
+        elif 0x20 <= byte < 0x7F:
+            made += plain
+        else:
+            made += f"\\{byte:03o}"
+    return f'"{made}"'

@@ -1,0 +1,228 @@
+"""Programs made by `rvmon build` against `rvmon run`."""
+
+import json
+import random
+import shutil
+import struct
+import subprocess
+
+import pytest
+
+from rvmon.cli import main
+
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+
+SPEC = """
+spec watch "A cell"
+time held
+signal open_door : bool
+signal arm.speed : real [m/s]  stale after 700 ms
+signal parts : int
+signal mode : {idle, "at work", stopped}
+event pick(id: int, force: real)
+event halt
+requirement R1 "a"
+  upon halt
+  then within 300 ms arm.speed < 0.1 m/s
+requirement R2 "b"
+  whenever mode == idle
+  then within 1 s not open_door
+requirement R3 "c"
+  upon pick.force > 4.5 or pick.id == 3
+  then within 1 s (halt or parts >= 2)
+requirement R4 "d"
+  always once[0 s, 2 s] known(arm.speed)
+"""
+COLUMNS = ("open_door", "arm.speed", "parts", "mode", "pick", "pick.id", "pick.force", "halt", "x")
+MODES = ("idle", "stopped")
+
+
+def rows(seed: int):
+    """Random rows: decimal time, and text by column."""
+    dice = random.Random(seed)
+    t = dice.choice([0, 1_700_000_000 * 10**9, -5 * 10**9])
+    for _ in range(400):
+        t += dice.choice([0, 1, 50_000_000, 123_456_789, 900_000_000])
+        row = dict.fromkeys(COLUMNS, "")
+        for name, values in [
+            ("open_door", ("true", "0", "1")),
+            ("arm.speed", ("0.05", "1e-2", "3", "nan", "-0.1", "12345.678901234567")),
+            ("parts", ("0", "2", "-7")),
+            ("mode", MODES),
+            ("halt", ("1", "", "False")),
+            ("x", ("what, ever", 'so "so"')),
+        ]:
+            if dice.random() < 0.4:
+                row[name] = dice.choice(values)
+        if dice.random() < 0.2:
+            row["pick.id"] = dice.choice(["3", "4"])
+            row["pick.force"] = dice.choice(["4.5", "4.75", "nan", ""])
+            row["pick"] = dice.choice(["", "1", "0"])
+        yield t, row
+
+
+def distinct(seed: int):
+    """As `rows`, with at most one payload at an instant."""
+    paid = None
+    for t, row in rows(seed):
+        if row["pick"] or row["pick.id"]:
+            if paid == t:
+                continue
+            paid = t
+        yield t, row
+
+
+def seconds(t: int) -> str:
+    sign = "-" if t < 0 else ""
+    return f"{sign}{abs(t) // 10**9}.{abs(t) % 10**9:09d}"
+
+
+def quoted(cell: str) -> str:
+    return '"' + cell.replace('"', '""') + '"' if set(cell) & {",", '"'} else cell
+
+
+def csv_text(seed: int) -> str:
+    lines = ["t," + ",".join(COLUMNS)]
+    lines += [
+        f"{seconds(t)}," + ",".join(quoted(row[name]) for name in COLUMNS)
+        for t, row in distinct(seed)
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def json_text(seed: int) -> str:
+    lines = []
+    for t, row in distinct(seed):
+        entry: dict = {"t": float(seconds(t))} if seed % 2 else {"t_ns": t}
+        if row["arm.speed"]:
+            speed = float(row["arm.speed"])
+            entry["arm"] = {
+                "speed": None if speed != speed else speed,
+                "other": [1, {"a": "\\u00e9"}],
+            }
+        if row["mode"]:
+            entry["mode"] = row["mode"]
+        if row["parts"]:
+            entry["parts"] = int(row["parts"])
+        if row["open_door"]:
+            entry["open_door"] = row["open_door"] in ("true", "1")
+        if row["halt"] == "1":
+            entry["events"] = ["halt", "unheard_of"]
+        if row["pick.id"]:
+            entry["pick"] = {"id": int(row["pick.id"]), "force": None}
+            if row["pick.force"] not in ("", "nan"):
+                entry["pick"]["force"] = float(row["pick.force"])
+        lines.append(json.dumps(entry))
+    return "\n".join(lines) + "\n"
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory):
+    """The spec and the program made of it, compiled without a warning."""
+    folder = tmp_path_factory.mktemp("build")
+    spec = folder / "watch.rv"
+    spec.write_text(SPEC.replace('"at work"', "working"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+        flags = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsanitize=undefined")
+        patch.setattr("rvmon.codegen.c_build.FLAGS", flags)
+        assert main(["build", str(spec), "-o", str(folder / "watch")]) == 0
+    return spec, folder / "watch"
+
+
+def told(text: str) -> dict:
+    """What both have to say alike."""
+    keys = ("number", "triggered", "decided", "verdict", "decision", "triggered_s", "decided_s")
+    report = json.loads(text)
+    return {
+        "origin": report["origin"],
+        "end": report["end"],
+        **{
+            name: (
+                entry["verdict"],
+                entry["counts"],
+                [{key: one[key] for key in keys} for one in entry["attempts"]],
+            )
+            for name, entry in report["requirements"].items()
+        },
+    }
+
+
+def ran(binary, path, stdin=None) -> subprocess.CompletedProcess:
+    return subprocess.run(  # noqa: S603
+        [binary, path], capture_output=True, text=True, check=False, input=stdin
+    )
+
+
+@pytest.mark.parametrize(("ending", "text"), [(".csv", csv_text), (".jsonl", json_text)])
+@pytest.mark.parametrize("seed", range(4))
+def test_it_says_what_rvmon_run_says(program, tmp_path, capsys, ending, text, seed):
+    """Verdicts, attempts, instants, counts and the exit code are the same."""
+    spec, binary = program
+    trace = tmp_path / f"trace{ending}"
+    trace.write_text(text(seed))
+    code = main(["run", str(spec), str(trace), "--format", "json"])
+    expected = told(capsys.readouterr().out)
+    done = ran(binary, str(trace))
+    assert done.returncode == code, done.stderr
+    assert told(done.stdout) == expected
+    assert {one["verdict"] for one in expected["R1"][2]} >= {"P", "F"}
+
+
+def test_standard_input_is_json_lines(program):
+    """`-` reads JSON lines from standard input."""
+    done = ran(program[1], "-", json_text(2))
+    assert len(told(done.stdout)["R1"][2]) > 5
+
+
+def test_the_fixed_layout(program, tmp_path):
+    """A binary recording says what the same one as CSV says."""
+    names = ["halt", "arm.speed", "pick", "pick.id", "unheard_of"]
+    packed = b"rvmonbin" + struct.pack("=I", len(names))
+    for name in names:
+        packed += struct.pack("=I", len(name)) + name.encode()
+    lines = ["t_ns," + ",".join(names)]
+    for row in range(300):
+        t = row * 70_000_000
+        cells = [row % 9 == 0 or None, row % 5 / 20, None, 3 if row % 20 == 0 else None, 1]
+        packed += struct.pack(
+            "=q5d5B", t, *(c or 0 for c in cells), *(3 * (c is not None) for c in cells)
+        )
+        lines.append(f"{t}," + ",".join("" if c is None else f"{c:g}" for c in cells))
+    (tmp_path / "a.bin").write_bytes(packed)
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    first, second = (ran(program[1], str(tmp_path / name)) for name in ("a.bin", "a.csv"))
+    assert told(first.stdout) == told(second.stdout)
+    assert told(first.stdout)["R1"][1]["P"] > 10
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a,b\n1,2\n", "time column"),
+        ("t,parts\n1,2\n0,3\n", "line 3: time goes backwards"),
+        ("t,parts\n1,2.5\n", "line 2: no value of its column: `2.5`"),
+        ("t,mode\n1,mad\n", "line 2"),
+        ("t,mode\nsoon,idle\n", "no time"),
+        ("t,mode\n1\n", "fewer cells"),
+        ('t,mode\n1,"idle\n', "quoted"),
+        ("t,mode\n", "no sample"),
+        ("", "line 0"),
+    ],
+)
+def test_wrong_recordings_are_refused_with_the_place(program, tmp_path, text, message):
+    """Exit code 2, the line and the cause; nothing on standard output."""
+    (tmp_path / "a.csv").write_text(text)
+    done = ran(program[1], str(tmp_path / "a.csv"))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr
+
+
+@pytest.mark.parametrize(
+    "text", ["{", "[]", '{"t": 1, "parts": }', '{"t": "x"}', "{}", '{"t": 1} x', "\0", '{"a' * 99]
+)
+def test_wrong_json_is_refused(program, text):
+    """No line of JSON that is cut off or of another shape passes."""
+    done = ran(program[1], "-", text)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "line 1" in done.stderr
