@@ -147,8 +147,9 @@ def _damaged(workload: Workload, seed: int) -> Question:
     for column in columns.values():
         flips = dice.choice((0.0, 0.002, 0.02))
         for row in range(rows):
-            if isinstance(column[row], bool) and dice.random() < flips:
-                column[row] = not column[row]
+            if dice.random() < flips:
+                value = column[row]
+                column[row] = not value if isinstance(value, bool) else dice.uniform(-2.0, 2.0)
         if dice.random() < 0.5:
             start = dice.randrange(rows)
             length = min(dice.randint(1, rows // 2), rows - start)

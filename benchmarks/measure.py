@@ -117,11 +117,16 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
 
 
 def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
-    """Find by a short pass how many rows fit into the time, and load them."""
-    probe = min(FEWEST_ROWS, workload.rows)
-    contender.prepare(workload, probe)
-    per_row = max(contender.run().cpu_ns / probe, 1)
-    fitting = max(int(seconds * 1e9 / per_row), FEWEST_ROWS)
-    rows = min(fitting, workload.rows)
-    contender.prepare(workload, rows)
-    return rows
+    """Find by passes that grow how many rows fit into the time, and load them."""
+    budget = seconds * 1e9
+    rows = min(FEWEST_ROWS, workload.rows)
+    while True:
+        contender.prepare(workload, rows)
+        spent = max(contender.run().cpu_ns, 1)
+        if rows == workload.rows or spent >= budget / 10:
+            break
+        rows = min(10 * rows, workload.rows)
+    fitting = min(max(int(rows * budget / spent), FEWEST_ROWS), workload.rows)
+    if fitting != rows:
+        contender.prepare(workload, fitting)
+    return fitting

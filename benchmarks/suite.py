@@ -62,7 +62,7 @@ def _responses(count: int, form: str) -> tuple[Formula, ...]:
     formulas = []
     for _ in range(count):
         asked, answer = (SignalAtom(f"v{n}") for n in dice.sample(range(SIGNALS), 2))
-        deadline = dice.randint(400, 4000)
+        deadline = dice.randint(40, 400)
         if form == "past":
             formulas.append(no(two(no(answer), "S", two(asked, "and", no(answer)), deadline, None)))
         else:

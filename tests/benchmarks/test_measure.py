@@ -41,7 +41,8 @@ def test_turns() -> None:
     calls: list[str] = []
     contenders = [Fake("a", 10, calls), Fake("b", 20, calls)]
     result = measure(WORKLOAD, contenders, Plan(2, 1.0))
-    assert calls == ["a", "b", "a", "b", "b", "a", "a closed", "b closed"]
+    probes = ["a", "a", "b", "b"]
+    assert calls == [*probes, "a", "b", "b", "a", "a closed", "b closed"]
     assert [(figure.label, figure.median, figure.rows) for figure in result.figures] == [
         ("a", 10.0, 200),
         ("b", 20.0, 200),
