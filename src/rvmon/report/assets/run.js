@@ -129,9 +129,9 @@
     const panel = run.panels[open.id];
     if (instant >= panel.end - 1e-9) setFraction(0);
     const speed = Math.max((panel.end - panel.start) / 12, 1);
-    let last = performance.now();
+    let last = null;
     const step = (now) => {
-      const next = instant + ((now - last) / 1000) * speed;
+      const next = instant + ((now - (last ?? now)) / 1000) * speed;
       last = now;
       setFraction((next - panel.start) / (panel.end - panel.start));
       if (next >= panel.end) stop();
