@@ -111,8 +111,10 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
             case DeclaredEvent():
                 fields = {}
                 for field in declared.event.fields:
-                    if field.name.text in fields:
-                        places = field.name.span, declared.name.span
+                    taken = spec.declared.get(f"{name}.{field.name.text}")
+                    first = declared if field.name.text in fields else taken
+                    if first is not None:
+                        places = field.name.span, first.name.span
                         findings.add(name_rules.double(field.name.text, "field", *places))
                     found = types.read(field.type)
                     if found is not None:

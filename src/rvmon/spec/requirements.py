@@ -40,12 +40,13 @@ from rvmon.spec.normalise import normalised
 from rvmon.spec.properties import checked_property
 from rvmon.spec.quantities import node_of
 from rvmon.spec.response import derived_response
+from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import triggers as rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.scopes import scoped_consequent, scoped_trigger
-from rvmon.spec.syntax import Expression, Group, Immediately
+from rvmon.spec.syntax import Expression, Group, Ident, Immediately
 from rvmon.spec.tense import end_part, future_part, is_pulse, is_timeless, mixed_disjunction
 from rvmon.spec.unit import PLAIN
 from rvmon.spec.values import EVERYWHERE, Quantity, Scope
@@ -96,15 +97,26 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
 
 
 def check_clauses(checker: Checker, item: RequirementItem) -> None:
-    """Report clauses that stand twice."""
+    """Report clauses that stand twice, and names that are taken."""
     first: dict[str, Span] = {}
+    named: dict[str, Ident] = {}
     for clause in item.clauses:
+        if isinstance(clause, LetClause | ForEachClause):
+            _check_name(checker, clause.name, named)
         word = clause.span.text.split(maxsplit=1)[0]
         if word == "let":
             continue
         if word in first:
             checker.report(rules.double_clause(word, clause.span, first[word]))
         first.setdefault(word, clause.span)
+
+
+def _check_name(checker: Checker, name: Ident, named: dict[str, Ident]) -> None:
+    """A name of a requirement is neither one of the file nor another of the requirement."""
+    declared = checker.table.declared.get(name.text)
+    taken = named.setdefault(name.text, name) if declared is None else declared.name
+    if taken is not name:
+        checker.report(name_rules.double(name.text, "name", name.span, taken.span))
 
 
 def _parts(

@@ -86,7 +86,11 @@ class _Resolver:
             case EventItem(events=events):
                 for event in events:
                     self._declare(DeclaredEvent(event.name, event, item.role))
-            case DefineItem() | ConstItem():
+            case DefineItem(parameters=parameters):
+                for number, parameter in enumerate(parameters or ()):
+                    self._once_among(parameter, (parameters or ())[:number], "parameter")
+                self._declare(item)
+            case ConstItem():
                 self._declare(item)
             case RequirementItem():
                 self._keep(self.requirements, item)
@@ -115,6 +119,11 @@ class _Resolver:
             self.declared[name.text] = declared
         else:
             self.doubled.add(name.text)
+
+    def _once_among(self, name: Ident, others: Sequence[Ident], kind: str) -> None:
+        for other in others:
+            if other.text == name.text:
+                self._findings.add(rules.double(name.text, kind, name.span, other.span))
 
     def _is_new(self, kind: str, name: Ident) -> bool:
         first = self._first.setdefault((kind, name.text), name)

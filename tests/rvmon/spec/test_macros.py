@@ -118,3 +118,8 @@ def test_double_names_show_both_places(codes):
     assert codes("signal z : {k, k}") == ["RV011"]
     assert codes("requirement R always a\nrequirement R always b") == ["RV011"]
     assert codes("spec other") == ["RV011"]
+    assert codes("define m(p, p) = p") == ["RV011"]
+    assert codes("signal pick.x : bool") == ["RV011"]
+    assert codes("requirement R upon e then F b let a = d") == ["RV011"]
+    assert codes("requirement R upon e then F a let v = d let v = d") == ["RV011"]
+    assert codes("requirement R upon pick then F a for each v in pick.id let v = d") == ["RV011"]

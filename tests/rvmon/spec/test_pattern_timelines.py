@@ -1,6 +1,7 @@
 """Every pattern in every scope does what the timelines beneath it say."""
 
 import re
+from functools import cache
 from importlib import resources
 
 import pytest
@@ -44,25 +45,24 @@ def timelines():
 ALL = list(timelines())
 
 
-def judge(call, scope, words):
-    """The verdict of a pattern on one word per nanosecond."""
-    text = f"""spec demo
+@cache
+def compiled(call, scope):
+    """A specification with that pattern."""
+    return compile_text(f"""spec demo
 time sampled
 import patterns
 signal {", ".join(LETTERS)} : bool
 requirement R {call} {SCOPES[scope]}
-"""
-    spec, _ = compile_text(text)
-    samples = [
-        Sample(t, {letter: letter in word for letter in LETTERS}) for t, word in enumerate(words)
-    ]
-    return oracle.evaluate(spec, samples).verdicts["R"]
+""")[0]
 
 
 @pytest.mark.parametrize(("call", "scope", "verdict", "words"), ALL)
 def test_timeline(call, scope, verdict, words):
     """The verdict is the one that stands before the colon."""
-    assert judge(call, scope, words) == verdict
+    samples = [
+        Sample(t, {letter: letter in word for letter in LETTERS}) for t, word in enumerate(words)
+    ]
+    assert oracle.evaluate(compiled(call, scope), samples).verdicts["R"] == verdict
 
 
 def test_every_pattern_has_a_timeline_in_every_scope():

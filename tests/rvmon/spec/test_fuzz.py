@@ -1,0 +1,100 @@
+"""Whatever a file holds, the answer is a specification or findings, never an accident."""
+
+import random
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rvmon.diagnostics.render import render_concise, render_full, render_json
+from rvmon.errors import SpecError
+from rvmon.spec import compile_text
+from rvmon.spec.formatter import format_text
+from rvmon.spec.rules.registry import all_rules
+
+ROOT = Path(__file__).parents[3]
+SEEDS = [
+    *(path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("specs/*.rv"))),
+    *(path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("src/rvmon/spec/*/*.rv"))),
+    *(rule.example for rule in all_rules().values() if len(rule.example) < 500),
+    *(rule.instead for rule in all_rules().values()),
+]
+WORD = re.compile(r"\w+|[^\w\s]+|\s+")
+WORDS = [
+    *sorted({word for seed in SEEDS for word in WORD.findall(seed)}),
+    *("->", "<->", "E<>", "A[]", "[0, 3 s)", "inf", "`x y`", "age(", "held(", "-->"),
+    *("1e999", "1e9999999999", "\x00", "é", "\u201c", "\\", "(" * 50, "not " * 60, "a + " * 80),
+]
+
+
+def answer(text):
+    """Compile and render whatever comes."""
+    try:
+        checked, findings = compile_text(text)
+        assert checked is not None
+    except SpecError as error:
+        findings = error.diagnostics
+        assert findings
+    assert render_full(findings) or not findings
+    render_concise(findings)
+    render_json(findings)
+    for finding in findings:
+        for label in finding.spans:
+            span = label.span
+            assert 0 <= span.start <= span.end <= len(span.source.text)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.text(max_size=300))
+def test_any_text(text):
+    """Text of any characters."""
+    answer(text)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.sampled_from(WORDS), max_size=60))
+def test_any_words(words):
+    """Words of the language in any order."""
+    answer("".join(words))
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_mutated_specifications(seed):
+    """Specifications with words dropped, doubled, exchanged."""
+    dice = random.Random(seed)
+    words = WORD.findall(dice.choice(SEEDS))
+    for _ in range(dice.randint(1, 6)):
+        place = dice.randrange(len(words))
+        words[place] = dice.choice(("", dice.choice(WORDS), words[place] * 2, dice.choice(words)))
+    text = "".join(words)
+    answer(text)
+    try:
+        laid_out = format_text(text)
+    except SpecError:
+        return
+    assert format_text(laid_out) == laid_out
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "requirement R " + "(" * 5000,
+        "requirement R always " + "(" * 5000 + "a" + ")" * 5000,
+        "requirement R " + "not " * 5000 + "a",
+        "requirement R " + "a -> " * 5000 + "a",
+        "signal a : bool\nrequirement R always (" + " or ".join(["a"] * 2000) + ")",
+        "property P: " + "AG " * 5000 + "a",
+        "const T = " + "9" * 5000,
+        "const T = 5 " + "m*" * 3000 + "m",
+        "signal a : real [" + "m^99*" * 1000 + "m]",
+        "time\n" * 3000,
+        '"' * 5000,
+        "\n" * 5000,
+    ],
+    ids=lambda text: text[:20],
+)
+def test_nesting_and_repetition(text):
+    """Deep nesting and endless repetition."""
+    answer(text)
