@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import replace
 from itertools import groupby
 
@@ -84,11 +85,14 @@ def _chunks(plan: Plan, jobs: Sequence[Job], workers: int) -> list[Chunk]:
 
 
 def _here(chunks: Sequence[Chunk], _workers: int, keep: Callable[[Played], None]) -> str:
-    for chunk in chunks:
-        one = play(chunk)
-        keep(one)
-        if len(one.outcomes) < len(chunk.jobs):
-            return INTERRUPTED
+    try:
+        for chunk in chunks:
+            one = play(chunk)
+            keep(one)
+            if len(one.outcomes) < len(chunk.jobs):
+                return INTERRUPTED
+    except KeyboardInterrupt:  # between two chunks
+        return INTERRUPTED
     return ""
 
 
@@ -104,9 +108,10 @@ def _in_workers(chunks: Sequence[Chunk], workers: int, keep: Callable[[Played], 
             waiting.remove(future)
             keep(future.result())
     except KeyboardInterrupt:
-        for future in waiting:
-            if not future.cancel():  # a worker has it already: it takes less than a second
-                keep(future.result())
+        with suppress(KeyboardInterrupt):  # a second one: what is not here by now is lost
+            for future in waiting:
+                if not future.cancel():  # a worker has it already: it takes less than a second
+                    keep(future.result())
         return INTERRUPTED
     except BrokenProcessPool:
         return WORKER_DIED

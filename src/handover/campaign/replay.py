@@ -7,7 +7,9 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from handover.campaign.pages import simulated_page
+from handover.campaign.examples import comparable_jobs
+from handover.campaign.pages import judged, simulated_page
+from handover.campaign.plan import Job
 from handover.campaign.program import typed
 from handover.checker import Checker, spec_path
 from handover.driver import run_test
@@ -31,7 +33,12 @@ def run_replay(arguments: argparse.Namespace) -> int:
         words = ["replay", arguments.test, *(["--legacy"] if arguments.legacy else [])]
         # The file is named after the test's file: what it says inside is no path.
         target = made(arguments.out) / Path(arguments.test).stem
-        _write(target, run, report, spec, typed(words))
+        others = [
+            judged(*play_again(one.test, robot, spec))
+            for one in comparable_jobs(Job(test, robot), (), ())
+        ]
+        page = simulated_page(run, report, spec, command=typed(words), others=others)
+        _write(target, run, page)
     return int(Verdict.FAIL in report.verdicts.values())
 
 
@@ -50,9 +57,8 @@ def play_again(
     return run, replace(checker.finish(run.end_ns), trace=test.name)
 
 
-def _write(target: Path, run: Run, report: Report, spec: Spec, command: str) -> None:
+def _write(target: Path, run: Run, page: str) -> None:
     """Write the page, and the bus messages as JSON lines, which `rvmon run` reads."""
-    page = simulated_page(run, report, spec, command=command)
     lines = [json.dumps({"t_ns": t_ns, **values}) + "\n" for t_ns, values in run.samples]
     target.with_name(f"{target.name}.html").write_text(page, encoding="utf-8")
     target.with_name(f"{target.name}.jsonl").write_text("".join(lines), encoding="utf-8")

@@ -51,7 +51,7 @@ def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET
         spec_lines(requirement, blame),
         drawing,
         _cursor_controls(panel, report.origin),
-        _legend(panel),
+        _legend(panel, content),
         _values(panel.attempt),
         _siblings(panel, panels, content),
     )
@@ -82,8 +82,10 @@ def _cursor_controls(panel: Panel, origin: int) -> ET.Element:
     )
 
 
-def _legend(panel: Panel) -> ET.Element | None:
+def _legend(panel: Panel, content: RunPage) -> ET.Element | None:
     parts: list[Child] = []
+    if not content.run.samples:
+        parts.append("The signals of this run were not kept.")
     if panel.ghost is not None:
         decided = ""
         if panel.attempt is not None and panel.ghost.decided is not None:

@@ -28,6 +28,8 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
     report, samples = content.run.report, content.run.samples
 
     def tracks_in(run: JudgedRun) -> tuple[Track, ...]:
+        if not run.samples:
+            return ()
         requirement = content.spec.requirements[name]
         return tracks_of(content.spec, requirement, run.samples, run.report.health)
 
@@ -36,9 +38,10 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
         view = whole_run(report, samples[0].t if samples else report.origin)
         yield Panel(panel_id(name, None), name, None, view, tracks, None)
     candidates: list[Candidate] = []
-    if any(attempt.verdict is Verdict.FAIL for attempt in attempts):
+    if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
         candidates.append(Candidate(content.run, tracks))
-        candidates.extend(Candidate(other, tracks_in(other)) for other in content.others)
+        others = (other for other in content.others if other.samples)
+        candidates.extend(Candidate(other, tracks_in(other)) for other in others)
     for attempt in attempts:
         view = view_of(attempt, report)
         ghost = None

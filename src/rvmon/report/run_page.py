@@ -18,7 +18,7 @@ class JudgedRun:
     Attributes:
         name: what people call it, such as a test's name or a file's.
         report: the verdicts.
-        samples: that were judged, in time order.
+        samples: that were judged, in time order; empty if they were not kept.
     """
 
     name: str

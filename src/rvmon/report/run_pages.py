@@ -56,7 +56,7 @@ def write_run_pages(
             spec=spec,
             command=command(report.trace),
             others=[other for other in others if other.report is not report],
-            facts=(("recording", report.trace), ("judged by", spec.name)),
+            facts=(("recording", _shown(report.trace)), ("judged by", spec.name)),
             back=INDEX if several else "",
         )
         path = folder / name
@@ -70,7 +70,11 @@ def write_run_pages(
 
 
 def _judged(report: Report, read: Callable[[str], Sequence[Sample]]) -> JudgedRun:
-    return JudgedRun(report.trace, report, read(report.trace))
+    return JudgedRun(_shown(report.trace), report, read(report.trace))
+
+
+def _shown(trace: str) -> str:
+    return "standard input" if trace == "-" else trace
 
 
 def _file_names(traces: Sequence[str]) -> list[str]:
@@ -95,7 +99,7 @@ def _index(spec: CheckedSpec, reports: Sequence[Report], names: Sequence[str]) -
         e(
             "tr",
             None,
-            e("th", {"scope": "row"}, e("a", {"href": name}, report.trace)),
+            e("th", {"scope": "row"}, e("a", {"href": name}, _shown(report.trace))),
             *(_cell(report.verdicts[one]) for one in ids),
         )
         for report, name in zip(reports, names, strict=True)
@@ -105,7 +109,9 @@ def _index(spec: CheckedSpec, reports: Sequence[Report], names: Sequence[str]) -
     requirements: list[Child] = []
     for one in ids:
         requirements += [e("dt", None, one), e("dd", None, spec.requirements[one].text)]
-    body = (e("h1", None, title), table, e("dl", {"class": "facts"}, *requirements))
+    listed = e("dl", {"class": "facts"}, *requirements)
+    scroll = e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table)
+    body = (e("header", None, e("h1", None, title), listed), e("section", None, scroll))
     return page(title, body, styles=["base.css", "report.css"], scripts=[])
 
 

@@ -49,8 +49,13 @@ def view_of(attempt: Attempt, report: Report) -> View:
     if attempt.deadline is not None:
         instants.append(attempt.deadline)
     first, last = min(instants), max(instants)
-    margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 1)
-    return View(first - margin, last + margin)
+    margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 2)
+    # Outside the run there is nothing to see: a little is shown, to tell where it begins and ends.
+    little = margin // 4
+    start = max(first - margin, min(report.origin, first) - little)
+    if report.end is None:
+        return View(start, last + margin)
+    return View(start, max(min(last + margin, max(report.end, last) + little), start + 1))
 
 
 def whole_run(report: Report, first: int) -> View:

@@ -205,6 +205,17 @@ def test_several_recordings_get_a_list(tmp_path):
     assert "F ✗" in index
 
 
+def test_signals_that_were_not_kept_are_not_drawn_as_unknown(tmp_path):
+    """What came over standard input has its verdicts, and the page says what is missing."""
+    spec, run = door()
+    report = replace(run.report, trace="-")
+    (path,) = write_run_pages(tmp_path, spec.checked, [report], lambda _: [], lambda _: "judge -")
+    page = path.read_text()
+    assert "D1 failed, standard input, 7" in page
+    assert "The signals of this run were not kept." in page
+    assert 'class="unknown"' not in page
+
+
 def dom(chromium, path, address=""):
     """The page after its script ran, as a browser sees it."""
     return subprocess.run(  # noqa: S603
