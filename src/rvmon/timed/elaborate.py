@@ -109,8 +109,7 @@ def _queries(
     for query in written:
         with findings.collect():
             meaning = _formula(query.formula, resolver, top)
-            text = query.formula.span.text
-            queries.append(Query(query.id, query.remark, text, meaning, query.span))
+            queries.append(Query(query.id, query.remark, query.text, meaning, query.span))
     return tuple(queries)
 
 

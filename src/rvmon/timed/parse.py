@@ -58,7 +58,7 @@ def parse_query(text: str, name: str = "<query>") -> QueryText:
     """
     source = Source(name, text)
     formula = parse_part(text, "query", lambda start, end: Span(source, start, end))
-    return QueryText("", "", formula, Span(source, 0, len(text)))
+    return QueryText("", "", text, formula, Span(source, 0, len(text)))
 
 
 def parse_part(text: str, start: str, place: Place) -> Any:

@@ -336,10 +336,11 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class QueryText:
-    """A query with its id and its sentence for people, either may be empty."""
+    """A query with its id and its sentence for people, either may be empty, and its own text."""
 
     id: str
     remark: str
+    text: str
     formula: Expression
     span: Span
 

@@ -86,7 +86,8 @@ class SyntaxBuilder(Transformer[Token, Any]):
         *head, formula = items
         identifier = next((h.children[0] for h in head if isinstance(h, Tree)), "")
         remark = next((h[1:-1] for h in head if isinstance(h, Token)), "")
-        return syntax.QueryText(str(identifier), remark, formula, self._span(meta))
+        text = formula.span.text
+        return syntax.QueryText(str(identifier), remark, text, formula, self._span(meta))
 
     # Automata.
 

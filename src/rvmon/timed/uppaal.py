@@ -187,4 +187,5 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
             warnings.append(finding("TA020", message, span, mend, severity=Severity.WARNING))
             continue
         length = len(formula.text.rstrip())
-        yield syntax.QueryText("", comment, read, formula.place(0, length))
+        text = formula.text.strip()
+        yield syntax.QueryText("", comment, text, read, formula.place(0, length))

@@ -1,0 +1,46 @@
+"""A network as a drawing in Graphviz' DOT language."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rvmon.export.names import Names
+from rvmon.export.uppaal import condition_text, sync_text, updates_text
+from rvmon.timed.model import Automaton, Network
+from rvmon.timed.syntax import LocationKind
+
+_MARKS = {LocationKind.NORMAL: "", LocationKind.URGENT: "U ", LocationKind.COMMITTED: "C "}
+
+
+def network_dot(network: Network) -> str:
+    """One cluster for each automaton; urgent locations are marked U, committed ones C."""
+    names = Names(network)
+    lines = ["digraph network {", "  rankdir=LR;", "  node [shape=box, style=rounded];"]
+    for index, automaton in enumerate(network.automata):
+        lines += _cluster(names, index, automaton)
+    return "\n".join([*lines, "}", ""])
+
+
+def _cluster(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
+    yield f"  subgraph cluster_{index} {{"
+    yield f"    label={_quoted(automaton.name)};"
+    for place, location in enumerate(automaton.locations):
+        invariant = condition_text(names, location.invariant)
+        text = _MARKS[location.kind] + location.name + (f"\n{invariant}" if invariant else "")
+        bold = ", penwidth=2" if place == automaton.initial else ""
+        yield f"    l{index}_{place} [label={_quoted(text)}{bold}];"
+    for edge in automaton.edges:
+        parts = [
+            condition_text(names, edge.guard),
+            sync_text(names, edge),
+            updates_text(names, edge),
+            f"weight {edge.weight}" if edge.weight != 1 else "",
+        ]
+        text = "\n".join(filter(None, parts))
+        yield f"    l{index}_{edge.source} -> l{index}_{edge.target} [label={_quoted(text)}];"
+    yield "  }"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'

@@ -1,0 +1,170 @@
+"""A network as UPPAAL's XML, which `rvmon.timed.load` reads back.
+
+Each automaton becomes a template without parameters, all that was local becomes global. What
+UPPAAL does not know stands in comments that our reader understands: the unit of time, weights and
+labels of edges. Queries with a bound on the path operator, or with path operators inside, are not
+UPPAAL's: their text is kept as a comment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.sax.saxutils import escape
+
+from rvmon.export.names import Names, Thing
+from rvmon.timed.model import (
+    Automaton,
+    Edge,
+    Expression,
+    Guard,
+    LeadsToFormula,
+    Network,
+    PathFormula,
+    Query,
+    Reset,
+    Update,
+    Variable,
+)
+from rvmon.timed.pieces import has_paths
+from rvmon.timed.syntax import LocationKind
+from rvmon.trace.time import TICKS_PER_UNIT
+
+_HEAD = """<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.1//EN' \
+'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
+<nta>
+"""
+_GRID = (200, 150)
+"""Distance of locations in a drawing, right and down."""
+
+
+def uppaal_xml(network: Network) -> str:
+    """The network as the text of an XML file."""
+    names = Names(network)
+    lines = [f"  <declaration>{escape(_declarations(network, names))}</declaration>"]
+    for index, automaton in enumerate(network.automata):
+        lines += _template(names, index, automaton)
+    lines.append(f"  <system>system {', '.join(names.automata)};</system>")
+    lines.append("  <queries>")
+    for query in network.queries:
+        lines += _query(names, query)
+    lines += ["  </queries>", "</nta>", ""]
+    return _HEAD + "\n".join(lines)
+
+
+def _declarations(network: Network, names: Names) -> str:
+    lines = [f'// network {network.name} "{network.title}"']
+    if network.unit is not None:
+        unit = max((u for u, t in TICKS_PER_UNIT.items() if network.unit % t == 0),
+                   key=lambda name: TICKS_PER_UNIT[name])  # fmt: skip
+        lines.append(f"// unit {network.unit // TICKS_PER_UNIT[unit]} {unit}")
+    lines += [f"clock {thing.declarator};" for thing in names.clocks]
+    for thing in names.channels:
+        channel = network.channels[thing.first]
+        kind = ("urgent " if channel.urgent else "") + ("broadcast " if channel.broadcast else "")
+        lines.append(f"{kind}chan {thing.declarator};")
+    for thing in names.variables:
+        members = network.variables[thing.first : thing.first + thing.length]
+        lines.append(f"{_type(members[0])} {thing.declarator} = {_initial(thing, members)};")
+    return "\n".join([*lines, ""])
+
+
+def _type(variable: Variable) -> str:
+    return "bool" if variable.is_bool else f"int[{variable.low},{variable.high}]"
+
+
+def _initial(thing: Thing, members: tuple[Variable, ...]) -> str:
+    values = [str(variable.initial) for variable in members]
+    for extent in reversed(thing.extents):
+        size = len(extent)
+        values = [
+            "{" + ", ".join(values[start : start + size]) + "}"
+            for start in range(0, len(values), size)
+        ]
+    return values[0]
+
+
+def _template(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
+    yield "  <template>"
+    yield f"    <name>{names.automata[index]}</name>"
+    columns = max(1, round(len(automaton.locations) ** 0.5))
+    for place, location in enumerate(automaton.locations):
+        row, column = divmod(place, columns)
+        x, y = column * _GRID[0], row * _GRID[1]
+        yield f'    <location id="id{index}_{place}" x="{x}" y="{y}">'
+        yield f'      <name x="{x - 10}" y="{y - 30}">{names.location(index, place)}</name>'
+        if condition := condition_text(names, location.invariant):
+            yield f'      <label kind="invariant" x="{x}" y="{y + 15}">{escape(condition)}</label>'
+        if location.kind is not LocationKind.NORMAL:
+            yield f"      <{location.kind}/>"
+        yield "    </location>"
+    yield f'    <init ref="id{index}_{automaton.initial}"/>'
+    for edge in automaton.edges:
+        yield from _edge(names, index, edge)
+    yield "  </template>"
+
+
+def _edge(names: Names, index: int, edge: Edge) -> Iterator[str]:
+    yield "    <transition>"
+    yield f'      <source ref="id{index}_{edge.source}"/>'
+    yield f'      <target ref="id{index}_{edge.target}"/>'
+    labels = {
+        "guard": condition_text(names, edge.guard),
+        "synchronisation": sync_text(names, edge),
+        "assignment": updates_text(names, edge),
+    }
+    comments = [f"weight {edge.weight}"] if edge.weight != 1 else []
+    labels["comments"] = "\n".join([*comments, *([f"as {edge.label}"] if edge.label else [])])
+    for kind, text in labels.items():
+        if text:
+            yield f'      <label kind="{kind}">{escape(text)}</label>'
+    yield "    </transition>"
+
+
+def condition_text(names: Names, guard: Guard) -> str:
+    """A guard or invariant; empty if it always holds."""
+    parts = [names.expression(compare) for compare in guard.clocks]
+    if guard != Guard(clocks=guard.clocks):
+        parts.append(names.expression(guard.data))
+    return " && ".join(parts)
+
+
+def sync_text(names: Names, edge: Edge) -> str:
+    """The synchronisation of an edge; empty if it has none."""
+    if edge.sync is None:
+        return ""
+    channel = names.slot(edge.sync.slot, names.channels)
+    return channel + ("!" if edge.sync.sends else "?")
+
+
+def updates_text(names: Names, edge: Edge) -> str:
+    """The updates of an edge in their order."""
+    return ", ".join(_update(names, update) for update in edge.updates)
+
+
+def _update(names: Names, update: Update) -> str:
+    if isinstance(update, Reset):
+        return f"{names.clock(update.clock)} = {names.expression(update.value)}"
+    target = names.slot(update.slot, names.variables)
+    return f"{target} = {names.expression(update.value)}"
+
+
+def _query(names: Names, query: Query) -> Iterator[str]:
+    formula, comment = _formula(names, query.formula), query.remark
+    if not formula:
+        comment = f"not a query of UPPAAL: {query.text} {comment}".strip()
+    yield "    <query>"
+    yield f"      <formula>{escape(formula)}</formula>"
+    yield f"      <comment>{escape(comment)}</comment>"
+    yield "    </query>"
+
+
+def _formula(names: Names, formula: Expression | LeadsToFormula) -> str:
+    """The formula; empty if UPPAAL has none for it."""
+    match formula:
+        case LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
+            return f"{names.expression(left)} --> {names.expression(right)}"
+        case PathFormula(_, body, None) if not has_paths(body):
+            return names.expression(formula)
+        case _:
+            return ""

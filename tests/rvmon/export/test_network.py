@@ -1,0 +1,81 @@
+"""Networks as UPPAAL's XML mean the same when they are read back; drawings show everything."""
+
+from pathlib import Path
+
+import pytest
+
+from handover.model import handover_network
+from rvmon.export.network_dot import network_dot
+from rvmon.export.uppaal import uppaal_xml
+from rvmon.testing.timed_dice import random_model
+from rvmon.timed.load import load_network, loads_network
+from rvmon.timed.suite import Criterion, build_suite
+from rvmon.timed.verify import verify
+
+MODELS = Path(__file__).parents[3] / "examples" / "models"
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_random_networks_come_back(seed):
+    """Automata, clocks, variables and channels are the same, and the answers too."""
+    network = loads_network(random_model(seed))
+    again = loads_network(uppaal_xml(network))
+    assert again.automata == network.automata
+    assert again.variables == network.variables
+    assert again.channels == network.channels
+    unbounded = [q for q in network.queries if "[<=" not in q.text]
+    assert [q.formula for q in again.queries] == [q.formula for q in unbounded]
+
+
+@pytest.mark.parametrize("model", ["fischer.ta", "train_gate.xml", "bridge.xml", "csma_cd.xml"])
+def test_templates_and_arrays_come_back_flat(model):
+    """Instances become templates of their own, arrays keep their elements, answers stay."""
+    constants = {} if model == "bridge.xml" else {"N": 2}
+    network = load_network(MODELS / model, constants=constants)
+    again = loads_network(uppaal_xml(network))
+    assert [len(a.edges) for a in again.automata] == [len(a.edges) for a in network.automata]
+    for query, same in zip(network.queries, again.queries, strict=True):
+        assert verify(again, same).holds == verify(network, query).holds
+    there, here = (build_suite(n, Criterion.EDGES) for n in (again, network))
+    assert there.missing == here.missing
+    assert there.statistics.visited == here.statistics.visited
+
+
+def test_the_handover_network_keeps_unit_weights_and_labels():
+    """What UPPAAL has no place for survives in comments, queries beyond it as their text."""
+    network = handover_network()
+    xml = uppaal_xml(network)
+    again = loads_network(xml)
+    assert again.unit == network.unit
+    assert again.automata == network.automata
+    assert (again.name, again.title) == (network.name, network.title)
+    assert "not a query of UPPAAL: robot.recv2 --&gt;[&lt;=600]" in " ".join(xml.split())
+
+
+def test_names_become_identifiers():
+    """Reserved words and names with brackets are replaced, none of them twice."""
+    network = loads_network("""
+    clock process
+    int[0,1] T_1_v
+    automaton T(const int[1,2] i) {
+      int[0,1] v
+      location init
+      start init
+      edge init -> init when process >= 1 do v = 1, T_1_v = 1
+    }
+    query: E<> T(1).v == 1 and T_1_v == 1
+    """)
+    again = loads_network(uppaal_xml(network))
+    assert len({v.name for v in again.variables}) == 3
+    assert verify(again, again.queries[0]).holds
+
+
+def test_the_drawing_has_every_location_and_edge():
+    """DOT names each location once and has one arrow for each edge, with its labels."""
+    network = handover_network()
+    dot = network_dot(network)
+    assert dot.count(" -> ") == sum(len(a.edges) for a in network.automata)
+    assert dot.count("subgraph") == 6
+    assert '"U send"' in dot
+    assert '"C reading"' in dot
+    assert "weight 0.05" in dot
