@@ -28,8 +28,13 @@ class Mutant:
     after: str
     source: str
 
+    @property
+    def change(self) -> str:
+        """File and change, without the line: what it is known by when the file grows."""
+        return f"{self.path.name} {self.kind}: `{self.before}` => `{self.after}`"
+
     def __str__(self) -> str:
-        return f"{self.path.name}:{self.line} {self.kind}: `{self.before}` => `{self.after}`"
+        return f"line {self.line:>3} of {self.change}"
 
 
 _COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
