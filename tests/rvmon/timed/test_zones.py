@@ -3,7 +3,7 @@
 from fractions import Fraction
 from itertools import product
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rvmon.timed.abstraction import extrapolate
@@ -19,6 +19,8 @@ from rvmon.timed.zones import (
     normalise,
     reset,
 )
+
+repeatable = settings(deadline=None, derandomize=True)
 
 DIM = 3
 POINTS = [(Fraction(0), Fraction(a, 2), Fraction(b, 2)) for a, b in product(range(9), range(9))]
@@ -60,6 +62,7 @@ def satisfies(point, atom):
 ZONES = st.lists(ATOMS, max_size=4).map(zone_of).filter(lambda zone: zone is not None)
 
 
+@repeatable
 @given(st.lists(ATOMS, max_size=5))
 def test_constrain_keeps_exactly_what_satisfies_all_bounds(atoms):
     """A zone holds the valuations that satisfy its bounds, and none is called empty wrongly."""
@@ -69,6 +72,7 @@ def test_constrain_keeps_exactly_what_satisfies_all_bounds(atoms):
         assert (zone is not None and is_in(point, zone)) == expected
 
 
+@repeatable
 @given(ZONES)
 def test_zones_are_closed(zone):
     """Every bound is the tightest that the others imply."""
@@ -77,6 +81,7 @@ def test_zones_are_closed(zone):
         assert zone[x * DIM + z] <= tidy
 
 
+@repeatable
 @given(ZONES, st.integers(1, 2), st.integers(0, 2))
 def test_reset_moves_each_valuation(zone, clock, value):
     """After a reset the zone holds the moved valuations and no others."""
@@ -90,6 +95,7 @@ def test_reset_moves_each_valuation(zone, clock, value):
             assert not is_in(point, moved)
 
 
+@repeatable
 @given(ZONES)
 def test_delay_adds_all_later_valuations(zone):
     """After a delay every earlier valuation of a point on the way is known to be one."""
@@ -105,6 +111,7 @@ def test_delay_adds_all_later_valuations(zone):
             assert is_in(point, later)
 
 
+@repeatable
 @given(ZONES, st.lists(st.tuples(st.integers(1, 2), st.integers(0, 3)), max_size=2))
 def test_delay_within_equals_delay_and_constrain(zone, uppers):
     """The fused operation gives what its two parts give one after the other."""
@@ -117,6 +124,7 @@ def test_delay_within_equals_delay_and_constrain(zone, uppers):
         assert normalise(fused) == normalise(parts)
 
 
+@repeatable
 @given(ZONES, ZONES)
 def test_subtract_leaves_what_is_outside(zone, other):
     """The difference holds the valuations of the one outside the other, each in one part."""
@@ -126,6 +134,7 @@ def test_subtract_leaves_what_is_outside(zone, other):
         assert count == int(is_in(point, zone) and not is_in(point, other))
 
 
+@repeatable
 @given(ZONES)
 def test_before_holds_what_leads_into_the_zone(zone):
     """A valuation is before a zone if some delay of it is inside."""
@@ -136,12 +145,14 @@ def test_before_holds_what_leads_into_the_zone(zone):
                 assert is_in(point, earlier)
 
 
+@repeatable
 @given(ZONES, ZONES)
 def test_inclusion_is_inclusion(zone, other):
     """A zone within another has no valuation outside it; one that is not has a part outside."""
     assert is_within(zone, other) == (subtract(zone, other, DIM) == [])
 
 
+@repeatable
 @given(ZONES, ZONES, st.integers(0, 3), st.integers(0, 3))
 def test_inclusion_implies_simulation(zone, other, upper, lower):
     """What is included is simulated, whatever the bounds are."""
@@ -151,12 +162,14 @@ def test_inclusion_implies_simulation(zone, other, upper, lower):
         assert is_simulated(zone, other, DIM, uppers, lowers)
 
 
+@repeatable
 @given(ZONES, ZONES)
 def test_simulation_without_bounds_is_always(zone, other):
     """Where no clock is compared with anything, every zone simulates every other."""
     assert is_simulated(zone, other, DIM, [(0, 0.0)], [(0, 0.0)])
 
 
+@repeatable
 @given(ZONES, st.integers(0, 3), st.integers(0, 3))
 def test_extrapolation_only_adds(zone, first, second):
     """A blurred zone holds the zone, and is the same below the largest numbers."""
