@@ -8,7 +8,7 @@ from itertools import pairwise
 from rvmon.spec.words import ITEM_WORDS
 
 _ITEM = re.compile(
-    rf"^[ \t]*(?P<word>{'|'.join(ITEM_WORDS)}|max(?=\s+delay))(?!\w|\.\w)"
+    rf"^[ \t\ufeff]*(?P<word>{'|'.join(ITEM_WORDS)}|max(?=\s+delay))(?!\w|\.\w)"
     r"(?P<named>[ \t]*(?:\w[\w.]*|`[^`\n]*`)[ \t]*:)?",
     re.MULTILINE,
 )
@@ -37,4 +37,5 @@ def split_items(text: str) -> list[tuple[int, int]]:
 
 def _blank(text: str) -> bool:
     """Whether there are only comments and space."""
-    return all(line.lstrip().startswith("#") or not line.strip() for line in text.split("\n"))
+    lines = text.replace("\ufeff", "").split("\n")
+    return all(line.lstrip().startswith("#") or not line.strip() for line in lines)

@@ -8,6 +8,7 @@ import pytest
 from lark import logger
 
 from rvmon.errors import SpecError
+from rvmon.spec import compile_text
 from rvmon.spec.parse import GRAMMAR_OPTIONS, grammar_text
 from rvmon.spec.reads import names_of_spec
 from rvmon.spec.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
@@ -231,3 +232,10 @@ def test_all_errors_of_a_file_appear_at_once(codes):
 def test_syntax_errors_speak_the_language(message, text, expected):
     """A syntax error says what could have stood there, or how to mend it."""
     assert expected in message(text)
+
+
+def test_byte_order_mark_is_ignored():
+    """What some editors put at the start of a file does no harm."""
+    spec, _ = compile_text("\ufeffspec demo\nsignal a : bool\nrequirement R always a")
+    assert spec.name == "demo"
+    assert compile_text("\ufeff# comment\r\nspec demo\r\n")[0].name == "demo"
