@@ -15,8 +15,6 @@ ROBOTS = {
 }
 """What the two robots are called in titles."""
 
-STRATEGIES_IN_PAPER = ("pseudorandom", "constrained", "model-based")
-
 
 def verdict_table(summary: CampaignSummary, robot: str) -> VerdictTable:
     """The counts of one robot under each strategy."""

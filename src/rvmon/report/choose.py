@@ -22,23 +22,10 @@ def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
     return {name: sorted(some, key=lambda one: one.number) for name, some in shown.items()}
 
 
-def opening(report: Report, focus: str = "") -> tuple[str, Attempt | None]:
-    """The requirement and attempt that a page opens on.
-
-    The first F, else the first attempt of the chosen requirement, else the first one that is
-    open, else the first.
-
-    Args:
-        report: of the run.
-        focus: id of the chosen requirement, or empty.
-    """
-    attempts = report.attempts
-    for wanted in (
-        [one for one in attempts if one.verdict is Verdict.FAIL],
-        [one for one in attempts if one.requirement == focus],
-        [one for one in attempts if one.verdict is Verdict.INCONCLUSIVE],
-        attempts,
-    ):
-        if wanted:
-            return wanted[0].requirement, wanted[0]
-    return focus or next(iter(report.verdicts)), None
+def opening(report: Report) -> tuple[str, Attempt | None]:
+    """The requirement and attempt that a page opens on: the first F, else I, else any."""
+    for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
+        for attempt in report.attempts:
+            if attempt.verdict is verdict:
+                return attempt.requirement, attempt
+    return next(iter(report.verdicts)), None

@@ -22,10 +22,10 @@ def run_page(content: RunPage) -> str:
     """Write the page of a run.
 
     Without a script it shows all attempts one below the other; the script shows one at a time,
-    moves the cursor and plays the scene.
+    moves the cursor and plays the scene. An address that ends in `#R2` opens on requirement R2.
     """
     panels = panels_of(content)
-    requirement, attempt = opening(content.run.report, content.focus)
+    requirement, attempt = opening(content.run.report)
     first = next(panel for panel in panels if panel.id == panel_id(requirement, attempt))
     sections = [panel_section(panel, panels, content) for panel in panels]
     sentence = headline(content.run.name, first, content.run.report.origin)

@@ -37,7 +37,6 @@ class RunPage:
         others: runs by the same spec, whose passing attempts a failed one can be held against.
         facts: more about the run, as pairs of name and value.
         scene: what the robot did, if it is known.
-        focus: the requirement to open on if none failed.
         back: address of the page that links here.
     """
 
@@ -47,5 +46,4 @@ class RunPage:
     others: Sequence[JudgedRun] = ()
     facts: Sequence[tuple[str, str]] = ()
     scene: Scene | None = None
-    focus: str = ""
     back: str = ""

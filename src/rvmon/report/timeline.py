@@ -89,7 +89,7 @@ def _obligation(attempt: Attempt, view: View, origin: int, end: int) -> ET.Eleme
     rows = 1 + max(row for _, row in labels)
     height = {"style": f"height:{rows * 1.35 + 0.9:g}rem"}
     plot = e("div", {"class": "plot owed", **height}, *(label for label, _ in labels), bar)
-    return e("div", {"class": "row"}, e("div", {"class": "name"}, "window"), plot)
+    return e("div", {"class": "row"}, e("div", {"class": "name unit"}, "window"), plot)
 
 
 def _window(attempt: Attempt) -> tuple[int, int | None]:
@@ -166,4 +166,4 @@ def _axis(view: View, origin: int) -> ET.Element:
         if 0.01 <= view.fraction(instant) <= 0.99
     ]
     axis = e("div", {"class": "plot axis"}, *ticks)
-    return e("div", {"class": "row"}, e("div", {"class": "name unit"}, "time, s"), axis)
+    return e("div", {"class": "row"}, e("div", {"class": "name unit below"}, "time, s"), axis)
