@@ -10,8 +10,9 @@ import pytest
 
 from handover.campaign import command
 from handover.campaign.execute import INTERRUPTED, execute
+from handover.checker import spec_path
 from handover.cli import main
-from handover.generator.files import load, save
+from handover.generator.files import directed, save
 
 ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 
@@ -66,7 +67,7 @@ def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
 
     from rvmon.cli import main as rvmon
 
-    assert rvmon(["run", "specs/handover.rv", str(tmp_path / f"{name}.jsonl")]) == 1
+    assert rvmon(["run", str(spec_path("correct")), str(tmp_path / f"{name}.jsonl")]) == 1
     assert "R1   F" in capsys.readouterr().out
 
 
@@ -110,7 +111,7 @@ def test_a_bad_test_is_told_in_one_message(tmp_path, capsys, content, told):
         (["run", "--spec", "gone.rv"], "gone.rv"),
         (["run", "--tests", "0"], "at least 1"),
         (["run", "--tests", "many"], "at least 1"),
-        (["run", "--out", "README.md"], "cannot write to README.md"),
+        (["run", "--out", __file__], "cannot write to"),
         (["fly"], "invalid choice"),
     ],
 )
@@ -122,8 +123,7 @@ def test_wrong_use_is_told(capsys, words, told):
 
 def test_a_name_cannot_leave_the_folder(tmp_path, capsys):
     """A test's name from a file is no path."""
-    test = load("src/handover/generator/directed/released.json")
-    path = save(test, tmp_path)
+    path = save(next(test for test in directed() if test.name == "released"), tmp_path)
     path.write_text(path.read_text().replace('"released"', '"../../evil"'))
     main(["replay", str(path), "--out", str(tmp_path / "out")])
     assert not list(tmp_path.parent.glob("evil*"))
