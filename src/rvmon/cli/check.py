@@ -30,6 +30,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="how to print findings: in full, one line each, or JSON (default: text)",
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if there are warnings")
+    parser.add_argument(
+        "--analyse",
+        action="store_true",
+        help="look for requirements that can never trigger, fail or pass, that conflict, or that "
+        "others imply",
+    )
+    parser.add_argument(
+        "--seconds", metavar="S", type=float, default=8.0, help="budget of --analyse per file"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -38,6 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     constants = constants_of(arguments.const)
     findings: list[Diagnostic] = []
+    remarks: list[str] = []
     unreadable = broken = 0
     for name in arguments.specs:
         try:
@@ -50,8 +60,14 @@ def run(arguments: argparse.Namespace) -> int:
         found, wrong = _findings(text, name, constants)
         findings += found
         broken += wrong
+        if arguments.analyse and not wrong:
+            more, remark = _analysed(text, name, constants, arguments.seconds)
+            findings += more
+            remarks += remark
     _show(arguments.format, findings)
     if arguments.format == "text":
+        if remarks:
+            print("\n".join(remarks))
         print(_summary(len(arguments.specs), findings))
     if unreadable or broken:
         return 2
@@ -70,6 +86,21 @@ def _findings(text: str, name: str, constants: dict[str, str]) -> tuple[list[Dia
     except SpecError as error:
         return list(error.diagnostics), True
     return list(warnings), False
+
+
+def _analysed(
+    text: str, name: str, constants: dict[str, str], seconds: float
+) -> tuple[list[Diagnostic], list[str]]:
+    """What an analysis finds, and in words the timelines of conflicts and what was not decided."""
+    from rvmon.explain.analysed import analyse
+    from rvmon.monitor import compile_spec
+    from rvmon.report.analysis_text import analysis_lines
+    from rvmon.spec import compile_text
+
+    directory = None if name == "-" else Path(name).parent
+    checked, _ = compile_text(text, name=name, constants=constants, directory=directory)
+    analysis = analyse(compile_spec(checked), seconds=seconds)
+    return list(analysis.findings), analysis_lines(analysis, checked)
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:

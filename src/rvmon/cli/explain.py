@@ -112,12 +112,11 @@ def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace)
 
 
 def _explain_code(code: str) -> None:
+    from rvmon.analysis.rules import analysis_rules
+    from rvmon.spec.pages import rule_page
     from rvmon.spec.rules.registry import all_rules
 
-    rules = all_rules()
+    rules = {**all_rules(), **analysis_rules()}
     if code not in rules:
-        known = ", ".join(rules)
-        raise UnknownNameError(f"error: no diagnostic `{code}`: there are {known}")
-    from rvmon.spec.pages import rule_page
-
+        raise UnknownNameError(f"error: no diagnostic `{code}`: there are {', '.join(rules)}")
     print(rule_page(rules[code]), end="")

@@ -95,7 +95,7 @@ class Eye:
         each = self.requirement.for_each
         if each is None:
             return None
-        return Instance(1, each.value, attempt.captured[each.name])
+        return Instance(1, each.value, attempt.captured[each.name], self.begin)
 
     def _note(self, formula: Formula) -> None:
         """Bring what speaks of present and past only into the form that the flow reads."""

@@ -1,0 +1,228 @@
+"""What an analysis claims of a specification holds on every run that is tried."""
+
+import random
+
+import pytest
+
+import rvmon
+from rvmon.analysis.choices import choices_of
+from rvmon.cli import main
+from rvmon.explain.analysed import analyse
+from rvmon.explain.example import Budget
+from rvmon.explain.search import shortest_examples
+from rvmon.monitor import compile_spec
+from rvmon.testing import build
+from rvmon.testing.oracle import evaluate
+from rvmon.testing.show import show_spec
+
+SPEC = """
+event a, b, c
+signal p, q : bool
+signal x : real
+requirement R1
+ upon a
+ then within 1 s b
+requirement R2
+ upon a
+ then for 2 s not b
+requirement R3
+ upon a
+ then within 3 s b
+requirement R4
+ upon c
+ then always[2 s, 3 s] p
+requirement R5
+ upon b
+ then for 1 s not p
+requirement R6
+ upon c
+ then within 2 s (p or q)
+requirement R7
+ always not q
+requirement R8
+ upon c
+ then for 3 s not p
+requirement R9
+ upon x > 3 and x < 2
+ then within 1 s q
+requirement R10
+ upon a
+ then within 1 s (x > 3 or x <= 4)
+requirement R11
+ upon a
+ then within 1 s (x > 4 and x < 2)
+requirement R12
+ upon b and p
+ then within 1 s c
+requirement R13
+ upon b and not p
+ then for 1 s not c
+"""
+
+
+def analysis_of(text):
+    """The analysis of a specification's text."""
+    return analyse(compile_spec(rvmon.loads(text).checked))
+
+
+def test_known_answers():
+    """Contradictions, missing deadlines, conflicts of two and three, and what is superfluous."""
+    found = analysis_of(SPEC).examination
+    sets = {conflict.ids: conflict.offsets for conflict in found.conflicts}
+    assert sets == {
+        ("R1", "R2"): (0, 0),
+        ("R4", "R5"): (0, 2 * 10**9),
+        ("R4", "R8"): (0, 0),
+        ("R6", "R7", "R8"): (0, 0, 0),
+    }
+    assert {(one.implied, one.by) for one in found.implications} == {("R3", "R1"), ("R6", "R4")}
+    assert found.possible["R9"].trigger is False
+    assert found.possible["R10"].fail is False
+    assert found.possible["R11"].pass_ is False
+    assert not found.undecided
+
+
+def test_timelines_trigger_what_conflicts():
+    """The timeline of a conflict triggers its requirements as said."""
+    analysis = analysis_of(SPEC)
+    assert [conflict.ids for conflict, _ in analysis.timelines] == [
+        ("R1", "R2"),
+        ("R4", "R5"),
+        ("R4", "R8"),
+    ]
+    for conflict, example in analysis.timelines:
+        triggers = {a.requirement: a.triggered for a in example.attempts}
+        first = triggers[conflict.ids[0]]
+        assert tuple(triggers[name] - first for name in conflict.ids) == conflict.offsets
+        # Where both windows begin at once one fails at that instant already.
+        assert {verdict.value for verdict in example.verdicts.values()} <= {"I", "F"}
+    first = analysis.timelines[0][1]
+    assert {verdict.value for verdict in first.verdicts.values()} == {"I"}
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_claims_about_random_specs_are_not_refuted(seed):
+    """Random requirements: no run meets a conflict, or fails what is implied alone."""
+    dice = random.Random(seed)
+    claims = 0
+    for _ in range(40):
+        spec = _random_responses(dice)
+        compiled = compile_spec(spec)
+        found = analyse(compiled, seconds=1, timelines=0).examination
+        for conflict in found.conflicts:
+            claims += 1
+            chosen = [compiled.requirements[name] for name in conflict.ids]
+            budget = Budget(runs=150, samples=3, step=1)
+            goal = _all_met(conflict)
+            tried = shortest_examples(compiled, chosen, goal, ["met"], budget)
+            for example in tried.examples.values():
+                verdicts = evaluate(spec, example.samples, end=example.end).verdicts
+                pytest.fail(f"{show_spec(spec)}\n{conflict}\n{example}\n{verdicts}")
+        for one in found.implications:
+            claims += 1
+            chosen = [compiled.requirements[name] for name in (one.by, one.implied)]
+            budget = Budget(runs=150, samples=3, step=1)
+            goal = _fails_alone(one)
+            tried = shortest_examples(compiled, chosen, goal, ["alone"], budget)
+            assert not tried.examples, (show_spec(spec), one, tried.examples)
+    assert claims > 5
+
+
+def _random_responses(dice):
+    """Three random requirements over two signals and two events, with windows of a few ticks."""
+    literals = [build.p, build.q, build.f, build.no(build.p), build.no(build.q), build.no(build.f)]
+    triggers = [build.e, build.f, build.two(build.e, "and", build.p), build.start]
+
+    def owed():
+        low = dice.choice([0, 0, 0, 1, 2])
+        high = low + dice.randint(0, 3)
+        operator = dice.choice([build.eventually, build.always, build.always])
+        if dice.random() < 0.25:
+            return build.two(dice.choice(literals), "U", dice.choice(literals), low, high)
+        return operator(dice.choice(literals), low, high)
+
+    return build.spec_of(
+        *(
+            build.requirement(owed(), upon=dice.choice(triggers), name=f"R{number}")
+            for number in (1, 2, 3)
+        )
+    )
+
+
+def _all_met(conflict):
+    """A run on which attempts that are triggered as the conflict says have all passed."""
+
+    def goal(example):
+        passed = {
+            name: {
+                a.triggered
+                for a in example.attempts
+                if a.requirement == name and a.verdict.value == "P"
+            }
+            for name in conflict.ids
+        }
+        pairs = list(zip(conflict.ids, conflict.offsets, strict=True))
+        for first in passed[conflict.ids[0]]:
+            if all(first + offset in passed[name] for name, offset in pairs):
+                return "met"
+        return None
+
+    return goal
+
+
+def _fails_alone(one):
+    """A run on which an attempt fails, and the one that is said to imply it has passed."""
+
+    def goal(example):
+        verdicts = {(a.requirement, a.triggered): a.verdict.value for a in example.attempts}
+        for (name, triggered), verdict in verdicts.items():
+            failed = name == one.implied and verdict == "F"
+            if failed and verdicts.get((one.by, triggered)) == "P":
+                return "alone"
+        return None
+
+    return goal
+
+
+def test_choices_see_both_sides_of_every_comparison():
+    """The valuations for a comparison include values at, below and above where it turns."""
+    checked = rvmon.loads(
+        "signal x : real [m]\nevent go(k: int)\nrequirement Q\n upon go.k > 3\n"
+        " then immediately x < 50 cm\n"
+    ).checked
+    one = compile_spec(checked).requirements["Q"]
+    choices = choices_of(checked, [state.leaf for state, _ in one.leaves], one.reads)
+    xs = {valuation["x"] for valuation in choices.valuations}
+    assert min(xs) < 0.5 <= max(xs)
+    ks = {v["go"]["k"] for v in choices.valuations if isinstance(v["go"], dict)}
+    assert min(ks) <= 3 < max(ks)
+    assert choices.complete
+
+
+def test_check_analyse(tmp_path, capsys):
+    """`rvmon check --analyse` warns with places and draws the shortest conflicting timeline."""
+    path = tmp_path / "a.rv"
+    path.write_text(SPEC)
+    assert main(["check", str(path), "--analyse"]) == 0
+    shown = capsys.readouterr()
+    assert "RV073 conflict]: R1 and R2 cannot both hold" in shown.err
+    assert f"{path}:5:1" in shown.err
+    assert "After this, one of R1, R2 fails, whatever comes:" in shown.out
+    assert all(len(line) <= 80 for line in shown.out.splitlines())
+    assert main(["check", str(path), "--analyse", "--strict"]) == 1
+    capsys.readouterr()
+    assert main(["check", str(path), "--analyse", "--seconds", "0"]) == 0
+    assert "not decided" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("code", ["RV070", "RV071", "RV072", "RV073", "RV074"])
+def test_codes_have_pages_whose_examples_are_found(code, tmp_path, capsys):
+    """Each code: its example is found by the analysis, its mended form is not."""
+    from rvmon.analysis.rules import analysis_rules
+
+    rule = analysis_rules()[code]
+    for text, there in ((rule.example, True), (rule.instead, False)):
+        findings = analysis_of(text).findings
+        assert (code in {finding.code for finding in findings}) is there
+    assert main(["explain", code]) == 0
+    assert rule.what in capsys.readouterr().out
