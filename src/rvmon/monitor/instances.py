@@ -18,11 +18,13 @@ class Instance:
         rank: from 1, in order of first occurrence.
         source: the field that the value came from.
         value: the value.
+        first: the instant of the first occurrence of the value.
     """
 
     rank: int
     source: FieldValue
     value: Scalar
+    first: int
 
 
 def values_in(source: FieldValue, values: Mapping[str, Value]) -> list[Scalar]:

@@ -171,12 +171,22 @@ class Lane:
         else:
             self._repeating.pop(starter, None)
 
-    def last_position(self, end: int) -> int:
-        """The last position at or before `end`, up to which time has come."""
+    def drop_episode(self, starter: Starter) -> None:
+        """Take it that no episode of a starter is running, whatever it has seen."""
+        if starter.trigger is not None:
+            starter.trigger.running = False
+            if starter.trigger.repeats:
+                self._repeating[starter] = None
+
+    def stand_at_last(self, end: int) -> int:
+        """Go to the last position at or before `end`, up to which time has come; returns it."""
         flow = self.flow
-        if flow.gap is None:
-            return flow.position
-        return flow.position + (end - flow.position) // flow.gap * flow.gap
+        if flow.gap is not None:
+            last = flow.position + (end - flow.position) // flow.gap * flow.gap
+            if last > flow.position:
+                # Nothing that anyone waited for changes, but what occurred before is over.
+                flow.evaluate(last)
+        return flow.position
 
     @property
     def next_due(self) -> int:

@@ -106,10 +106,13 @@ class Lanes:
         """
         for judge in self.judges:
             judge.pass_to(end)
-        for lane in self.all:
+        for lane, instance in tuple(self._lanes):
             for starter in lane.starters:
                 if starter.trigger is None and lane.flow.origin is not None:
-                    starter.start(lane.last_position(end), end)
+                    position = lane.stand_at_last(end)
+                    # A value that came after the last tick of a clock has not occurred at any.
+                    if instance is None or instance.first <= position:
+                        starter.start(position, end)
         for judge in self.judges:
             judge.reach(reached)
             for attempt in judge.attempts:
@@ -192,7 +195,7 @@ class Lanes:
         known = self._instances.setdefault(compiled.requirement.id, {})
         for value in values_in(each.value, values):
             if value not in known:
-                known[value] = instance = Instance(len(known) + 1, each.value, value)
+                known[value] = instance = Instance(len(known) + 1, each.value, value, t)
                 lane = self._instance_lane(compiled, {each.name: value}, instance, t)
                 self._lanes.append((lane, instance))
 
@@ -209,11 +212,14 @@ class Lanes:
             self._replay(lane, instance)
             lane.through(t - 1)
             starter.start = start
+            lane.drop_episode(starter)
             return lane
         lane = Lane(self.main.flow.fork(graph, captured, occurring=False))
         for taken, seen in self.main.waiting:
             lane.sample(taken, seen_by(instance, seen))
         self._seat(lane, compiled, captured, instance)
+        # The main lane may stand at an earlier position, where nothing of its own has changed.
+        lane.through(t - 1)
         return lane
 
 

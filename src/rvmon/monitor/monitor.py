@@ -161,7 +161,7 @@ class Monitor:
             self._judge(sample.t, sample.values)
         end = self._end(t_ns)
         if end is not None:
-            reached = max(end, self._reached or end)
+            reached = end if self._reached is None else max(end, self._reached)
             self._lanes.through(end)
             self._lanes.finish(end, reached)
         self._ledger.flush()

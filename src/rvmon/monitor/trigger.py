@@ -41,4 +41,4 @@ class Trigger:
     @property
     def repeats(self) -> bool:
         """Whether another attempt starts at the next position if the truth stays."""
-        return self.pulse and not self.episodic and self.before == TRUE
+        return self.pulse and not self.running and self.before == TRUE

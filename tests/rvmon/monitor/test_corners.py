@@ -1,0 +1,96 @@
+"""Shrunk cases in which an engine once departed from the oracle."""
+
+from dataclasses import replace
+
+import pytest
+
+from rvmon.monitor import build_monitor, compile_spec
+from rvmon.spec.checked import Capture, ForEach, TimeModel
+from rvmon.testing.build import (
+    always,
+    compared,
+    e,
+    end,
+    eventually,
+    f,
+    fall,
+    false,
+    following,
+    g,
+    k,
+    p,
+    requirement,
+    spec_of,
+    start,
+    true,
+    two,
+    x,
+)
+from rvmon.testing.case import Case
+from rvmon.testing.differential import disagreements
+from rvmon.trace.sample import Sample
+
+EACH = ForEach("each", k)
+OF_X = (Capture("v", x),)
+OF_K = (Capture("v", k),)
+BOTH_AT_1 = (Sample(0, {"f": True}), Sample(1, {"f": True, "g": {"k": 0}}))
+
+CASES = {
+    "a window opened between two samples": (
+        requirement(two(true, "U", true, 2, 4)),
+        (Sample(0, {}), Sample(1, {}), Sample(4, {})),
+    ),
+    "a window opened by advance": (
+        requirement(always(false, 3, 5)),
+        (Sample(0, {}), Sample(2, {}), 3, Sample(5, {})),
+    ),
+    "a captured attempt moves with each sample": (
+        requirement(following(true), captures=OF_X),
+        (Sample(0, {}), Sample(1, {})),
+    ),
+    "an instance that is made while another has an occurrence": (
+        requirement(true, upon=g, for_each=EACH),
+        (Sample(-2, {"g": {"k": -2}}), Sample(0, {"g": {"k": -1}})),
+    ),
+    "two instances before the first tick of the clock": (
+        requirement(p, upon=compared(k, ">", -1), for_each=EACH),
+        (Sample(7, {"p": False}), Sample(8, {"g": ({"k": 1}, {"k": 0})})),
+    ),
+    "an episode that ran before the instance was there": (
+        requirement(fall(false), whenever=f, for_each=EACH),
+        BOTH_AT_1,
+    ),
+    "an occurrence that is over at the end": (
+        requirement(compared(k, "<", 0), upon=end, captures=OF_K),
+        (Sample(0, {"g": {"k": -1}}),),
+    ),
+    "a sample that no tick has shown yet": (
+        requirement(p, upon=end, captures=OF_X),
+        (Sample(0, {}), Sample(3, {"p": True})),
+    ),
+    "time that has come to zero, behind the end": (
+        requirement(eventually(false, 0, 0), upon=end),
+        (Sample(-3, {}), 0),
+    ),
+    "an event that is unknown to one reading only": (
+        requirement(two(eventually(e, 0, 2), "and", always(p, 1, 3)), upon=start),
+        (Sample(0, {"e": None, "p": True}), Sample(2, {"p": None}), Sample(3, {"p": True})),
+    ),
+}
+
+
+@pytest.mark.parametrize("time", TimeModel)
+@pytest.mark.parametrize("engine", ["auto", "progression"])
+@pytest.mark.parametrize("name", CASES)
+def test_corner(name, engine, time):
+    """The engine agrees with the oracle, call by call, in each time model that has the formula."""
+    judged, actions = CASES[name]
+    if time is TimeModel.HELD and "moves with each sample" in name:
+        judged = replace(judged, consequent=eventually(p, 1, 1))
+    spec = spec_of(judged, time=time, period=4 if time is TimeModel.CLOCKED else None)
+
+    def make(case):
+        return build_monitor(compile_spec(case.spec), engine=engine, sources=case.names)
+
+    for finish in (None, 2, 9):
+        assert disagreements(Case(spec, actions, finish), make, online=True) == []
