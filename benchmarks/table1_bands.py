@@ -90,7 +90,9 @@ def show(fitted: list[dict[Cell, int]], unfitted: list[dict[Cell, int]], tests: 
         "",
     ):
         table.add_column(
-            heading, justify="right" if heading in ("paper", "mean", "no loss") else "left"
+            heading,
+            no_wrap=True,
+            justify="right" if heading in ("paper", "mean", "no loss") else "left",
         )
     inside = {"with": 0, "without": 0}
     paper = published()
@@ -106,7 +108,7 @@ def show(fitted: list[dict[Cell, int]], unfitted: list[dict[Cell, int]], tests: 
         if figure or any(any(figures) for figures in columns.values()):
             mark = " fitted" if (strategy, requirement) in FITTED else ""
             table.add_row(strategy, f"{requirement} {verdict.value}{mark}", str(figure), *shown)
-    console = Console(highlight=False, width=100)
+    console = Console(highlight=False, width=110)
     console.print(table)
     console.print(f"{len(fitted)} campaigns; cells that are nought in all of them are not shown.")
     for name, hits in inside.items():
