@@ -242,6 +242,9 @@ def _literal(literal: Literal, level: int) -> str:
     text = format(Decimal(repr(literal.value)).normalize(), "f")
     if len(text) > 20:
         text = repr(literal.value)
+    if literal.unit.startswith("1/"):  # a number has no such unit, but its quotient does
+        text = f"{text} / 1 {literal.unit[2:].replace('/', '*')}"
+        return f"({text})" if level > _PRODUCT else text
     if literal.unit:
         text = f"{text} {literal.unit}"
     return f"({text})" if literal.value < 0 and level > _NEGATIVE else text

@@ -12,7 +12,7 @@ from rvmon.spec.checked import Arithmetic, Compare, CompareOp, Constant, Literal
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.unit import PLAIN, Unit
-from rvmon.spec.units import product, quotient, root
+from rvmon.spec.units import base_unit, product, quotient, root
 from rvmon.spec.values import Quantity
 
 Placed = tuple[Quantity, Span]
@@ -111,7 +111,7 @@ def _root(placed: Placed, span: Span) -> Quantity:
     unit = root(value.unit)
     if unit is None:
         raise Refusal(rules.no_root(place, value.unit.symbol))
-    squared = Unit(value.unit.symbol if value.unit.factor == 1 else "", value.unit.dimension)
+    squared = base_unit(dict(value.unit.dimension))
     if value.constant is not None:
         exact = _exact(value, squared)
         if exact < 0:

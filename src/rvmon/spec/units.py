@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import cache
 
-from rvmon.spec.unit import PLAIN, Unit
+from rvmon.spec.unit import Unit
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494")
 
@@ -26,10 +26,9 @@ _DERIVED: tuple[tuple[str, str, Fraction | int], ...] = (
     ("Pa", "N/m^2", 1),
     ("bar", "N/m^2", 100_000),
     ("J", "N*m", 1),
-    ("W", "J/s", 1),
     ("watt", "J/s", 1),
+    ("W", "J/s", 1),
     ("Wh", "J", 3600),
-    ("ampere", "A", 1),
     ("Ah", "A*s", 3600),
     ("V", "W/A", 1),
     ("ohm", "V/A", 1),
@@ -65,6 +64,9 @@ _PREFIXES = {
     "G": Fraction(10**9),
 }
 
+_SPOKEN = {"A": "ampere", "W": "watt"}
+"""The letters are operators, so behind a number the words stand for them."""
+
 _LONGEST = 60
 """Longer units are refused: their factors could have thousands of digits."""
 
@@ -79,6 +81,7 @@ class UnknownUnitError(ValueError):
 def unit_table() -> Mapping[str, Unit]:
     """All simple units by symbol."""
     table = {base: Unit(base, ((base, 1),)) for base in _BASES}
+    table["ampere"] = Unit("ampere", (("A", 1),))
     for symbol, definition, factor in _DERIVED:
         defined = _parse(definition, table)
         table[symbol] = Unit(symbol, defined.dimension, defined.factor * factor)
@@ -112,52 +115,63 @@ def parse_unit(text: str) -> Unit:
 
 
 def _parse(text: str, table: Mapping[str, Unit]) -> Unit:
-    dimension: Counter[str] = Counter()
-    factor = Fraction(1)
+    return _of_powers(_powers(text), table)
+
+
+def _powers(text: str) -> Mapping[str, int]:
+    """The parts of a unit, each with its power."""
+    powers: Counter[str] = Counter()
     place = 0
     while place < len(text):
         part = _PART.match(text, place)
         if part is None or (part[1] == "") != (place == 0):
             raise UnknownUnitError(text[place:])
         place = part.end()
-        unit = PLAIN if part[2] == "1" else table.get(part[2])
+        name = _SPOKEN.get(part[2], part[2])
+        if name != "1":
+            powers[name] += int(part[3] or 1) * (-1 if part[1] == "/" else 1)
+    return powers
+
+
+def _of_powers(powers: Mapping[str, int], table: Mapping[str, Unit]) -> Unit:
+    dimension: Counter[str] = Counter()
+    factor = Fraction(1)
+    for name, power in powers.items():
+        unit = table.get(name)
         if unit is None:
-            raise UnknownUnitError(part[2])
-        power = int(part[3] or 1) * (-1 if part[1] == "/" else 1)
+            raise UnknownUnitError(name)
         factor *= unit.factor**power
         for base, exponent in unit.dimension:
             dimension[base] += exponent * power
-    return Unit("".join(text.split()), _sorted(dimension), factor)
+    kept = tuple(sorted((base, power) for base, power in dimension.items() if power))
+    return Unit(_symbol(powers), kept, factor)
+
+
+def _symbol(powers: Mapping[str, int]) -> str:
+    above = [_power(name, power) for name, power in powers.items() if power > 0]
+    below = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(("*".join(above) or ("1" if below else ""), *below))
+
+
+def _power(name: str, power: int) -> str:
+    return name if power == 1 else f"{name}^{power}"
 
 
 def product(left: Unit, right: Unit) -> Unit:
     """The unit of a product."""
-    return _combine(left, right, 1)
+    return _combined(left, right, 1)
 
 
 def quotient(left: Unit, right: Unit) -> Unit:
     """The unit of a quotient."""
-    return _combine(left, right, -1)
+    return _combined(left, right, -1)
 
 
-def _combine(left: Unit, right: Unit, power: int) -> Unit:
-    dimension = Counter(dict(left.dimension))
-    for base, exponent in right.dimension:
-        dimension[base] += power * exponent
-    factor = left.factor * right.factor**power
-    if not right.symbol:
-        symbol = left.symbol
-    elif not left.symbol and power > 0:
-        symbol = right.symbol
-    else:
-        turned = right.symbol if power > 0 else _turned(right.symbol)
-        symbol = f"{left.symbol or '1'}{'*' if power > 0 else '/'}{turned}"
-    return Unit(symbol, _sorted(dimension), factor)
-
-
-def _turned(symbol: str) -> str:
-    """A symbol that stands behind a `/`: its own `*` and `/` change places."""
-    return symbol.translate(str.maketrans("*/", "/*"))
+def _combined(left: Unit, right: Unit, power: int) -> Unit:
+    powers = Counter(_powers(left.symbol))
+    for name, exponent in _powers(right.symbol).items():
+        powers[name] += power * exponent
+    return _of_powers(powers, unit_table())
 
 
 def root(unit: Unit) -> Unit | None:
@@ -169,18 +183,8 @@ def root(unit: Unit) -> Unit | None:
 
 def base_unit(dimension: Mapping[str, int]) -> Unit:
     """The product of base units with these exponents."""
-    above = [_power(base, exponent) for base, exponent in dimension.items() if exponent > 0]
-    below = [_power(base, -exponent) for base, exponent in dimension.items() if exponent < 0]
-    symbol = "*".join(above) or ("1" if below else "")
-    return Unit("/".join((symbol, *below)), _sorted(dimension))
-
-
-def _power(base: str, exponent: int) -> str:
-    return base if exponent == 1 else f"{base}^{exponent}"
-
-
-def _sorted(dimension: Mapping[str, int]) -> tuple[tuple[str, int], ...]:
-    return tuple(sorted((base, power) for base, power in dimension.items() if power))
+    powers = {_SPOKEN.get(base, base): power for base, power in dimension.items()}
+    return _of_powers(powers, unit_table())
 
 
 def compound_pattern(excluded: Iterable[str]) -> str:

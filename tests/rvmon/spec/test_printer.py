@@ -8,6 +8,7 @@ from rvmon.spec import compile_text
 from rvmon.spec.checked import Arithmetic, Compare, Literal, SignalValue
 from rvmon.spec.printer import format_duration, format_formula, format_numeric
 from rvmon.spec.tense import subformulas
+from rvmon.spec.units import unit_table
 from rvmon.testing.generate_spec import Profile, random_spec
 
 
@@ -80,3 +81,14 @@ def test_numbers_survive(value):
     assert isinstance(compare, Compare)
     assert compare.right.value == value
     assert format_formula(compare).startswith("x < ")
+
+
+@pytest.mark.parametrize("unit", [*sorted(unit_table()), "m/s", "1/s", "1/s/m", "m/A", "W*s/m^2"])
+def test_units_survive(unit):
+    """A literal is printed with its unit in a way that can be read, whatever the unit."""
+    text = f"signal x : real [{unit}]\nrequirement R always "
+    compare = compile_text(text + "(x < 0 or 2 * x - x > 0)")[0].requirements["R"].consequent
+    again = compile_text(text + f"({format_formula(compare)})")[0].requirements["R"].consequent
+    assert again.left.right == compare.left.right
+    assert again.left.right.unit == compare.left.right.unit
+    assert again.right.left == compare.right.left
