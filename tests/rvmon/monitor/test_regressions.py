@@ -14,6 +14,12 @@ CASES = {
         [(0, {})],
         5,
     ),
+    "an instance begins between two ticks of the clock": (
+        "sampled every 3 ns",
+        "upon g\n  then start\n  for each v in g.k",
+        [(1, {}), (10, {"g": ({"k": 1}, {"k": 0})})],
+        12,
+    ),
 }
 
 
@@ -23,7 +29,7 @@ def test_engines_agree_with_the_law(name, engine):
     """Each engine gives the oracle's verdicts and decision instants."""
     time, requirement, samples, end = CASES[name]
     spec = rvmon.loads(
-        f"spec s\ntime {time}\nsignal p, q : bool\nevent e\nrequirement R1\n  {requirement}\n"
+        f"spec s\ntime {time}\nsignal p, q : bool\nevent e\nevent g(k: int)\nrequirement R1\n  {requirement}\n"
     )
     monitor = spec.monitor(engine=engine)
     for t, values in samples:
