@@ -14,9 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from benchmarks.ours import always_text, specification
-from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, Contest, ask_peer
-from benchmarks.peers.core import UntranslatableError, names_in
 from benchmarks.peers.environment import Environment
 from benchmarks.peers.positions import Cell, Question, answers, ask_engine
 from benchmarks.workload import Workload
@@ -24,6 +22,8 @@ from benchmarks.workload import Workload
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.spec.checked import TimeModel
+from rvmon.testing.peers.client import Peer, PeerError
+from rvmon.testing.peers.core import UntranslatableError, names_in
 from rvmon.testing.walk import intervals
 from rvmon.verdict.verdict import Verdict
 

@@ -8,7 +8,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.peers.client import Peer, PeerError
+from benchmarks.contenders import OURS
+
+from rvmon.testing.peers.client import Peer, PeerError
 
 SPEC = """spec open
 time held
@@ -47,7 +49,7 @@ def measure_open(
         spent: list[float] = []
         sizes: list[float] = []
         for _ in range(repeats):
-            with Peer(Path(sys.executable), "rvmon") as peer:
+            with Peer(Path(sys.executable), OURS) as peer:
                 answer = peer.ask("hold_open", spec=SPEC, attempts=count, samples=samples)
             if answer["open"] != count:
                 raise PeerError(f"{answer['open']} attempts are open, not {count}")

@@ -10,13 +10,17 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from benchmarks.ours import always_text, scaled, specification
-from benchmarks.peers import dialects
-from benchmarks.peers.client import Peer
-from benchmarks.peers.core import UntranslatableError
-from benchmarks.peers.dialects import Dialect, spelling, translate
 from benchmarks.peers.environment import HOME, Environment
 from benchmarks.peers.native import LETTERS, Native, packed
 from benchmarks.workload import Workload
+
+from rvmon.testing.peers import dialects
+from rvmon.testing.peers.client import Peer
+from rvmon.testing.peers.core import UntranslatableError
+from rvmon.testing.peers.dialects import Dialect, spelling, translate
+
+OURS = Path(__file__).parent / "peers" / "with_rvmon.py"
+"""The module that asks our own monitors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +107,7 @@ def contenders(environment: Environment, native: Native) -> Iterator[Contender]:
         ("rvmon step, changes", "changes"),
         ("rvmon evaluate", "evaluate"),
     ):
-        yield Worker(label, Peer(here, "rvmon"), _ours(kind))
+        yield Worker(label, Peer(here, OURS), _ours(kind))
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _past(dialects.REELAY_DISCRETE)),
         ("rtamt", "rtamt", "rtamt", _few(_past(dialects.RTAMT_DISCRETE))),

@@ -19,10 +19,8 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 
-from benchmarks.peers.client import Peer, PeerError
-from benchmarks.peers.core import both, no, to_core, until
-from benchmarks.peers.dialects import LTLF, spelling, translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.positions import Judge, ask_engine, ask_oracle
 
@@ -44,6 +42,9 @@ from rvmon.spec.checked import (
     UnaryOp,
 )
 from rvmon.testing.dice import Dice, chance, pick
+from rvmon.testing.peers.client import Peer, PeerError
+from rvmon.testing.peers.core import both, no, to_core, until
+from rvmon.testing.peers.dialects import LTLF, spelling, translate
 from rvmon.testing.show import show
 from rvmon.testing.vocabulary import BOOLS
 from rvmon.trace.sample import Sample
@@ -51,6 +52,7 @@ from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
 
+LTLF2DFA = Path(__file__).parent / "peers" / "with_ltlf2dfa.py"
 JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
 ALIVE = SignalAtom("alive")
 EVER = Interval(0, None)
@@ -188,7 +190,7 @@ def main(argv: Sequence[str]) -> int:
     tally: Counter[str] = Counter()
     found: list[str] = []
     judges = {name: JUDGES[name] for name in options.against}
-    with Peer(environment.python, "ltlf2dfa") as peer:
+    with Peer(environment.python, LTLF2DFA) as peer:
         for number in range(options.formulas):
             found += compare(number, options.seed, options.words, peer, judges, tally)
     seconds = time.perf_counter() - began

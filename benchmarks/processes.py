@@ -13,10 +13,11 @@ from pathlib import Path
 
 from benchmarks.measure import Figure, Result
 from benchmarks.ours import always_text, specification
-from benchmarks.peers import dialects
-from benchmarks.peers.dialects import translate
 from benchmarks.peers.native import Native, packed
 from benchmarks.workload import Column, Workload
+
+from rvmon.testing.peers import dialects
+from rvmon.testing.peers.dialects import translate
 
 
 @dataclass(frozen=True, slots=True)

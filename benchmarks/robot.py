@@ -10,11 +10,11 @@ import math
 import random
 from collections.abc import Iterator
 
-from benchmarks.peers.core import names_in
 from benchmarks.workload import Workload
 
 from rvmon.spec.checked import Formula, SignalAtom, SignalValue
 from rvmon.testing.build import always, compared, eventually, historically, no, two
+from rvmon.testing.peers.core import names_in
 
 RATES = {"20 Hz": 20, "1 kHz": 1000}
 

@@ -6,10 +6,6 @@ import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from benchmarks.peers import dialects
-from benchmarks.peers.client import Peer
-from benchmarks.peers.core import UntranslatableError, names_in
-from benchmarks.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
 from benchmarks.peers.positions import Cell, Question
 
 from rvmon.spec.checked import (
@@ -25,6 +21,10 @@ from rvmon.spec.checked import (
 )
 from rvmon.testing.dice import chance, pick
 from rvmon.testing.generate_formula import Shape, formula
+from rvmon.testing.peers import dialects
+from rvmon.testing.peers.client import Peer
+from rvmon.testing.peers.core import UntranslatableError, names_in
+from rvmon.testing.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
 from rvmon.testing.shrink import smaller_formulas
 from rvmon.testing.vocabulary import CARRIER, EVENTS, NUMBERS
 

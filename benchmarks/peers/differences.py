@@ -11,13 +11,13 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from benchmarks.peers.client import Peer, PeerError
-from benchmarks.peers.dialects import spelling
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.peers.positions import Cell, Columns, Question, answers, ask_oracle
 
 from rvmon.spec.checked import Formula, TimeModel
 from rvmon.testing.build import always, compared, eventually, fall, no, once, p, previous, q, two, x
+from rvmon.testing.peers.client import Peer, PeerError
+from rvmon.testing.peers.dialects import spelling
 
 
 @dataclass(frozen=True, slots=True)

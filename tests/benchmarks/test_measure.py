@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from benchmarks.contenders import Pass
 from benchmarks.measure import Plan, measure
-from benchmarks.peers.core import UntranslatableError
 from benchmarks.workload import Workload
 
 from rvmon.testing.build import p
+from rvmon.testing.peers.core import UntranslatableError
 
 WORKLOAD = Workload("online", "a workload", "past", (p,), {"p": [True, True, False, True] * 50})
 

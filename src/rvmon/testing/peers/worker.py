@@ -1,8 +1,8 @@
 """A peer in a process of its own: one JSON request per line in, one JSON answer per line out.
 
-It runs in the peers' environment and imports nothing of this project.
+It may run in an environment of the peer's own, and so imports nothing of this package.
 
-    python worker.py reelay|rtamt|mstlo|ltlf2dfa
+    python worker.py MODULE.py                  where MODULE.py has a class `Peer`
 
     {"do": "judge", "formula": …, "kind": …, "columns": {name: [value per tick]}}
                                                 -> {"values": [verdict or robustness per tick]}
@@ -14,18 +14,19 @@ An error of the peer is an answer, too: {"error": …}. What the peer prints goe
 
 from __future__ import annotations
 
-import importlib
 import json
 import os
+import runpy
 import sys
 from typing import Any
 
 
-def main(name: str) -> None:
+def main(path: str) -> None:
     """Answer until the input ends."""
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)
-    peer = importlib.import_module(f"with_{name}").Peer()
+    sys.path.pop(0)  # this folder: its names are not meant for the peers
+    peer = runpy.run_path(path)["Peer"]()
     for line in sys.stdin:
         request: dict[str, Any] = json.loads(line)
         handler = getattr(peer, request.pop("do"))

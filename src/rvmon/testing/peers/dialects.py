@@ -10,14 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from benchmarks.peers.core import (
-    EVER,
-    UntranslatableError,
-    both,
-    either,
-    to_core,
-)
-
 from rvmon.spec.checked import (
     Binary,
     BinaryOp,
@@ -34,6 +26,13 @@ from rvmon.spec.checked import (
     SignalValue,
     Unary,
     UnaryOp,
+)
+from rvmon.testing.peers.core import (
+    EVER,
+    UntranslatableError,
+    both,
+    either,
+    to_core,
 )
 
 ALWAYS_ONE = "one"

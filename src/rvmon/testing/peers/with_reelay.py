@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
+from importlib import import_module
 from typing import Any
-
-import reelay
 
 
 class Peer:
     """Answers requests by reelay's monitors."""
 
     def __init__(self) -> None:
+        self._reelay: Any = import_module("reelay")
         self._make: Any = None
         self._formulas: list[str] = []
         self._rows: list[dict[str, Any]] = []
@@ -28,11 +28,11 @@ class Peer:
         number = float if semantics == "robustness" else lambda value: value
         rows = [{name: number(column[i]) for name, column in columns.items()} for i in range(ticks)]
         if time_model == "discrete":
-            monitor = reelay.discrete_timed_monitor(
+            monitor = self._reelay.discrete_timed_monitor(
                 pattern=formula, semantics=semantics, condense=False
             )
             return {"values": [_finite(monitor.update(row)["value"]) for row in rows]}
-        monitor = reelay.dense_timed_monitor(pattern=formula, semantics=semantics)
+        monitor = self._reelay.dense_timed_monitor(pattern=formula, semantics=semantics)
         changes: list[dict[str, Any]] = []
         # Every tick, also without a change: of a longer stretch that starts and ends true, with
         # false at its beginning, the Python package does not print the changes.
@@ -54,9 +54,9 @@ class Peer:
             self._rows = [{"time": t, **row} for t, row in enumerate(self._rows)]
         self._formulas = formulas
         self._make = (
-            (lambda f: reelay.discrete_timed_monitor(pattern=f, condense=False))
+            (lambda f: self._reelay.discrete_timed_monitor(pattern=f, condense=False))
             if kind == "discrete"
-            else (lambda f: reelay.dense_timed_monitor(pattern=f))
+            else (lambda f: self._reelay.dense_timed_monitor(pattern=f))
         )
         if kind not in ("discrete", "dense") or len(self._rows) != rows:
             raise ValueError(f"{kind}, {len(self._rows)} rows for {rows}")

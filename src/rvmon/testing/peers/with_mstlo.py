@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import time
+from importlib import import_module
 from typing import Any
-
-import mstlo_python as mstlo
 
 
 class Peer:
     """Answers requests by mstlo's monitors."""
 
     def __init__(self) -> None:
+        self._mstlo: Any = import_module("mstlo_python")
         self._formulas: list[str] = []
         self._updates: list[tuple[str, float, float]] = []
 
     def judge(self, formula: str, kind: str, columns: dict[str, list[Any]]) -> dict[str, Any]:
         """The verdict at every tick, in the semantics that `kind` names."""
-        monitor = mstlo.Monitor(mstlo.parse_formula(formula), semantics=kind)
+        monitor = self._mstlo.Monitor(self._mstlo.parse_formula(formula), semantics=kind)
         known = monitor.get_signal_identifiers()
         ticks = len(next(iter(columns.values())))
         verdicts: dict[float, Any] = {}
@@ -46,7 +46,7 @@ class Peer:
     def run(self) -> dict[str, Any]:
         """One pass over the rows; the first instant with a false verdict per formula."""
         monitors = [
-            mstlo.Monitor(mstlo.parse_formula(formula), semantics=self._kind)
+            self._mstlo.Monitor(self._mstlo.parse_formula(formula), semantics=self._kind)
             for formula in self._formulas
         ]
         firsts: list[float | None] = [None] * len(monitors)

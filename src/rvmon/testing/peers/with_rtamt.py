@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import logging
 import time
+from importlib import import_module
 from typing import Any
-
-import rtamt
-
-logging.disable(logging.WARNING)
 
 
 class Peer:
     """Answers requests by rtamt's specifications."""
 
     def __init__(self) -> None:
+        logging.disable(logging.WARNING)  # it warns of every variable
+        self._rtamt: Any = import_module("rtamt")
         self._formulas: list[str] = []
         self._names: list[str] = []
         self._rows: list[tuple[int, list[tuple[str, float]]]] = []
@@ -23,13 +22,14 @@ class Peer:
         """The robustness at every tick, offline."""
         ticks = len(next(iter(columns.values())))
         if kind == "discrete":
-            spec = _specified(rtamt.StlDiscreteTimeSpecification(), formula, list(columns))
+            spec = _specified(self._rtamt.StlDiscreteTimeSpecification(), formula, list(columns))
             numbers = {name: [float(v) for v in column] for name, column in columns.items()}
             answer = spec.evaluate({"time": list(range(ticks)), **numbers})
             return {"values": [_finite(value) for _, value in answer]}
         if kind == "dense online":
-            return {"values": _online(formula, columns, ticks)}
-        spec = _specified(rtamt.StlDenseTimeSpecification(), formula, list(columns))
+            spec = self._rtamt.StlDenseTimeOnlineSpecification()
+            return {"values": _online(spec, formula, columns, ticks)}
+        spec = _specified(self._rtamt.StlDenseTimeSpecification(), formula, list(columns))
         signals = [[name, _steps(column)] for name, column in columns.items()]
         return {"values": _per_tick(spec.evaluate(*signals), ticks)}
 
@@ -49,7 +49,7 @@ class Peer:
         """One pass over the rows, online; the first row with a robustness below 0 per formula."""
         specs = []
         for formula in self._formulas:
-            spec = rtamt.StlDiscreteTimeOnlineSpecification()
+            spec = self._rtamt.StlDiscreteTimeOnlineSpecification()
             specs.append(_specified(spec, formula, self._names))
             spec.pastify()
         firsts: list[int | None] = [None] * len(specs)
@@ -70,9 +70,9 @@ def _specified(spec: Any, formula: str, names: list[str]) -> Any:
     return spec
 
 
-def _online(formula: str, columns: dict[str, list[Any]], ticks: int) -> list[Any]:
+def _online(spec: Any, formula: str, columns: dict[str, list[Any]], ticks: int) -> list[Any]:
     """Dense time sample by sample: rtamt answers for an instant that lies its horizon back."""
-    spec = _specified(rtamt.StlDenseTimeOnlineSpecification(), formula, list(columns))
+    _specified(spec, formula, list(columns))
     spec.pastify()
     changes: list[list[float]] = []
     for tick in range(ticks):

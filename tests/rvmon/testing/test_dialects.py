@@ -3,17 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from benchmarks.peers.core import UntranslatableError, names_in, to_core
-from benchmarks.peers.dialects import (
-    LTLF,
-    MSTLO,
-    REELAY_DENSE,
-    REELAY_DISCRETE,
-    RTAMT_DENSE,
-    RTAMT_DISCRETE,
-    Dialect,
-    translate,
-)
 from benchmarks.peers.positions import Question, answers, ask_oracle
 
 from rvmon.spec.checked import Formula, TimeModel
@@ -33,6 +22,17 @@ from rvmon.testing.build import (
     true,
     two,
     x,
+)
+from rvmon.testing.peers.core import UntranslatableError, names_in, to_core
+from rvmon.testing.peers.dialects import (
+    LTLF,
+    MSTLO,
+    REELAY_DENSE,
+    REELAY_DISCRETE,
+    RTAMT_DENSE,
+    RTAMT_DISCRETE,
+    Dialect,
+    translate,
 )
 
 

@@ -9,6 +9,8 @@ from types import TracebackType
 from typing import Any
 
 WORKER = Path(__file__).with_name("worker.py")
+SHIPPED = ("reelay", "rtamt", "mstlo")
+"""Peers whose module stands beside the worker."""
 
 
 class PeerError(Exception):
@@ -20,12 +22,13 @@ class Peer:
 
     Args:
         python: the interpreter to run it with.
-        name: of the module `with_<name>.py` beside the worker.
+        module: the file that asks the peer; or the name of a shipped one.
     """
 
-    def __init__(self, python: Path, name: str) -> None:
-        self.name = name
-        self._command = [str(python), str(WORKER), name]
+    def __init__(self, python: Path, module: Path | str) -> None:
+        if isinstance(module, str):
+            module = WORKER.with_name(f"with_{module}.py")
+        self._command = [str(python), str(WORKER), str(module)]
         self._process: subprocess.Popen[str] | None = None
 
     def ask(self, do: str, **request: Any) -> dict[str, Any]:
@@ -64,7 +67,7 @@ class Peer:
 
     def _running(self) -> subprocess.Popen[str]:
         if self._process is None:
-            self._process = subprocess.Popen(
+            self._process = subprocess.Popen(  # noqa: S603 - the worker beside this file
                 self._command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
