@@ -8,6 +8,8 @@ import pytest
 from rvmon.errors import SpecError
 from rvmon.spec import compile_text
 from rvmon.spec.formatter import format_text
+from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.spec_text import meaning, scribbled, spec_text
 
 EXAMPLE = """# Head
 
@@ -67,10 +69,10 @@ def test_canonical_form():
 
 
 @pytest.mark.parametrize("seed", range(120))
-def test_laws(seed, random_text, scribbled, meaning):
+def test_laws(seed):
     """Of random specifications in random writing meaning and comments are kept."""
     dice = random.Random(seed)
-    text = scribbled(random_text(seed), dice)
+    text = scribbled(spec_text(random_spec(dice, Profile())), dice)
     once = format_text(text)
     assert format_text(once) == once
     assert meaning(compile_text(once)[0]) == meaning(compile_text(text)[0])

@@ -10,16 +10,17 @@ from rvmon.spec.printer import format_duration, format_formula, format_numeric
 from rvmon.spec.tense import subformulas
 from rvmon.spec.units import unit_table
 from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.spec_text import meaning, spec_text
 
 
 @pytest.mark.parametrize("seed", range(150))
-def test_parse_after_print_is_identity(seed, text_of, meaning):
+def test_parse_after_print_is_identity(seed):
     """Random specifications survive being printed and read."""
     spec = random_spec(random.Random(seed), Profile())
-    once, _ = compile_text(text_of(spec))
+    once, _ = compile_text(spec_text(spec))
     if not any(map(is_constant_arithmetic, numbers_of(spec))):  # which the compiler folds
         assert meaning(once) == meaning(spec)
-    twice, _ = compile_text(text_of(once))
+    twice, _ = compile_text(spec_text(once))
     assert meaning(twice) == meaning(once)
 
 
@@ -47,9 +48,9 @@ def is_constant_arithmetic(node):
     return all(isinstance(arg, Literal) for arg in args)
 
 
-def test_random_texts_are_varied(random_text):
+def test_random_texts_are_varied():
     """The random specifications use all operators of the language."""
-    text = " ".join(random_text(seed) for seed in range(150))
+    text = " ".join(spec_text(random_spec(random.Random(seed), Profile())) for seed in range(150))
     for word in ("until", "unless", "since", " R", " M", "once", "within", "for each", "let",
                  "held(", "rise(", "updated(", "->", "<->", "xor", "next", "previous"):  # fmt: skip
         assert word in text, word
