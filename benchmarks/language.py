@@ -1,6 +1,6 @@
 """The specification language under load: random texts, random layouts, large files.
 
-    python -m benchmarks.language [--texts 100000] [--layouts 10000] [--requirements 1000] [--seed 1]
+    python -m benchmarks.language [--texts N] [--layouts N] [--requirements N] [--seed S]
 
 Prints how many texts were read, how many were refused, and every accident; how many random
 specifications kept their meaning and form when printed and laid out; and CPU times. Exits 1 if
@@ -115,15 +115,12 @@ def layouts(count: int, seed: int) -> int:
 def large_file(count: int, dice: random.Random) -> None:
     """CPU time of checking one file with many requirements, and specs/handover.rv."""
     handover = (ROOT / "specs" / "handover.rv").read_text(encoding="utf-8")
-    for name, text in (
-        ("specs/handover.rv", handover),
-        (f"{count:,} requirements", many(count, dice)),
-    ):
+    files = {"specs/handover.rv": handover, f"{count:,} requirements": many(count, dice)}
+    for name, text in files.items():
         started = time.process_time()
         compile_text(text)
-        print(
-            f"check of {name}: {time.process_time() - started:.2f} s of CPU, {len(text):,} characters"
-        )
+        seconds = time.process_time() - started
+        print(f"check of {name}: {seconds:.2f} s of CPU, {len(text):,} characters")
 
 
 def many(count: int, dice: random.Random) -> str:
