@@ -114,4 +114,7 @@ class _Dice:
             f"A<>[<={bound}] {self._state()}",
             "E<> deadlock",
             f"A[] (deadlock imply {self._state()})",
+            f"A[] ({self._state(1)} imply EF {self._state(1)})",
+            f"E<> ({self._state(1)} and AG {self._state(1)})",
+            f"A[] ({self._state(1)} or AF {self._state(1)} or {self._state(1)})",
         ]

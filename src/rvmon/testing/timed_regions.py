@@ -29,6 +29,7 @@ from rvmon.timed.concrete import (
 )
 from rvmon.timed.guards import normal_form, with_deadlock
 from rvmon.timed.model import (
+    BinaryOperation,
     Constant,
     Edge,
     Expression,
@@ -37,9 +38,9 @@ from rvmon.timed.model import (
     PathFormula,
     Query,
 )
-from rvmon.timed.pieces import compares_of, speaks_of_deadlock
+from rvmon.timed.pieces import compares_of, has_paths, speaks_of_deadlock
 from rvmon.timed.run import Action
-from rvmon.timed.syntax import PathOp
+from rvmon.timed.syntax import BinaryOp, PathOp
 
 
 class TooManyRegionsError(Exception):
@@ -152,29 +153,38 @@ class RegionGraph:
                 return True
             region = later
 
-    def can_stay(self, starts: Iterable[Region], inside: Callable[[Region], bool]) -> bool:
-        """Whether some maximal run from some start never leaves a set of regions."""
-        regions = self.reachable(starts, inside)
+    def staying(self, inside: set[Region]) -> set[Region]:
+        """The regions from which some maximal run never leaves a set."""
         graph = nx.DiGraph()
-        taken: set[tuple[Region, Region]] = set()
-        for region in regions:
-            graph.add_node(region)
-            actions = list(self.actions(region))
-            later = self.later(region)
+        graph.add_nodes_from(inside)
+        taken: list[tuple[Region, Region]] = []
+        good: set[Region] = set()
+        for region in inside:
+            actions, later = list(self.actions(region)), self.later(region)
             if later == region or (later is None and not actions):
-                return True
-            for after in actions:
-                if after in regions:
-                    taken.add((region, after))
-                    graph.add_edge(region, after)
-            if later in regions:
+                good.add(region)
+            taken += [(region, after) for after in actions if after in inside]
+            if later in inside:
                 graph.add_edge(region, later)
+        graph.add_edges_from(taken)
         component_of = {
             region: number
             for number, component in enumerate(nx.strongly_connected_components(graph))
             for region in component
         }
-        return any(component_of[a] == component_of[b] for a, b in taken)
+        good |= {a for a, b in taken if component_of[a] == component_of[b]}
+        return leading_to(graph, good)
+
+    def whole(self) -> nx.DiGraph:
+        """All regions that can be reached, with an edge for each action and each delay."""
+        regions = self.reachable([self.start()])
+        graph = nx.DiGraph()
+        graph.add_nodes_from(regions)
+        for region in regions:
+            later = self.later(region)
+            onward = [*self.actions(region), *([] if later is None else [later])]
+            graph.add_edges_from((region, after) for after in onward)
+        return graph
 
     def _canonical(self, now: Configuration, timer: Fraction) -> Region:
         """The representative of a configuration's region."""
@@ -195,6 +205,15 @@ class RegionGraph:
         return Region(Configuration(now.locations, now.values, tuple(moved)), timer)
 
 
+def leading_to(graph: nx.DiGraph, targets: set[Region]) -> set[Region]:
+    """The nodes from which some target can be reached."""
+    found = set(targets)
+    for target in targets:
+        if target in graph:
+            found |= nx.ancestors(graph, target)
+    return found
+
+
 def decide(network: Network, query: Query, limit: int = 5_000) -> bool:
     """Whether a query holds, by walking through all regions.
 
@@ -204,6 +223,10 @@ def decide(network: Network, query: Query, limit: int = 5_000) -> bool:
     match query.formula:
         case LeadsToFormula(left, right, bound):
             return _responds(network, left, right, bound, limit)
+        case PathFormula(PathOp.POSSIBLY, body, None) if has_paths(body):
+            return bool(_satisfying(network, normal_form(body), limit))
+        case PathFormula(PathOp.INVARIANTLY, body, None) if has_paths(body):
+            return not _satisfying(network, normal_form(body, positive=False), limit)
         case PathFormula(PathOp.POSSIBLY, body, bound):
             return _reaches(network, normal_form(body), bound, limit)
         case PathFormula(PathOp.INVARIANTLY, body, bound):
@@ -234,7 +257,8 @@ def _avoids(network: Network, formula: Expression, bound: int | None, limit: int
     starts = [graph.start()]
     if bound is not None and _is_late(graph, starts, formula, bound):
         return True
-    return graph.can_stay(starts, lambda region: satisfies(region.now, formula))
+    inside = graph.reachable(starts, lambda region: satisfies(region.now, formula))
+    return bool(graph.staying(inside) & set(starts))
 
 
 def _responds(
@@ -246,7 +270,35 @@ def _responds(
     starts = [graph.restarted(r) for r in everywhere if satisfies(r.now, left)]
     if bound is not None and _is_late(graph, starts, missing, bound):
         return False
-    return not graph.can_stay(starts, lambda region: satisfies(region.now, missing))
+    inside = graph.reachable(starts, lambda region: satisfies(region.now, missing))
+    return not graph.staying(inside) & set(starts)
+
+
+def _satisfying(network: Network, formula: Expression, limit: int) -> set[Region]:
+    """The regions that can be reached and satisfy a formula that speaks of runs."""
+    regions = RegionGraph(network, [formula], None, limit)
+    graph = regions.whole()
+
+    def where(part: Expression) -> set[Region]:
+        if not has_paths(part):
+            return {region for region in graph if satisfies(region.now, part)}
+        match part:
+            case BinaryOperation(BinaryOp.AND, left, right):
+                return where(left) & where(right)
+            case BinaryOperation(BinaryOp.OR, left, right):
+                return where(left) | where(right)
+            case PathFormula(PathOp.POSSIBLY, body, None):
+                return leading_to(graph, where(body))
+            case PathFormula(PathOp.INVARIANTLY, body, None):
+                return set(graph) - leading_to(graph, where(normal_form(body, positive=False)))
+            case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, None):
+                return regions.staying(where(body))
+            case PathFormula(PathOp.EVENTUALLY, body, None):
+                return set(graph) - regions.staying(where(normal_form(body, positive=False)))
+            case _:
+                raise AssertionError(f"{part} is not decided here")
+
+    return where(formula)
 
 
 def _is_late(graph: RegionGraph, starts: Iterable[Region], inside: Expression, bound: int) -> bool:

@@ -16,7 +16,7 @@ from rvmon.timed.concrete import (
 from rvmon.timed.guards import normal_form, with_deadlock
 from rvmon.timed.model import Expression, LeadsToFormula, Network, PathFormula
 from rvmon.timed.outcome import Outcome
-from rvmon.timed.pieces import speaks_of_deadlock
+from rvmon.timed.pieces import has_paths, speaks_of_deadlock
 from rvmon.timed.run import Run
 from rvmon.timed.syntax import PathOp
 
@@ -43,6 +43,8 @@ def shows(network: Network, outcome: Outcome) -> bool:
         case PathFormula(op, body, bound):
             positive = op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS)
             formula = normal_form(body, positive=positive)
+            if has_paths(formula):
+                return True  # that the run is one was checked; what it leads to is no single run
             if op in (PathOp.POSSIBLY, PathOp.INVARIANTLY):
                 time, last = instants[-1]
                 in_time = bound is None or time <= bound

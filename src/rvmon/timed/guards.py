@@ -66,7 +66,7 @@ def normal_form(expression: Expression, positive: bool = True) -> Expression:
         case PathFormula(op, body, bound):
             if positive:
                 return PathFormula(op, normal_form(body), bound)
-            return PathFormula(_NEGATED_PATH[op], normal_form(body, not positive), bound)
+            return PathFormula(_NEGATED_PATH[op], normal_form(body, positive), bound)
         case UnaryOperation(UnaryOp.NOT, operand):
             return normal_form(operand, not positive)
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import cache
 from importlib import resources
@@ -11,7 +12,7 @@ import lark
 
 from rvmon.diagnostics import Source, Span
 from rvmon.errors import ModelError
-from rvmon.timed.rules import finding, model_error, refusal
+from rvmon.timed.rules import model_error
 from rvmon.timed.syntax import Document, QueryText
 from rvmon.timed.syntax_builder import SyntaxBuilder
 
@@ -107,9 +108,18 @@ def _syntax_error(
         )
     words = _words(set(expected))
     message = f"found {found}" + (f", expected {words}" if words else "")
-    return refusal(finding("TA001", message, place(start, start + length)))
+    return model_error("TA001", message, place(start, start + length), _mend(text, start))
 
 
+def _mend(text: str, offset: int) -> str:
+    """What mends a syntax error, if it is a common one."""
+    for operator in _PATH.finditer(text):
+        if operator.start() <= offset < operator.end():
+            return f"inside a formula it takes brackets: ({operator[0]} …)"
+    return ""
+
+
+_PATH = re.compile(r"[AE](?:<>|\[\])")
 _UNSUPPORTED = {
     "`'`": "rates of clocks (stop-watches, hybrid models) are not supported",
     "`{`": "blocks of statements are not supported",

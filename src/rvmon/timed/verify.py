@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import log
 from typing import assert_never
 
+from rvmon.timed.ctl import is_decidable
 from rvmon.timed.discrete import Move, State
 from rvmon.timed.elaborate import query_on
 from rvmon.timed.explore import explore, explore_best
@@ -13,6 +14,7 @@ from rvmon.timed.guards import normal_form
 from rvmon.timed.liveness import Escape, Staying
 from rvmon.timed.meter import Meter, paused_collector
 from rvmon.timed.model import Expression, LeadsToFormula, Network, PathFormula, Query
+from rvmon.timed.nested import NestedReachability, alternatives, lasting_part, together
 from rvmon.timed.outcome import Outcome, Policy
 from rvmon.timed.paths import PathStep, mark_step
 from rvmon.timed.pieces import Piece, has_paths, piece_maker, speaks_of_deadlock
@@ -96,18 +98,21 @@ def _search(question: _Question, query: Query) -> tuple[bool, Run | None, bool]:
     match query.formula:
         case LeadsToFormula(left, right, bound):
             _refuse_nests(query, left, right)
+            _refuse_deadlock(query, left, right)
             return False, _unanswered(question, left, right, bound), False
         case PathFormula(op, body, bound):
-            _refuse_nests(query, body)
             if op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = normal_form(body), True
             else:
                 sought, shows = normal_form(body, positive=False), False
             match op:
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if has_paths(sought):
+                    return shows, _reach_nested(question, query, sought, bound), False
                 case PathOp.POSSIBLY | PathOp.INVARIANTLY:
                     dead = speaks_of_deadlock(sought)
                     return shows, reach(question, sought, bound), not dead
                 case PathOp.EVENTUALLY | PathOp.POTENTIALLY_ALWAYS:
+                    _refuse_nests(query, sought)
                     _refuse_deadlock(query, sought)
                     return shows, _avoidance(question, sought, bound), False
                 case _:
@@ -120,7 +125,8 @@ def _search(question: _Question, query: Query) -> tuple[bool, Run | None, bool]:
 def _refuse_nests(query: Query, *parts: Expression) -> None:
     if any(has_paths(part) for part in parts):
         message = "path operators inside this one are not decided"
-        raise model_error("TA020", message, query.span)
+        mend = "inside E<> and A[] are decided: E<> and A[], and A[] (p imply A<> q)"
+        raise model_error("TA020", message, query.span, mend)
 
 
 def _refuse_deadlock(query: Query, *parts: Expression) -> None:
@@ -192,6 +198,34 @@ def _reach_deadlock(question: _Question, formula: Expression) -> Run | None:
     steps = [*plain_path(found.node), mark_step(last, found.piece)]
     start, ending = found.node.path()[0].site, problem.ending(last, found.piece)
     return make_run(question.network, start, steps, ending)
+
+
+def _reach_nested(
+    question: _Question, query: Query, formula: Expression, bound: int | None
+) -> Run | None:
+    """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
+    network, meter = question.network, question.meter
+    if bound is not None or speaks_of_deadlock(formula):
+        _refuse_nests(query, formula)
+    chosen = alternatives(formula)
+    for parts in chosen:
+        if not (is_decidable(together(parts)) or lasting_part(parts)):
+            _refuse_nests(query, formula)
+    for parts in chosen:
+        lasting = lasting_part(parts)
+        if lasting is None:
+            problem = NestedReachability(network, together(parts), meter)
+            found = explore(problem, meter)
+            run = None
+            if found.node is not None and found.piece is not None:
+                run = _run_to(network, found.node, found.piece)
+        else:
+            first = together(part for part in parts if part is not lasting)
+            away = normal_form(lasting.body, positive=False)
+            run = _unanswered(question, first, away, lasting.bound)
+        if run is not None or meter.stopped:
+            return run
+    return None
 
 
 # Staying away.

@@ -1,0 +1,68 @@
+"""The problem of reaching a formula that speaks of runs itself, and how such a formula is split."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from rvmon.timed.ctl import Satisfaction
+from rvmon.timed.discrete import State
+from rvmon.timed.federation import piece_of
+from rvmon.timed.meter import Meter
+from rvmon.timed.model import BinaryOperation, Constant, Expression, Network, PathFormula
+from rvmon.timed.pieces import Piece, has_paths
+from rvmon.timed.symbolic import Steps, meets
+from rvmon.timed.syntax import BinaryOp, PathOp
+from rvmon.timed.zones import Zone
+
+
+class NestedReachability(Steps):
+    """Reach a formula with `E<>` or `A[]` inside; sites are discrete states, links are moves.
+
+    Args:
+        network: where to look.
+        formula: normalised and decidable.
+        meter: counts the zones of the backward search.
+    """
+
+    def __init__(self, network: Network, formula: Expression, meter: Meter) -> None:
+        super().__init__(network, formula, bisimilar=True)
+        self._formula = formula
+        self._satisfaction = Satisfaction(self.space, meter)
+
+    def goal(self, site: State, zone: Zone) -> Piece | None:
+        """A part of the zone where the formula holds."""
+        for part in self._satisfaction.of(self._formula, site):
+            piece = piece_of(part, self.dim)
+            if meets(zone, self.dim, piece):
+                return piece
+        return None
+
+
+def alternatives(formula: Expression) -> list[list[Expression]]:
+    """A normalised formula as alternatives of parts that hold together; plain parts stay whole."""
+    match formula:
+        case BinaryOperation(BinaryOp.OR, left, right) if has_paths(formula):
+            return [*alternatives(left), *alternatives(right)]
+        case BinaryOperation(BinaryOp.AND, left, right) if has_paths(formula):
+            return [
+                [*some, *others] for some in alternatives(left) for others in alternatives(right)
+            ]
+        case _:
+            return [[formula]]
+
+
+def together(parts: Iterable[Expression]) -> Expression:
+    """One formula for parts that hold together."""
+    formula: Expression = Constant(1)
+    for part in parts:
+        formula = BinaryOperation(BinaryOp.AND, formula, part)
+    return formula
+
+
+def lasting_part(parts: Sequence[Expression]) -> PathFormula | None:
+    """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
+    match [part for part in parts if has_paths(part)]:
+        case [PathFormula(PathOp.POTENTIALLY_ALWAYS, body, _) as lasting] if not has_paths(body):
+            return lasting
+        case _:
+            return None
