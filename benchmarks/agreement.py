@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from benchmarks.ours import always_text, specification
 from benchmarks.peers.contest import CONTESTS, Contest, ask_peer
 from benchmarks.peers.environment import Environment
-from benchmarks.peers.positions import Cell, Question, answers, ask_engine
+from benchmarks.peers.positions import Question, answers, ask_engine
 from benchmarks.workload import Workload
 
 from rvmon import loads
@@ -24,6 +24,7 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked import TimeModel
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import UntranslatableError, names_in
+from rvmon.testing.peers.ways import Cell
 from rvmon.testing.walk import intervals
 from rvmon.verdict.verdict import Verdict
 
@@ -75,13 +76,13 @@ def check(workload: Workload, environment: Environment, *, traces: int) -> list[
     found = []
     for label, contest_name in CONTEST_OF.items():
         contest = CONTESTS[contest_name]
-        if contest.package not in environment.versions:
+        if contest.way.package not in environment.versions:
             continue
         if label == "rtamt" and _bound(workload) > RTAMT_BOUND:
             remark = f"not asked: its offline evaluation takes too long above {RTAMT_BOUND} rows"
             found.append(Agreement(label, workload.name, workload.form, remark=remark))
             continue
-        with Peer(environment.python, contest.worker) as peer:
+        with Peer(environment.python, contest.way.worker) as peer:
             found.append(_compare(workload, label, contest, peer, questions, ours, failures))
     return found
 

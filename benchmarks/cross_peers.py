@@ -23,6 +23,7 @@ from benchmarks.peers.positions import Judge, Question, answers, ask_engine, ask
 
 from rvmon.errors import RvmonError
 from rvmon.testing.peers.client import Peer, PeerError
+from rvmon.testing.peers.dialects import translate
 from rvmon.testing.show import show
 
 JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
@@ -69,7 +70,7 @@ def campaign(
 def _questions(contest: Contest, tally: Tally, seed: int) -> Iterator[Question]:
     number = 0
     while True:
-        dice = random.Random(f"{seed}/{contest.name}/{number}")
+        dice = random.Random(f"{seed}/{contest.way.name}/{number}")
         number += 1
         question, reason = random_question(dice, contest)
         if question is None:
@@ -100,7 +101,8 @@ def _show(
     contest: Contest, question: Question, ours: list[bool | None], theirs: list[bool | None]
 ) -> str:
     width = max(6, *(len(name) for name in question.columns))
-    lines = [f"{show(question.formula)}   as   {contest.text(question.formula)}"]
+    asked = translate(question.formula, contest.way.dialect)
+    lines = [f"{show(question.formula)}   as   {asked}"]
     rows = {**question.columns, "ours": ours, "theirs": theirs}
     for name, column in rows.items():
         cells = ["." if value is None else f"{value:g}" for value in column]
@@ -127,15 +129,16 @@ def main(argv: list[str]) -> int:
     failed = False
     for name in options.only:
         contest = CONTESTS[name]
-        if contest.package in environment.missing:
-            print(f"{name}: {contest.package} is missing: {environment.missing[contest.package]}")
+        if contest.way.package in environment.missing:
+            reason = environment.missing[contest.way.package]
+            print(f"{name}: {contest.way.package} is missing: {reason}")
             continue
         began = time.perf_counter()
-        with Peer(environment.python, contest.worker) as peer:
+        with Peer(environment.python, contest.way.worker) as peer:
             tally = campaign(contest, peer, judges, options.pairs, options.seed)
-        version = environment.versions[contest.package]
+        version = environment.versions[contest.way.package]
         seconds = time.perf_counter() - began
-        print(f"{name} ({contest.package} {version}), seed {options.seed}, {seconds:.0f} s")
+        print(f"{name} ({contest.way.package} {version}), seed {options.seed}, {seconds:.0f} s")
         print(f"  pairs {tally.pairs}, refused {sum(tally.refused.values())}")
         print("  ticks ours / theirs:", ", ".join(f"{k} {n}" for k, n in tally.ticks.most_common()))
         for text, count in tally.errors.most_common(5):

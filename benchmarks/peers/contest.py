@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from benchmarks.peers.positions import Cell, Question
+from benchmarks.peers.positions import Question
 
 from rvmon.spec.checked import (
     Binary,
@@ -16,142 +16,54 @@ from rvmon.spec.checked import (
     Formula,
     Literal,
     SignalValue,
-    TimeModel,
     Unary,
 )
 from rvmon.testing.dice import chance, pick
 from rvmon.testing.generate_formula import Shape, formula
-from rvmon.testing.peers import dialects
 from rvmon.testing.peers.client import Peer
 from rvmon.testing.peers.core import UntranslatableError, names_in
-from rvmon.testing.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
+from rvmon.testing.peers.dialects import translate
+from rvmon.testing.peers.ways import WAYS, Way, truths
 from rvmon.testing.shrink import smaller_formulas
 from rvmon.testing.vocabulary import CARRIER, EVENTS, NUMBERS
 
 
 @dataclass(frozen=True, slots=True)
 class Contest:
-    """One way to compare with one peer.
+    """A way to ask a peer, and what it is asked.
 
     Attributes:
-        name: for the command line.
-        package: its name in the package index.
-        worker: of the module that asks it.
-        kind: what the worker is told of time and semantics.
-        dialect: the language.
-        time: our time model.
+        way: who and how.
         shape: what the formulas hold.
-        sign: whether the peer answers with a robustness, whose sign counts; 0 says nothing.
     """
 
-    name: str
-    package: str
-    worker: str
-    kind: str
-    dialect: Dialect
-    time: TimeModel
+    way: Way
     shape: Shape
-    sign: bool = False
-
-    def text(self, asked: Formula) -> str:
-        """The formula in the peer's language."""
-        return translate(asked, self.dialect)
 
 
 _EVENTS = (*EVENTS, CARRIER)
 _PAST = Shape(future=False, numbers=False)
 _FUTURE = Shape(past=False, numbers=False)
 _BOTH = Shape(numbers=False)
-
-CONTESTS = {
-    contest.name: contest
-    for contest in (
-        Contest(
-            "reelay-discrete",
-            "reelay",
-            "reelay",
-            "discrete",
-            dialects.REELAY_DISCRETE,
-            TimeModel.SAMPLED,
-            replace(_PAST, step=True),
-        ),
-        Contest(
-            "reelay-discrete-robustness",
-            "reelay",
-            "reelay",
-            "discrete robustness",
-            dialects.REELAY_ROBUSTNESS,
-            TimeModel.SAMPLED,
-            replace(_PAST, step=True),
-            sign=True,
-        ),
-        Contest(
-            "reelay-dense",
-            "reelay",
-            "reelay",
-            "dense",
-            dialects.REELAY_DENSE,
-            TimeModel.HELD,
-            _PAST,
-        ),
-        Contest(
-            "reelay-dense-robustness",
-            "reelay",
-            "reelay",
-            "dense robustness",
-            dialects.REELAY_DENSE_ROBUSTNESS,
-            TimeModel.HELD,
-            _PAST,
-            sign=True,
-        ),
-        Contest(
-            "rtamt-discrete",
-            "rtamt",
-            "rtamt",
-            "discrete",
-            dialects.RTAMT_DISCRETE,
-            TimeModel.SAMPLED,
-            replace(_BOTH, step=True),
-            sign=True,
-        ),
-        Contest(
-            "rtamt-dense",
-            "rtamt",
-            "rtamt",
-            "dense",
-            dialects.RTAMT_DENSE,
-            TimeModel.HELD,
-            _BOTH,
-            sign=True,
-        ),
-        Contest(
-            "mstlo-delayed",
-            "mstlo-python",
-            "mstlo",
-            "DelayedQualitative",
-            dialects.MSTLO,
-            TimeModel.HELD,
-            _FUTURE,
-        ),
-        Contest(
-            "mstlo-robustness",
-            "mstlo-python",
-            "mstlo",
-            "DelayedQuantitative",
-            dialects.MSTLO,
-            TimeModel.HELD,
-            _FUTURE,
-            sign=True,
-        ),
-    )
+_SHAPES = {
+    "reelay-discrete": replace(_PAST, step=True),
+    "reelay-discrete-robustness": replace(_PAST, step=True),
+    "reelay-dense": _PAST,
+    "reelay-dense-robustness": _PAST,
+    "rtamt-discrete": replace(_BOTH, step=True),
+    "rtamt-dense": _BOTH,
+    "mstlo-delayed": _FUTURE,
+    "mstlo-robustness": _FUTURE,
 }
+
+CONTESTS = {name: Contest(WAYS[name], shape) for name, shape in _SHAPES.items()}
 
 
 def random_question(dice: random.Random, contest: Contest) -> tuple[Question | None, str]:
     """A formula that the peer can say, and a trace; or no question and the reason."""
     asked = _with_numbers(dice, formula(dice, contest.shape, dice.randint(1, 3)))
     try:
-        contest.text(asked)
+        translate(asked, contest.way.dialect)
     except UntranslatableError as error:
         return None, str(error)
     ticks = dice.randint(2, 24)
@@ -162,7 +74,7 @@ def random_question(dice: random.Random, contest: Contest) -> tuple[Question | N
         else:
             columns[name] = list(_walk(dice, ticks, lambda: chance(dice, 50)))
     events = frozenset(_EVENTS) & columns.keys()
-    return Question(asked, columns, events, contest.time), ""
+    return Question(asked, columns, events, contest.way.time), ""
 
 
 def _with_numbers(dice: random.Random, asked: Formula) -> Formula:
@@ -198,19 +110,7 @@ def ask_peer(contest: Contest, peer: Peer, question: Question) -> list[bool | No
         PeerError: it has none.
         UntranslatableError: it cannot be asked.
     """
-    ticks = question.ticks
-    columns: dict[str, list[Cell]] = {
-        spelling(name): list(column) for name, column in question.columns.items()
-    }
-    columns[spelling("start")] = [tick == 0 for tick in range(ticks)]
-    columns[spelling(ALWAYS_ONE)] = [True] * ticks
-    text = contest.text(question.formula)
-    used = {name: column for name, column in columns.items() if name in text}
-    answer = peer.ask("judge", formula=text, kind=contest.kind, columns=used)
-    values = answer["values"]
-    if contest.sign:
-        return [None if value is None or value == 0 else value > 0 for value in values]
-    return [None if value is None else bool(value) for value in values]
+    return truths(contest.way, peer, question.formula, question.columns)
 
 
 def shrink(question: Question, shows: Callable[[Question], bool]) -> Question:

@@ -12,12 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from benchmarks.peers.environment import Environment, prepare
-from benchmarks.peers.positions import Cell, Columns, Question, answers, ask_oracle
+from benchmarks.peers.positions import Question, answers, ask_oracle
 
 from rvmon.spec.checked import Formula, TimeModel
 from rvmon.testing.build import always, compared, eventually, fall, no, once, p, previous, q, two, x
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.dialects import spelling
+from rvmon.testing.peers.ways import Cell, Columns
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from rvmon.spec.checked import (
@@ -16,6 +16,7 @@ from rvmon.spec.checked import (
     TimeModel,
     Type,
 )
+from rvmon.testing.peers.ways import Columns
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt, Decision
@@ -24,10 +25,6 @@ from rvmon.verdict.verdict import Verdict
 
 ROW = "row"
 """The event of every sample, which starts an attempt."""
-
-Cell = bool | float | None
-Columns = Mapping[str, Sequence[Cell]]
-"""The value of each name at each tick, from tick 0 on; of an event, whether it occurs."""
 
 
 @dataclass(frozen=True, slots=True)
