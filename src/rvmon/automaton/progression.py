@@ -6,6 +6,7 @@ from bisect import bisect_right
 
 from rvmon.automaton.location import NOW, Location, location_of, normalise
 from rvmon.automaton.machine import Token
+from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, holds
 from rvmon.formula.core import Literal, Temporal
 from rvmon.formula.progress import after, step, value
@@ -14,8 +15,18 @@ from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Residual
 _CACHE_LIMIT = 20_000
 """Edges that are kept; with more, all are forgotten (they can be made again)."""
 
+MOST_CLOCKS = 256
+"""Obligations with an age of their own that one attempt may owe at once.
+
+A window above 0 that is started anew at every tick of held time would need one for every tick.
+"""
+
 Edge = tuple[int, tuple[int, ...]]
 """Target and the sources of its clocks."""
+
+
+class TooManyObligationsError(RvmonError):
+    """An attempt cannot be judged by progression within bounded memory."""
 
 
 class Progression:
@@ -26,10 +37,15 @@ class Progression:
     Args:
         owed: what an attempt owes, as `X` of it: an attempt starts before its trigger's position.
         alphabet: of that formula.
+        name: of the requirement, for messages.
+
+    Raises:
+        TooManyObligationsError: in a step, if an attempt owes more than `MOST_CLOCKS` at once.
     """
 
-    def __init__(self, owed: Temporal, alphabet: Alphabet) -> None:
+    def __init__(self, owed: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
         self.alphabet = alphabet
+        self._name = name
         self._locations: list[Location] = []
         self._index: dict[Residual, int] = {}
         self._edges: dict[tuple[int, tuple[int, ...], int], Edge] = {}
@@ -69,6 +85,12 @@ class Progression:
 
         reached = step(self._locations[index].residual, ages, read)
         residual, sources = normalise(reached, len(ages))
+        if len(sources) > MOST_CLOCKS:
+            raise TooManyObligationsError(
+                f"an attempt of {self._name} owes more than {MOST_CLOCKS} obligations at once: a "
+                "window that does not begin at 0 is started anew at every position. Begin the "
+                "window at 0, start it `upon` an event, or use `time sampled`"
+            )
         return self._location(residual), sources
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:

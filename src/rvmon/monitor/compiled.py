@@ -110,7 +110,7 @@ class CompiledRequirement:
 
     @cached_property
     def _progression(self) -> Progression:
-        return Progression(self._owed, self.alphabet)
+        return Progression(self._owed, self.alphabet, self.requirement.id)
 
     def machine(self, engine: str) -> Machine:
         """The machine that judges its attempts.

@@ -36,3 +36,14 @@ def test_engines_agree_with_the_law(name, engine):
         monitor.step_ns(t, values)
     law = oracle.evaluate(spec, [Sample(t, values) for t, values in samples], end=end)
     assert not differences(law, monitor.finish_ns(end))
+
+
+def test_what_cannot_be_judged_within_bounds_says_so():
+    """A window above 0 that is started at every tick ends in a message, not in a hang."""
+    spec = rvmon.loads(
+        "spec s\nsignal a : bool\nevent b\nrequirement R1\n  always (a -> F[2 s, 5 s] b)\n"
+    )
+    monitor = spec.monitor()
+    monitor.step(0, {"a": True})
+    with pytest.raises(rvmon.RvmonError, match="an attempt of R1 owes more than 256 obligations"):
+        monitor.step(1, {"a": False})
