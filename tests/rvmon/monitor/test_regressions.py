@@ -29,7 +29,8 @@ def test_engines_agree_with_the_law(name, engine):
     """Each engine gives the oracle's verdicts and decision instants."""
     time, requirement, samples, end = CASES[name]
     spec = rvmon.loads(
-        f"spec s\ntime {time}\nsignal p, q : bool\nevent e\nevent g(k: int)\nrequirement R1\n  {requirement}\n"
+        f"spec s\ntime {time}\nsignal p, q : bool\nevent e\nevent g(k: int)\n"
+        f"requirement R1\n  {requirement}\n"
     )
     monitor = spec.monitor(engine=engine)
     for t, values in samples:
