@@ -72,9 +72,20 @@ def mutants(path: Path, lines: set[int]) -> Iterator[Mutant]:
         if not isinstance(function, ast.FunctionDef):
             continue
         for statement in function.body:
-            for node in ast.walk(statement):
+            for node in _executed(statement):
                 if getattr(node, "lineno", None) in lines:
                     yield from _mutants_at(path, source, node)
+
+
+def _executed(node: ast.AST) -> Iterator[ast.AST]:
+    """The node and all below it but for annotations and functions (they are met by themselves)."""
+    yield node
+    for name, field in ast.iter_fields(node):
+        if name in ("annotation", "returns"):
+            continue
+        for child in field if isinstance(field, list) else [field]:
+            if isinstance(child, ast.AST) and not isinstance(child, ast.FunctionDef):
+                yield from _executed(child)
 
 
 def _mutants_at(path: Path, source: str, node: ast.AST) -> Iterator[Mutant]:
