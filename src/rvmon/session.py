@@ -123,19 +123,50 @@ class Spec:
             trace: a path (`.csv`, `.jsonl`), columns by name (arrays, an Arrow table), a
                 `Recording`, or an iterable of `(t, values)` with t in seconds.
             time: the time column of columns; if its name ends in `_ns`, integer ticks.
-            engine: `auto` or the name of one.
+            engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
+                that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
 
         Raises:
             TraceError: the trace cannot be read; place and cause are named.
         """
+        chosen = None if only is None else tuple(only)
+        end = None if until is None else ticks_of_seconds(until)
+        report = self._evaluate_arrays(trace, time, engine, chosen, end)
+        if report is not None:
+            return report
         recording = self.recording(trace, time=time)
-        monitor = self.monitor(only=only, engine=engine, sources=recording.names)
+        if engine == "c":
+            from rvmon.monitor.batch_c import evaluate_recording
+
+            return evaluate_recording(self._compiled, recording, only=chosen, until=end)
+        monitor = self.monitor(only=chosen, engine=engine, sources=recording.names)
         for sample in recording:
             monitor.step_ns(sample.t, sample.values)
-        end = recording.end if until is None else ticks_of_seconds(until)
-        return monitor.finish_ns(end)
+        return monitor.finish_ns(recording.end if end is None else end)
+
+    def _evaluate_arrays(
+        self, trace: Any, time: str, engine: str, only: tuple[str, ...] | None, until: int | None
+    ) -> Report | None:
+        """The fast way for NumPy arrays and Arrow tables; `None` where it does not lead."""
+        if not (hasattr(trace, "column_names") or isinstance(trace, Mapping)):
+            return None
+        from rvmon.monitor.batch import arrays_of, can_batch, evaluate_columns
+
+        arrays = arrays_of(trace, self.checked, time)
+        if arrays is None:
+            return None
+        times, columns = arrays
+        if engine == "c":
+            from rvmon.monitor.batch_c import evaluate_arrays
+
+            return evaluate_arrays(self._compiled, columns, times, only=only, until=until)
+        if not can_batch(self._compiled, only):
+            return None
+        return evaluate_columns(
+            self._compiled, columns, times, only=only, engine=engine, until=until
+        )
 
     def recording(self, trace: Any, *, time: str = "t") -> Recording:
         """Whatever `evaluate` takes as a trace, as a recording.

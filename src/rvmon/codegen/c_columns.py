@@ -1,0 +1,74 @@
+"""Samples as the columns of a compiled monitor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rvmon.codegen.c_batch import NO, UNKNOWN, YES, Column
+from rvmon.codegen.c_names import Names
+from rvmon.errors import TraceError
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.time import format_ticks
+
+
+def columns_of_samples(samples: Sequence[Sample], names: Names) -> dict[str, Column]:
+    """One row per sample.
+
+    Args:
+        samples: with values that the specification can take.
+        names: of the compiled plan.
+
+    Raises:
+        TraceError: an instant has two payloads of one event, or an undeclared name.
+    """
+    return _Columns(names, len(samples)).of(samples)
+
+
+class _Columns:
+    def __init__(self, names: Names, count: int) -> None:
+        plan = names.plan
+        self.names = names
+        self.states = {name: np.zeros(count, np.uint8) for name in (*plan.signals, *plan.events)}
+        self.values = {name: np.zeros(count) for name in plan.signals}
+        self.values |= {f"{event}.{field}": np.full(count, np.nan) for event, field in names.fields}
+
+    def of(self, samples: Sequence[Sample]) -> dict[str, Column]:
+        for row, sample in enumerate(samples):
+            for name, value in sample.values.items():
+                if name not in self.states:
+                    raise TraceError(f"sample at {format_ticks(sample.t)}: no name `{name}`")
+                if name in self.names.plan.signals:
+                    self.set_signal(name, row, value)
+                else:
+                    self.set_event(name, row, value, sample.t)
+        return {
+            name: Column(self.states.get(name), self.values.get(name))
+            for name in (*self.states, *self.values)
+        }
+
+    def set_signal(self, name: str, row: int, value: Any) -> None:
+        known = value is not None and value == value
+        self.states[name][row] = YES if known else UNKNOWN
+        if known:
+            self.values[name][row] = _number(value, self.names)
+
+    def set_event(self, event: str, row: int, value: Value, t: int) -> None:
+        if isinstance(value, tuple):
+            if len(value) > 1:
+                raise TraceError(
+                    f"sample at {format_ticks(t)}: {len(value)} payloads of `{event}`: compiled "
+                    "monitors take one at an instant"
+                )
+            value = value[0] if value else False
+        self.states[event][row] = UNKNOWN if value is None else NO if value is False else YES
+        if isinstance(value, Mapping):
+            for field, scalar in value.items():
+                if scalar is not None:
+                    self.values[f"{event}.{field}"][row] = _number(scalar, self.names)
+
+
+def _number(value: Scalar, names: Names) -> float:
+    return float(names.label(value) if isinstance(value, str) else value or 0)

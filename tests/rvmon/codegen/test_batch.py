@@ -1,0 +1,151 @@
+"""Columns of arrays: judged as the same samples one by one."""
+
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.monitor import batch
+
+SPEC = """
+spec watch "A base"
+time {time}
+signal p : bool
+signal speed : real [m/s]  stale after 400 ms
+signal load : real
+signal count : int
+event stop
+event go
+requirement R1 "a"
+  upon stop
+  then within 1 s speed < 0.2 m/s
+requirement R2 "b"
+  whenever p and once[100 ms, 900 ms] go
+  then within 700 ms load * 2 + 1 < 1.5
+requirement R3 "c"
+  always (count >= 3 -> within 1 s (count < 1 or stop))
+requirement R4 "d"
+  upon rise(p)
+  then within 500 ms (abs(load) > 0.7 or not known(speed))
+requirement R5 "e"
+  whenever hypot(load, load / 2) > 0.9
+  then held(p, 300 ms) or min(load, 0.4) < 0.1 {extra}
+"""
+
+
+def recording(seed: int, rows: int = 3000) -> dict[str, np.ndarray]:
+    """Random walks at 20 Hz with gaps, jitter and unknown values."""
+    dice = np.random.default_rng(seed)
+    t = np.cumsum(dice.choice([0.05, 0.0499999995, 0.6, 3e-9], rows, p=[0.6, 0.3, 0.05, 0.05]))
+    speed = np.abs(np.cumsum(dice.normal(0, 0.02, rows)))
+    speed[dice.random(rows) < 0.01] = np.nan
+    return {
+        "t": t,
+        "p": np.repeat(dice.random(rows // 10 + 1) < 0.5, 10)[:rows],
+        "speed": speed,
+        "load": np.round(dice.random(rows), 1),
+        "count": np.repeat(dice.integers(0, 5, rows // 7 + 1), 7)[:rows],
+        "stop": dice.random(rows) < 0.01,
+        "go": dice.random(rows) < 0.05,
+        "unheard": np.zeros(rows),
+    }
+
+
+def one_by_one(spec: rvmon.Spec, columns: dict[str, np.ndarray]) -> rvmon.Report:
+    """The report of the slow way: lists take it."""
+    return spec.evaluate({name: column.tolist() for name, column in columns.items()})
+
+
+@pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
+@pytest.mark.parametrize("extra", ["", "or delta(count) > 2"])
+def test_the_report_is_that_of_the_samples(time, extra, monkeypatch):
+    """Verdicts, records, reasons and health are the same, whatever rows are passed over."""
+    monkeypatch.setattr(batch, "CHUNK", 517)
+    spec = rvmon.loads(SPEC.format(time=time, extra=extra))
+    columns = recording(3)
+    slow, fast = one_by_one(spec, columns), spec.evaluate(columns)
+    assert fast == slow
+    assert {"P", "F"} <= {attempt.verdict for attempt in fast.attempts}
+    # Where each row is a position and updates all, nothing is found to be stale at one.
+    unknown = {"nan"} if time == "sampled" else {"nan", "stale"}
+    assert {entry.kind for entry in fast.health} >= unknown
+
+
+def test_most_rows_are_passed_over(monkeypatch):
+    """A recording that changes nothing costs a look at its arrays."""
+    spec = rvmon.loads(SPEC.format(time="held", extra="").replace("stale after 400 ms", ""))
+    columns = recording(4) | {"load": np.linspace(0, 0.1, 3000), "p": np.zeros(3000, bool)}
+    columns |= {"stop": np.zeros(3000, bool), "go": columns["t"] < 0, "count": np.zeros(3000, int)}
+    columns["speed"] = np.linspace(0.3, 0.4, 3000)
+    taken = []
+    real = batch._rows_that_matter
+    monkeypatch.setattr(
+        batch, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
+    )
+    assert spec.evaluate(columns) == one_by_one(spec, columns)
+    assert sum(taken) < 20
+
+
+def test_times_are_rounded_as_everywhere():
+    """Seconds become ticks one rounding at a time, halves to the even one."""
+    dice = np.random.default_rng(5)
+    seconds = np.concatenate(
+        [dice.random(2000) * 1e9, dice.random(2000), [0.5e-9, 1.5e-9, 2.5e-9, -0.5e-9, 4e6 + 0.3]]
+    )
+    from rvmon.trace.time import ticks_of_seconds
+
+    exact = [ticks_of_seconds(float(value)) for value in seconds]
+    assert batch._ticks_of_column(seconds).tolist() == exact
+
+
+def test_disorder_and_wrong_columns_are_refused_as_ever():
+    """What the arrays do not fit goes the slow way, which names the trouble."""
+    spec = rvmon.loads(SPEC.format(time="held", extra=""))
+    columns = recording(6, 50)
+    with pytest.raises(rvmon.TimeOrderError):
+        spec.evaluate(columns | {"t": columns["t"][::-1].copy()})
+    with pytest.raises(rvmon.TraceError, match="length"):
+        spec.evaluate(columns | {"p": columns["p"][:-1]})
+    with pytest.raises(rvmon.TraceError, match="True or False"):
+        spec.evaluate(columns | {"p": columns["load"]})
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
+def test_the_engine_c_agrees(time, tmp_path, monkeypatch):
+    """Compiled C gives the same attempts; what it has not are reasons and health."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    spec = rvmon.loads(SPEC.format(time=time, extra="or delta(count) > 2"))
+    columns = recording(7)
+    slow = one_by_one(spec, columns)
+    samples = [
+        (float(t), {"p": bool(p), "stop": bool(e)})
+        for t, p, e in zip(columns["t"], columns["p"], columns["stop"], strict=True)
+    ]
+    for expected, report in (
+        (slow, spec.evaluate(columns, engine="c")),
+        (spec.evaluate(samples), spec.evaluate(samples, engine="c")),
+    ):
+        assert report.verdicts == expected.verdicts
+        assert (report.origin, report.end) == (expected.origin, expected.end)
+        assert [bare(one) for one in report.attempts] == [bare(one) for one in expected.attempts]
+    assert len(list((tmp_path / "rvmon").iterdir())) == 1
+
+
+def bare(attempt: rvmon.Attempt) -> rvmon.Attempt:
+    """A record without what only the engines of this process say."""
+    return replace(
+        attempt, reason="", deadline=None, at_trigger={}, at_decision={}, owed="", blame=None
+    )
+
+
+def test_a_cache_that_others_can_write_is_refused(tmp_path, monkeypatch):
+    """Nothing is loaded from where someone else could have put it."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "rvmon").mkdir()
+    (tmp_path / "rvmon").chmod(0o777)
+    spec = rvmon.loads(SPEC.format(time="held", extra=""))
+    with pytest.raises(rvmon.RvmonError, match=r"written by others|no C compiler"):
+        spec.evaluate(recording(8, 20), engine="c")
