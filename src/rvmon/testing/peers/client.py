@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -60,7 +61,8 @@ class Peer:
             return
         process, self._process = self._process, None
         if process.stdin is not None:
-            process.stdin.close()
+            with suppress(BrokenPipeError):  # what a dead process has not read
+                process.stdin.close()
         process.wait()
         if process.stdout is not None:
             process.stdout.close()
