@@ -258,9 +258,8 @@ def _as_python_compares(values: NDArray[Any] | None) -> NDArray[Any] | None:
         return values
     if values.dtype.kind == "f":
         return values.astype(np.float64)
-    if values.dtype.kind == "i" and len(values) and np.abs(values.astype(np.float64)).max() < 2**53:
-        return values.astype(np.int64)
-    return None
+    exact = values.dtype.kind == "i" and bool((np.abs(values.astype(np.float64)) < 2**53).all())
+    return values.astype(np.int64) if exact else None
 
 
 def _known(values: Any) -> Any:
