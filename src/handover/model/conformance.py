@@ -9,7 +9,15 @@ if TYPE_CHECKING:
     from rvmon.timed.conformance import Conformance, Recorded
     from rvmon.timed.model import Network
 
-OBSERVED = ("grip_closed", "informed", "sensed", "withheld", "released", "timed_out")
+OBSERVED = (
+    "grip_closed",
+    "informed",
+    "sensed",
+    "decided",
+    "withheld",
+    "released",
+    "timed_out",
+)
 """The robot's messages that are labels of the network; what the human does is not watched.
 
 So a run conforms if some human of the model would have made the robot of the model say the same

@@ -13,8 +13,9 @@ from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
     from rvmon.timed.model import Network
+    from rvmon.timed.observation import Observation
     from rvmon.timed.outcome import Outcome
-    from rvmon.timed.search import Watch
+    from rvmon.timed.search import Budget, Watch
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -31,6 +32,31 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--query", metavar="Q", action="append", help="a query or the id of one (default: all)"
     )
+    parser.add_argument(
+        "--spec", metavar="SPEC", help="check a specification's requirements on all runs instead"
+    )
+    parser.add_argument(
+        "--bind",
+        metavar="NAME=EXPR",
+        action="append",
+        default=[],
+        help="what a signal of the specification is in the model",
+    )
+    parser.add_argument(
+        "--suite",
+        choices=("locations", "edges", "edge-pairs"),
+        help="instead show few runs that go through all of these",
+    )
+    parser.add_argument(
+        "--simulate",
+        metavar="N",
+        type=int,
+        help="instead of deciding, count what N random runs do: figures, not proofs",
+    )
+    parser.add_argument(
+        "--until", metavar="UNITS", type=int, help="length of simulated runs, for unbounded queries"
+    )
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of simulated runs")
     parser.add_argument(
         "--trace",
         choices=("shortest", "fastest", "likely"),
@@ -51,16 +77,27 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Decide, show, and return the exit code."""
     from rvmon.timed.load import load_network
-    from rvmon.timed.outcome import Policy
-    from rvmon.timed.queries import chosen_queries
     from rvmon.timed.search import Budget
-    from rvmon.timed.verify import verify
 
     constants = dict(_constant(text) for text in arguments.const)
     network = load_network(arguments.model, constants=constants)
     _show_warnings(network)
-    queries = chosen_queries(network, arguments.query)
     budget = Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
+    if arguments.spec is not None:
+        return _check_spec(network, arguments, budget)
+    if arguments.suite is not None:
+        return _show_suite(network, arguments, budget)
+    if arguments.simulate is not None:
+        return _simulate(network, arguments)
+    return _decide(network, arguments, budget)
+
+
+def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
+    from rvmon.timed.outcome import Policy
+    from rvmon.timed.queries import chosen_queries
+    from rvmon.timed.verify import verify
+
+    queries = chosen_queries(network, arguments.query)
     outcomes = []
     with _shown() as watch:
         for query in queries:
@@ -113,6 +150,101 @@ def _print_json(network: Network, outcomes: Sequence[Outcome]) -> None:
     from rvmon.timed.describe import outcome_data
 
     print(json.dumps({"queries": [outcome_data(network, o) for o in outcomes]}, indent=2))
+
+
+# A specification.
+
+
+def _check_spec(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
+    from rvmon.session import load
+    from rvmon.timed.describe import observation_data
+    from rvmon.timed.observe import observe
+
+    spec = load(arguments.spec)
+    bindings = dict(_binding(text) for text in arguments.bind)
+    observations = []
+    with _shown() as watch:
+        for one in observe(network, spec.checked, bindings=bindings, budget=budget, watch=watch):
+            observations.append(one)
+            if arguments.format == "text":
+                _print_observation(one)
+    if arguments.format == "json":
+        print(json.dumps({"requirements": [observation_data(o) for o in observations]}, indent=2))
+    return int(any(not one.holds for one in observations))
+
+
+def _binding(text: str) -> tuple[str, str]:
+    name, _, value = text.partition("=")
+    if not name.strip() or not value.strip():
+        raise RvmonError(f"--bind {text}: expected NAME=EXPRESSION, such as 'open=Door.open'")
+    return name.strip(), value.strip()
+
+
+def _print_observation(one: Observation) -> None:
+    from rvmon.timed.describe import run_lines
+
+    word = {True: "holds on all runs", False: "fails on some run", None: "not decided"}[one.holds]
+    print(
+        f"{one.requirement}: {word}; {one.remark}" if one.remark else f"{one.requirement}: {word}"
+    )
+    if one.text:
+        print(f'    "{one.text}"')
+    print(f"    {one.statistics.visited:,} states, {one.statistics.seconds:.2f} s")
+    named = (("triggered", one.triggered), ("passes", one.passing), ("fails", one.failing))
+    for name, shown in named:
+        if shown is not None:
+            print(f"    {name}:")
+            for line in run_lines(one.network, shown):
+                print(f"      {line}")
+    print(flush=True)
+
+
+# Suites and simulation.
+
+
+def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
+    from rvmon.timed.describe import run_lines, suite_data
+    from rvmon.timed.suite import Criterion, build_suite, item_text
+
+    criterion = Criterion(arguments.suite)
+    with _shown() as watch:
+        suite = build_suite(network, criterion, budget=budget, watch=watch)
+    if arguments.format == "json":
+        print(json.dumps(suite_data(network, suite), indent=2))
+        return int(bool(suite.stopped))
+    for number, (shown, items) in enumerate(suite.runs, start=1):
+        print(f"run {number}, {len(items)} new:")
+        for line in run_lines(network, shown):
+            print(f"  {line}")
+    total = suite.covered + len(suite.missing)
+    print(f"{len(suite.runs)} runs go through {suite.covered} of {total} {criterion}")
+    for item in suite.missing:
+        print(f"  not reached: {item_text(network, item, criterion)}")
+    if suite.stopped:
+        print(f"  the search was cut short: {suite.stopped}")
+    return int(bool(suite.stopped))
+
+
+def _simulate(network: Network, arguments: argparse.Namespace) -> int:
+    from rvmon.timed.queries import chosen_queries
+    from rvmon.timed.simulate import estimate
+
+    if arguments.simulate < 1:
+        raise RvmonError(f"--simulate {arguments.simulate}: give a number of runs, at least 1")
+    answers = []
+    for query in chosen_queries(network, arguments.query):
+        found = estimate(
+            network, query, runs=arguments.simulate, seed=arguments.seed, until=arguments.until
+        )
+        answers.append({"query": query.text, "share": found.share, "low": found.low,
+                        "high": found.high, "runs": found.runs})  # fmt: skip
+        if arguments.format == "text":
+            print(" ".join(query.text.split()))
+            print(f"    {found.share:.4f} of {found.runs:,} simulated runs; ", end="")
+            print(f"with 95 % confidence from {found.low:.4f} to {found.high:.4f}")
+    if arguments.format == "json":
+        print(json.dumps({"simulated": answers}, indent=2))
+    return 0
 
 
 @contextmanager

@@ -7,8 +7,10 @@ from fractions import Fraction
 from typing import Any
 
 from rvmon.timed.model import Network, Variable
+from rvmon.timed.observation import Observation
 from rvmon.timed.outcome import Outcome
 from rvmon.timed.run import Action, Ending, Position, Run, RunStep, Window
+from rvmon.timed.suite import Suite, item_text
 from rvmon.trace.time import TICKS_PER_SECOND
 
 
@@ -117,6 +119,43 @@ def step_data(network: Network, step: RunStep) -> dict[str, Any]:
     }
 
 
+def run_data(network: Network, run: Run | None) -> list[dict[str, Any]] | None:
+    """The steps of a run as plain data."""
+    return None if run is None else [step_data(network, step) for step in run.steps]
+
+
+def observation_data(observation: Observation) -> dict[str, Any]:
+    """A requirement on all runs as plain data."""
+    network = observation.network
+    return {
+        "requirement": observation.requirement,
+        "holds": observation.holds,
+        "remark": observation.remark,
+        "triggered": run_data(network, observation.triggered),
+        "passing": run_data(network, observation.passing),
+        "failing": run_data(network, observation.failing),
+        "states": observation.statistics.visited,
+        "seconds": round(observation.statistics.seconds, 6),
+    }
+
+
+def suite_data(network: Network, suite: Suite) -> dict[str, Any]:
+    """A suite as plain data."""
+    criterion = suite.criterion
+    return {
+        "criterion": str(criterion),
+        "runs": [
+            {
+                "trace": run_data(network, run),
+                "items": [item_text(network, item, criterion) for item in items],
+            }
+            for run, items in suite.runs
+        ],
+        "missing": [item_text(network, item, criterion) for item in suite.missing],
+        "remark": suite.stopped,
+    }
+
+
 def outcome_data(network: Network, outcome: Outcome) -> dict[str, Any]:
     """The answer to a query as plain data; `trace` is `None` if there is no run to show."""
     run = outcome.run
@@ -127,7 +166,7 @@ def outcome_data(network: Network, outcome: Outcome) -> dict[str, Any]:
         "remark": outcome.remark,
         "policy": None if outcome.policy is None else str(outcome.policy),
         "start": None if run is None else position_data(network, run.start),
-        "trace": None if run is None else [step_data(network, step) for step in run.steps],
+        "trace": run_data(network, run),
         "ending": None if run is None else str(run.ending),
         "loop": None if run is None else run.loop,
         "states": outcome.statistics.visited,

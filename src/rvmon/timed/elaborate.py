@@ -6,16 +6,18 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import prod
 
-from rvmon.diagnostics import Severity
+from rvmon.diagnostics import Severity, Source, Span
 from rvmon.timed import syntax
 from rvmon.timed.automata import automaton_of, location_names
 from rvmon.timed.declare import Findings, Parts, declare
+from rvmon.timed.guards import is_discrete
 from rvmon.timed.instantiate import processes_of
-from rvmon.timed.model import Automaton, Expression, LeadsToFormula, Network, Query
+from rvmon.timed.model import Automaton, Expression, LeadsToFormula, Network, Query, Signal
 from rvmon.timed.parse import parse_query
 from rvmon.timed.resolve import Resolver, suggest
-from rvmon.timed.rules import finding
+from rvmon.timed.rules import finding, model_error
 from rvmon.timed.scope import AutomatonKey, AutomatonSymbol, Names, Scope
+from rvmon.timed.syntax import SignalText
 
 MAX_EDGES = 100_000
 """The most edges that a network may have once templates and selections are unrolled."""
@@ -52,6 +54,7 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
         findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
     names = Names(top, symbols)
     queries = _queries(document.queries, names, findings)
+    signals = _signals(document.signals, names, findings)
     _check_channels(parts, automata, findings)
     findings.raise_errors()
     return Network(
@@ -63,6 +66,7 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
         tuple(parts.channels),
         tuple(automata),
         queries,
+        signals,
         tuple(findings.found.values()),
         names,
     )
@@ -111,6 +115,31 @@ def _queries(
             meaning = _formula(query.formula, resolver, top)
             queries.append(Query(query.id, query.remark, query.text, meaning, query.span))
     return tuple(queries)
+
+
+def signal_on(network: Network, name: str, text: str) -> Signal:
+    """Give a name of specifications a meaning on a network.
+
+    Raises:
+        ModelError: the text is no expression over locations and variables.
+    """
+    findings = Findings()
+    written = SignalText(name, parse_query(text).formula, Span(Source(name, text), 0, len(text)))
+    signals = _signals([written], network.names, findings)
+    findings.raise_errors()
+    return signals[0]
+
+
+def _signals(written: Iterable[SignalText], names: Names, findings: Findings) -> tuple[Signal, ...]:
+    resolver, signals = Resolver(names.automata), []
+    for signal in written:
+        with findings.collect():
+            value = resolver.expression(signal.value, names.top)
+            if not is_discrete(value):
+                mend = "use locations and variables only"
+                raise model_error("TA009", "a signal with clocks or runs", signal.span, mend)
+            signals.append(Signal(signal.name, value))
+    return tuple(signals)
 
 
 def _formula(

@@ -273,11 +273,20 @@ class Query:
 
 
 @dataclass(frozen=True, slots=True)
+class Signal:
+    """A name of specifications for something of the network."""
+
+    name: str
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
 class Network:
     """Automata that run in parallel.
 
     Attributes:
         unit: ticks of one unit of time; `None` if the model names none.
+        signals: what specifications may call by name, read off locations and variables.
         warnings: what is odd about it but no error.
         names: what queries may refer to.
     """
@@ -290,5 +299,6 @@ class Network:
     channels: tuple[Channel, ...]
     automata: tuple[Automaton, ...]
     queries: tuple[Query, ...]
+    signals: tuple[Signal, ...]
     warnings: tuple[Diagnostic, ...] = field(compare=False)
     names: Names = field(compare=False, repr=False)

@@ -45,10 +45,12 @@ def parse_document(source: Source) -> Document:
     >>> parse_document(Source("tiny.ta", "automaton a { location l start l }")).templates[0].name
     'a'
     """
-    name, title, unit, declarations, templates, instances, system, queries = parse_part(
+    name, title, unit, declarations, templates, instances, system, queries, signals = parse_part(
         source.text, "document", lambda start, end: Span(source, start, end)
     )
-    return Document(source, name, title, unit, declarations, templates, instances, system, queries)
+    return Document(
+        source, name, title, unit, declarations, templates, instances, system, queries, signals
+    )
 
 
 def parse_query(text: str, name: str = "<query>") -> QueryText:

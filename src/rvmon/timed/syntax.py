@@ -346,6 +346,15 @@ class QueryText:
 
 
 @dataclass(frozen=True, slots=True)
+class SignalText:
+    """`signal name = value`: what a specification calls something of the model."""
+
+    name: str
+    value: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Document:
     """A whole model as written.
 
@@ -364,4 +373,5 @@ class Document:
     instances: tuple[Instance, ...]
     system: tuple[Name, ...] | None
     queries: tuple[QueryText, ...]
+    signals: tuple[SignalText, ...] = ()
     open_ints: bool = False

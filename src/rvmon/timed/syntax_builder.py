@@ -63,6 +63,7 @@ class SyntaxBuilder(Transformer[Token, Any]):
             _all(items, syntax.Instance),
             system,
             _all(items, syntax.QueryText),
+            _all(items, syntax.SignalText),
         )
 
     def unit(self, meta: Meta, items: Sequence[Token]) -> Tree[int]:
@@ -88,6 +89,9 @@ class SyntaxBuilder(Transformer[Token, Any]):
         remark = next((h[1:-1] for h in head if isinstance(h, Token)), "")
         text = formula.span.text
         return syntax.QueryText(str(identifier), remark, text, formula, self._span(meta))
+
+    def signal_item(self, meta: Meta, items: Sequence[Any]) -> syntax.SignalText:
+        return syntax.SignalText(str(items[0]), items[1], self._token_span(items[0]))
 
     # Automata.
 

@@ -76,3 +76,74 @@ def test_wrong_input_exits_with_2(arguments, message, capsys):
     error = capsys.readouterr().err
     assert message in error
     assert "Traceback" not in error
+
+
+LAMP = """
+unit 1 s
+clock x
+automaton Lamp {
+  location off
+  location on invariant x <= 8
+  start off
+  edge off -> on do x = 0 as pressed
+  edge on -> off when x >= 5 do x = 0 as dark weight 0.5
+}
+"""
+
+
+@pytest.fixture
+def lamp(tmp_path):
+    """A model and a specification of it."""
+    model, spec = tmp_path / "lamp.ta", tmp_path / "lamp.rv"
+    model.write_text(LAMP)
+    spec.write_text(
+        "spec lamp\ntime held\nsignal lit : bool\nevent pressed, dark\n"
+        "requirement OK\n  upon pressed then within 8 s dark\n"
+        "requirement BAD\n  upon pressed then for 6 s lit\n"
+    )
+    return str(model), str(spec)
+
+
+def test_requirements_on_all_runs(lamp, capsys):
+    """Each requirement is decided, with runs that trigger, pass and fail it."""
+    model, spec = lamp
+    assert main(["verify", model, "--spec", spec, "--bind", "lit=Lamp.on"]) == 1
+    out = capsys.readouterr().out
+    assert "OK: holds on all runs" in out
+    assert "BAD: fails on some run" in out
+    assert out.count("fails:") == 1
+    arguments = ["--spec", spec, "--bind", "lit=Lamp.on", "--format", "json"]
+    assert main(["verify", model, *arguments]) == 1
+    ok, bad = json.loads(capsys.readouterr().out)["requirements"]
+    assert (ok["holds"], ok["failing"]) == (True, None)
+    assert bad["failing"][-1]["state"]["locations"] == {"Lamp": "off"}
+
+
+def test_a_signal_that_is_not_bound_is_not_expressible(lamp, capsys):
+    """What the model does not have is said, and the exit code is 1."""
+    model, spec = lamp
+    assert main(["verify", model, "--spec", spec]) == 1
+    assert "not expressible: the network has no signal `lit`" in capsys.readouterr().out
+
+
+def test_suites(lamp, capsys):
+    """Few runs that go through all edges are shown, as text and as data."""
+    model, _ = lamp
+    assert main(["verify", model, "--suite", "edges"]) == 0
+    assert "1 runs go through 2 of 2 edges" in capsys.readouterr().out
+    assert main(["verify", model, "--suite", "edge-pairs", "--format", "json"]) == 0
+    suite = json.loads(capsys.readouterr().out)
+    assert suite["missing"] == []
+    assert suite["runs"][0]["trace"]
+
+
+def test_simulation(lamp, capsys):
+    """A share of simulated runs is given with its bounds, and called simulated."""
+    model, _ = lamp
+    words = ["verify", model, "--simulate", "200", "--query", "E<>[<=100] Lamp.on"]
+    assert main(words) == 0
+    assert "of 200 simulated runs; with 95 % confidence" in capsys.readouterr().out
+    assert main([*words, "--format", "json"]) == 0
+    (answer,) = json.loads(capsys.readouterr().out)["simulated"]
+    assert answer["low"] <= answer["share"] <= answer["high"]
+    assert main(["verify", model, "--simulate", "0"]) == 2
