@@ -15,7 +15,20 @@ from benchmarks.peers.environment import Environment, prepare
 from benchmarks.peers.positions import Question, answers, ask_oracle
 
 from rvmon.spec.checked import Formula, TimeModel
-from rvmon.testing.build import always, compared, eventually, fall, no, once, p, previous, q, two, x
+from rvmon.testing.build import (
+    always,
+    compared,
+    eventually,
+    fall,
+    historically,
+    no,
+    once,
+    p,
+    previous,
+    q,
+    two,
+    x,
+)
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.dialects import spelling
 from rvmon.testing.peers.ways import Cell, Columns
@@ -206,6 +219,17 @@ DIFFERENCES = (
         {"p": [_T, _F, _F, _F], "q": [_F, _T, _F, _F]},
         [_F, _F, _F, _F],
         two(p, "U", q, 0, 3),
+        TimeModel.HELD,
+    ),
+    Difference(
+        "rtamt",
+        "rtamt",
+        "dense",
+        "a first stretch of `since` with robustness -inf is lost: operators above do not see it",
+        f"historically[0:1]({_P} since (once[1:1]{_P}))",
+        {"p": [_T, _T, _T]},
+        [None, _T, _T],
+        historically(two(p, "S", once(p, 1, 1)), 0, 1),
         TimeModel.HELD,
     ),
     Difference(
