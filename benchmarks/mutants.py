@@ -48,7 +48,8 @@ def main(argv: Sequence[str]) -> int:
     options = _parse(argv)
     files = [file for path in options.paths for file in _python_files(Path(path))]
     executed = _executed_lines(files, options)
-    drawn = draw((m for f in files for m in mutants(f, executed.get(f, set()))), options)
+    found = (m for f in files for m in mutants(f, executed.get(f, set())))
+    drawn = draw((m for m in found if options.only in m.change), options)
     with tempfile.TemporaryDirectory() as directory:
         package = Path(directory) / "src" / "rvmon"
         shutil.copytree(ROOT / "src" / "rvmon", package)
@@ -67,6 +68,7 @@ def main(argv: Sequence[str]) -> int:
 def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("paths", nargs="+", help="files or folders of the engine")
+    parser.add_argument("--only", default="", help="changes that contain this text")
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--pairs", type=int, default=1_000)

@@ -195,7 +195,7 @@ def formula(dice: Dice, shape: Shape, depth: int) -> Formula:
         case "next":
             return Unary(UnaryOp.NEXT, formula(dice, shape, depth - 1))
         case "past unary":
-            return _past_unary(dice, below, depth)
+            return past_unary(dice, below, depth)
         case "since":
             return _two(dice, below, depth, BinaryOp.SINCE, interval(dice, shape))
         case _:
@@ -219,7 +219,8 @@ def _future_binary(dice: Dice, shape: Shape, depth: int) -> Formula:
     return _two(dice, shape, depth, op, interval(dice, shape, from_zero=from_zero))
 
 
-def _past_unary(dice: Dice, shape: Shape, depth: int) -> Formula:
+def past_unary(dice: Dice, shape: Shape, depth: int) -> Formula:
+    """A random unary past operator over a formula one less deep."""
     op = weighted(dice, _PAST_UNARY)
     operand = formula(dice, shape, depth - 1)
     if op is UnaryOp.HELD:

@@ -27,7 +27,13 @@ from rvmon.spec.checked import (
     TimeModel,
 )
 from rvmon.testing.dice import Dice, chance, pick, weighted
-from rvmon.testing.generate_formula import Shape, comparison, consequent, formula
+from rvmon.testing.generate_formula import (
+    Shape,
+    comparison,
+    consequent,
+    formula,
+    past_unary,
+)
 from rvmon.testing.pulse import is_pulse
 from rvmon.testing.vocabulary import BOOLS, CARRIER, EVENTS, FIELD, LABEL, NUMBERS, events, signals
 
@@ -92,7 +98,7 @@ def _stale(dice: Dice, profile: Profile) -> dict[str, int]:
 def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Requirement:
     captures = _captures(dice) if profile.captures and chance(dice, 12) else ()
     for_each = None
-    if profile.for_each and chance(dice, 6):
+    if profile.for_each and chance(dice, 9):
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
     instance = (for_each.name,) if for_each else ()
     shape = Shape(
@@ -141,10 +147,24 @@ def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
         compared = Compare(CompareOp.EQ, for_each.value, Captured(for_each.name))
         further = Binary(BinaryOp.AND, compared, formula(dice, shape, 1))
         options: tuple[Formula, ...] = (EventAtom(CARRIER), compared, further)
+        if shape.past:
+            earlier = past_unary(dice, shape, 1)
+            options += (
+                Binary(BinaryOp.AND, compared, earlier),
+                Binary(BinaryOp.OR, earlier, compared),
+            )
         return pick(dice, options)
     kind = weighted(
         dice,
-        ((30, "event"), (18, "event and"), (16, "level"), (12, "start"), (20, "any"), (4, "end")),
+        (
+            (28, "event"),
+            (16, "event and"),
+            (12, "level"),
+            (12, "start"),
+            (18, "any"),
+            (10 if shape.past else 0, "since when"),
+            (4, "end"),
+        ),
     )
     match kind:
         case "event":
@@ -158,5 +178,7 @@ def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
             return BoundAtom(Bound.START)
         case "any":
             return formula(dice, shape, dice.randint(1, 2))
+        case "since when":
+            return past_unary(dice, shape, 1)
         case _:
             return BoundAtom(Bound.END)
