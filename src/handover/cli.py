@@ -12,6 +12,7 @@ import sys
 from collections.abc import Sequence
 
 from rvmon.cli import guarded
+from rvmon.cli.numbers import positive
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -54,7 +55,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         help="of pseudorandom, constrained, model-based, directed (default: the first two)",
     )
     parser.add_argument(
-        "--tests", metavar="N", type=_positive, default=100, help="of each random strategy (100)"
+        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
     )
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
     parser.add_argument("--spec", metavar="FILE", help="judge by these requirements")
@@ -74,7 +75,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         epilog="example: handover demo --out out/demo",
     )
     parser.add_argument(
-        "--tests", metavar="N", type=_positive, default=100, help="of each random strategy (100)"
+        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
     )
     _add_common(parser)
     parser.set_defaults(run=_demo, command="demo", spec=None, no_monitors=False)
@@ -82,9 +83,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
-    parser.add_argument(
-        "--jobs", metavar="N", type=_positive, help="processes (default: all cores)"
-    )
+    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
     parser.add_argument("--out", metavar="DIR", help="write tables, tests and pages there")
 
 
@@ -101,13 +100,6 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
     parser.add_argument("--format", choices=("text", "json"), default="text")
     parser.set_defaults(run=_replay)
-
-
-def _positive(text: str) -> int:
-    number = int(text) if text.isascii() and text.isdigit() else 0
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, not {text}")
-    return number
 
 
 def _run(arguments: argparse.Namespace) -> int:

@@ -36,11 +36,11 @@ DEMO_ROBOTS = ("legacy", "correct")
 def run_campaign(arguments: argparse.Namespace) -> int:
     """Run `handover run` and return its exit code."""
     robots = ("legacy" if arguments.legacy else "correct",)
-    summary, results = _campaign(robots, _strategies(arguments.strategy), arguments)
+    summary = _campaign(robots, _strategies(arguments.strategy), arguments)
     if arguments.format == "json":
         print(to_json(table_document(summary)).decode(), end="")
     else:
-        _show(summary, results)
+        _show(summary)
     if summary.cut_short:
         return _exit_code(summary)
     return int(arguments.strict and not _all_well(summary))
@@ -48,8 +48,8 @@ def run_campaign(arguments: argparse.Namespace) -> int:
 
 def run_demo(arguments: argparse.Namespace) -> int:
     """Run `handover demo` and return its exit code."""
-    summary, results = _campaign(DEMO_ROBOTS, DEMO_STRATEGIES, arguments)
-    _show(summary, results)
+    summary = _campaign(DEMO_ROBOTS, DEMO_STRATEGIES, arguments)
+    _show(summary)
     if arguments.out:
         print(f"Look at {Path(arguments.out) / REPORT}")
     return _exit_code(summary)
@@ -61,7 +61,7 @@ def _exit_code(summary: CampaignSummary) -> int:
 
 def _campaign(
     robots: Sequence[str], strategies: Sequence[str], arguments: argparse.Namespace
-) -> tuple[CampaignSummary, Results]:
+) -> CampaignSummary:
     """Plan, load the requirements, play, count, write."""
     from rich.console import Console
 
@@ -90,7 +90,7 @@ def _campaign(
             write_tables(folder, summary)
             write_tests(folder, results)
             write_pages(folder, summary, results, specs, _again(arguments))
-    return summary, results
+    return summary
 
 
 def _told(what: str, console: Console) -> AbstractContextManager[object]:
@@ -124,18 +124,17 @@ def _execute(chosen: Plan, jobs: int | None, console: Console) -> Results:
         return execute(chosen, jobs=jobs, progress=lambda count: bar.advance(task, count))
 
 
-def _show(summary: CampaignSummary, results: Results) -> None:
+def _show(summary: CampaignSummary) -> None:
     from rich.console import Console
 
     console = Console(highlight=False)
     if not sys.stdout.isatty():
         console = Console(highlight=False, width=100)
     print_summary(summary, console)
-    stepped = sum(one.stepped_s for one in results.outcomes)
-    simulated = sum(one.simulated_s for one in results.outcomes)
     console.print(
-        f"{summary.finished} tests in {summary.seconds:.1f} s: {simulated:,.0f} s simulated, "
-        f"{stepped:,.0f} s of them with physics, the rest at rest and jumped over."
+        f"{summary.finished} tests in {summary.seconds:.1f} s: "
+        f"{summary.simulated_s:,.0f} s simulated, "
+        f"{summary.stepped_s:,.0f} s of them with physics, the rest at rest and jumped over."
     )
     if summary.cut_short:
         console.print(

@@ -49,11 +49,6 @@ def report_page(
 
 
 def _header(summary: CampaignSummary) -> ET.Element:
-    stepped = sum(
-        strategy.stepped_s
-        for figures in summary.robots.values()
-        for strategy in figures.strategies.values()
-    )
     robots = " and ".join(ROBOTS[robot].lower() for robot in summary.robots)
     partial = None
     if summary.cut_short:
@@ -73,7 +68,7 @@ def _header(summary: CampaignSummary) -> ET.Element:
         e(
             "p",
             {"class": "soft"},
-            f"{robots}; seed {summary.seed}; {stepped:,.0f} s of physics "
+            f"{robots}; seed {summary.seed}; {summary.stepped_s:,.0f} s of physics "
             f"in {summary.seconds:.1f} s",
         ),
         partial,

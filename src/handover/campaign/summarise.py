@@ -62,6 +62,8 @@ def summarise(
         finished=len(results.outcomes),
         cut_short=results.cut_short,
         seconds=results.seconds,
+        stepped_s=sum(one.stepped_s for one in results.outcomes),
+        simulated_s=sum(one.simulated_s for one in results.outcomes),
     )
 
 

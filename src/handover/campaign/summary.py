@@ -95,6 +95,8 @@ class CampaignSummary:
         finished: how many were.
         cut_short: why fewer; empty if all were.
         seconds: wall time.
+        stepped_s: simulated seconds for which the physics was stepped, in all tests.
+        simulated_s: simulated seconds in all.
     """
 
     seed: int
@@ -104,3 +106,5 @@ class CampaignSummary:
     finished: int
     cut_short: str
     seconds: float
+    stepped_s: float
+    simulated_s: float

@@ -54,6 +54,15 @@ def test_all_links_of_the_pages_lead_somewhere(demo):
             assert (page.parent / address).exists(), (page.name, address)
 
 
+def test_the_page_and_the_terminal_count_the_same_physics(tmp_path, capsys):
+    """Both count all tests played, those with a planted fault too."""
+    assert main(["run", "--strategy", "directed", "--jobs", "1", "--out", str(tmp_path)]) == 0
+    told = re.search(r"([\d,]+) s of them with physics", " ".join(capsys.readouterr().out.split()))
+    page = (tmp_path / "report.html").read_text()
+    assert told is not None
+    assert f"{told[1]} s of physics" in page
+
+
 def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
     """One test alone, by the file that the campaign wrote; its recording is judged the same."""
     known = json.loads((demo / "table.json").read_text())["robots"]["correct"]["known_answers"]

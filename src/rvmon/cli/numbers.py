@@ -1,0 +1,42 @@
+"""Numbers on the command line, refused before any work is done."""
+
+from __future__ import annotations
+
+import argparse
+
+from rvmon.errors import TraceError
+from rvmon.trace.time import ticks_of_seconds
+
+
+def positive(text: str) -> int:
+    """Read a whole number of at least 1.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none; `argparse` says which option it stands at.
+
+    >>> positive("3")
+    3
+    """
+    number = int(text) if text.isascii() and text.isdigit() and len(text) < 20 else 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, not {text}")
+    return number
+
+
+def instant(text: str) -> float:
+    """Read an instant in seconds that fits the range of time.
+
+    Raises:
+        argparse.ArgumentTypeError: it is no number, not finite, or too far away.
+
+    >>> instant("12.5")
+    12.5
+    """
+    try:
+        seconds = float(text)
+        ticks_of_seconds(seconds)
+    except (ValueError, TraceError):
+        raise argparse.ArgumentTypeError(
+            f"expected a time in seconds, such as 12.5, not {text}"
+        ) from None
+    return seconds
