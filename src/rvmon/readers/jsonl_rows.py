@@ -32,6 +32,8 @@ def jsonl_samples(
     """
     decode = msgspec.json.Decoder().decode
     for number, line in enumerate(lines, 1):
+        if number == 1:
+            line = line.removeprefix("\ufeff")
         if not line.strip():
             continue
         try:
@@ -39,6 +41,8 @@ def jsonl_samples(
         except msgspec.DecodeError as error:
             cut = "" if line.endswith("\n") else "; the file ends here: was it cut off?"
             raise TraceError(f"line {number}: not a JSON object ({error}){cut}") from None
+        except UnicodeEncodeError:  # standard input may stand in for what it cannot decode
+            raise TraceError(f"line {number}: not UTF-8 text: is this a binary file?") from None
         except (TraceError, RecursionError) as error:
             raise TraceError(f"line {number}: {error}") from None
         yield number, t, values
@@ -62,8 +66,8 @@ def read_object(
     fields = dict(decoded)
     t = _ticks(fields)
     values: dict[str, Value] = {}
-    if "events" not in schema.signals and isinstance(fields.get("events"), list):
-        for name in fields.pop("events"):
+    if "events" not in schema.signals and isinstance(fields.get("events"), list | str):
+        for name in _listed(fields.pop("events")):
             if not isinstance(name, str):
                 raise TraceError(f"`events`: `{shorten(str(name))}` is not the name of an event")
             if name in schema.events:
@@ -72,6 +76,15 @@ def read_object(
                 ignored[name] += 1
     _collect(fields, "", schema, values, ignored)
     return t, values
+
+
+def _listed(events: list[object] | str) -> list[object]:
+    if isinstance(events, str):
+        raise TraceError(
+            f'`events`: expected a list of names such as ["{shorten(events)}"], '
+            f"found the text `{shorten(events)}`"
+        )
+    return events
 
 
 def _ticks(fields: dict[str, Any]) -> int:

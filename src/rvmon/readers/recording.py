@@ -136,5 +136,6 @@ def _format_of(path: str) -> str:
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)
-        raise TraceError(f"{path}: the ending `{suffix}` is no known format: use one of {known}")
+        ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"
+        raise TraceError(f"{path}: {ending}: use one of {known}")
     return FORMATS[suffix]

@@ -108,6 +108,8 @@ BAD = {
     "JSON truth in a number": ("a.jsonl", '{"t": 1, "n": true}\n', "field `n`: `True`"),
     "JSON deep": ("a.jsonl", '{"t": 1, "n": ' + "[" * 100_000 + "\n", "line 1:"),
     "JSON bad event": ("a.jsonl", '{"t": 1, "go": "yes"}\n', "event `go`: expected true"),
+    "JSON events no list": ("a.jsonl", '{"t": 1, "events": "go"}\n', 'such as ["go"]'),
+    "no ending": ("a", "t\n", "the name has no ending"),
     "unknown ending": ("a.xyz", "t\n", "the ending `.xyz` is no known format"),
 }
 
@@ -138,6 +140,14 @@ def test_unordered_recordings_pass_where_lateness_is_allowed(tmp_path):
     assert [t for t, _ in samples] == [10**9, 5 * 10**8]
     with pytest.raises(TimeOrderError):
         read(tmp_path, "a.csv", "t,n\n1,1\n0.5,1\n")
+
+
+@pytest.mark.parametrize("file", ["a.csv", "a.jsonl"])
+def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path, file):
+    """Files that some editors start with U+FEFF, lines ended with CR LF, read as any other."""
+    text = "t,n\r\n1,4\r\n" if file == "a.csv" else '{"t": 1, "n": 4}\r\n'
+    _, samples = read(tmp_path, file, "\ufeff" + text)
+    assert samples == [(1_000_000_000, {"n": 4})]
 
 
 def test_missing_file_is_named(tmp_path):
