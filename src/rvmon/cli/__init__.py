@@ -53,7 +53,9 @@ def guarded(namespace: argparse.Namespace) -> int:
         code = namespace.run(namespace)
         sys.stdout.flush()
     except RvmonError as error:
-        print(error, file=sys.stderr)
+        text = str(error)
+        rendered = text.startswith(("error", "warning"))  # diagnostics bring their own heading
+        print(text if rendered else f"error: {text}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)

@@ -5,16 +5,21 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.errors import UnknownNameError
+from rvmon.cli.numbers import instant, positive
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
     from rvmon.session import Spec
     from rvmon.trace.sample import Sample
+    from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
 
@@ -33,9 +38,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
     )
-    parser.add_argument("--until", metavar="T", type=float, help="the recording ended at T seconds")
+    parser.add_argument(
+        "--until", metavar="T", type=instant, help="the recording ended at T seconds"
+    )
     parser.add_argument("--engine", default="auto", help="how to judge (default: auto)")
-    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="processes (default: 1)")
+    parser.add_argument(
+        "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text")
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
@@ -74,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     _show(arguments.format, spec, judged)
     reports = [one.report for one in judged if one.report is not None]
-    _write_files(arguments, spec, reports)
+    _write_files(arguments, spec, judged)
     if len(reports) < len(judged):
         return 2
     failed = any(_failed(report, strict=arguments.strict) for report in reports)
@@ -97,8 +106,8 @@ def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
     for one in judged:
         if one.error:
             print(f"error: {one.error}", file=sys.stderr)
-            for attempt in one.before:
-                print(f"  judged before that: {attempt}", file=sys.stderr)
+            for line in _before_lines(one.before):
+                print(f"  judged before that: {line}", file=sys.stderr)
     reports = [one.report for one in judged if one.report is not None]
     if form == "json":
         texts = [report.to_json() for report in reports]
@@ -109,11 +118,35 @@ def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
     print_reports(reports, spec.checked)
 
 
-def _write_files(arguments: argparse.Namespace, spec: Spec, reports: Sequence[Report]) -> None:
+def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
+    """What a broken recording had shown before the break, a line per requirement."""
+    by_requirement: dict[str, list[Attempt]] = {}
+    for attempt in attempts:
+        by_requirement.setdefault(attempt.requirement, []).append(attempt)
+    for name, own in by_requirement.items():
+        counts = Counter(attempt.verdict.value for attempt in own)
+        line = f"{name}  {', '.join(f'{count} {letter}' for letter, count in counts.items())}"
+        failed = next((attempt for attempt in own if attempt.verdict is Verdict.FAIL), None)
+        if failed is not None and failed.decided is not None:
+            line += (
+                f"; attempt {failed.number} failed at {format_ticks(failed.decided)}: "
+                f"{failed.reason}"
+            )
+        yield line
+
+
+def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
+    reports = [one.report for one in judged if one.report is not None]
     if arguments.junit:
         from rvmon.report.junit import junit_xml
 
-        Path(arguments.junit).write_text(junit_xml(reports, spec.checked), encoding="utf-8")
+        broken = [(one.trace, one.error) for one in judged if one.report is None]
+        try:
+            Path(arguments.junit).write_text(
+                junit_xml(reports, spec.checked, broken), encoding="utf-8"
+            )
+        except OSError as error:
+            raise RvmonError(f"cannot write {arguments.junit}: {error.strerror or error}") from None
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
 
@@ -131,6 +164,10 @@ def _ids(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
     if listed is None:
         return None
     ids = tuple(name.strip() for name in listed.split(",") if name.strip())
+    if not ids:
+        raise UnknownNameError(
+            f"the list of requirements is empty: there are {', '.join(spec.requirements)}"
+        )
     for name in ids:
         if name not in spec.requirements:
             raise UnknownNameError(

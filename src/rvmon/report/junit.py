@@ -17,10 +17,18 @@ if TYPE_CHECKING:
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def junit_xml(reports: Sequence[Report], spec: CheckedSpec) -> str:
+def junit_xml(
+    reports: Sequence[Report], spec: CheckedSpec, broken: Sequence[tuple[str, str]] = ()
+) -> str:
     """A test suite per run, a test case per requirement.
 
-    F is a failure; NT and I are skipped with their reason, since neither is a pass.
+    F is a failure; NT and I are skipped with their reason, since neither is a pass. A recording
+    that could not be read to its end is an error, lest it count as nothing to complain of.
+
+    Args:
+        reports: of the recordings that were judged.
+        spec: that they were judged by.
+        broken: the other recordings, each with what is wrong with it.
     """
     root = ET.Element("testsuites", name=_clean(spec.name))
     for report in reports:
@@ -37,6 +45,13 @@ def junit_xml(reports: Sequence[Report], spec: CheckedSpec) -> str:
         )
         for name, verdict in report.verdicts.items():
             _add_case(suite, report, name, verdict, spec.requirements[name].text)
+    for trace, message in broken:
+        name = _clean(trace)
+        suite = ET.SubElement(
+            root, "testsuite", name=name, tests="1", failures="0", errors="1", skipped="0"
+        )
+        case = ET.SubElement(suite, "testcase", name="recording", classname=name)
+        ET.SubElement(case, "error", message=_clean(message))
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 

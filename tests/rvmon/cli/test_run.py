@@ -1,5 +1,6 @@
 """`rvmon run` as a person uses it."""
 
+import io
 import json
 import xml.etree.ElementTree as ET
 
@@ -81,10 +82,11 @@ def test_never_triggered_is_an_error_on_request(files, capsys):
 
 def test_a_broken_recording_keeps_what_was_judged(files, capsys):
     """Exit 2, one message with file and line, and the failure before the break is still told."""
-    (files / "cut.csv").write_text(FAIL + "9,maybe,\n")
+    (files / "cut.csv").write_text(FAIL + "6,,\n9,maybe,\n")
     assert main(["run", "door.rv", "cut.csv"]) == 2
     told = capsys.readouterr().err
-    assert "cut.csv: line 5: column `closed`: `maybe`" in told
+    assert "cut.csv: line 6: column `closed`: `maybe`" in told
+    assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: window" in told
     assert "Traceback" not in told
 
 
@@ -96,6 +98,11 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys):
         (["door.rv", "P.csv", "--only", "D9"], "no requirement `D9`"),
         (["door.rv", "P.csv", "--const", "T"], "expected NAME=VALUE"),
         (["door.rv", "P.csv", "--engine", "warp"], "warp"),
+        (["door.rv", "P.csv", "--only", ""], "there are D1"),
+        (["door.rv", "P.csv", "--jobs", "0"], "at least 1, not 0"),
+        (["door.rv", "P.csv", "--until", "nan"], "a time in seconds, such as 12.5, not nan"),
+        (["door.rv", "P.csv", "--until", "1e30"], "a time in seconds"),
+        (["door.rv", "P.csv", "--junit", "gone/out.xml"], "error: cannot write gone/out.xml"),
     ],
 )
 def test_wrong_use_is_exit_2_with_a_message(files, capsys, arguments, message):
@@ -105,6 +112,15 @@ def test_wrong_use_is_exit_2_with_a_message(files, capsys, arguments, message):
     assert message in told
     assert "Traceback" not in told
     assert "internal error" not in told
+
+
+def test_binary_standard_input_is_told(files, monkeypatch, capsys):
+    """Bytes that are no UTF-8 are wrong input, in each way a locale may have them decoded."""
+    for errors in ("strict", "surrogateescape"):
+        binary = io.TextIOWrapper(io.BytesIO(b"\x7fELF\xff\xfe"), "utf-8", errors=errors)
+        monkeypatch.setattr("sys.stdin", binary)
+        assert main(["run", "door.rv", "-"]) == 2
+        assert "not UTF-8 text" in capsys.readouterr().err
 
 
 def test_strict_columns_refuses_what_the_spec_does_not_name(files, capsys):

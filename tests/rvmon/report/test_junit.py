@@ -43,3 +43,11 @@ def test_the_suite_counts():
     suite = ET.fromstring(junit_xml(reports(), SPEC)).find("testsuite")  # noqa: S314
     shown = {name: suite.get(name) for name in ("tests", "failures", "skipped")}
     assert shown == {"tests": "4", "failures": "1", "skipped": "2"}
+
+
+def test_a_broken_recording_is_an_error():
+    """What could not be read counts as one error, with what is wrong and no verdict."""
+    root = ET.fromstring(junit_xml([], SPEC, [("cut.csv", "line 5: cut off")]))  # noqa: S314
+    suite = root.find("testsuite")
+    assert (suite.get("name"), suite.get("errors"), suite.get("tests")) == ("cut.csv", "1", "1")
+    assert suite.find("testcase/error").get("message") == "line 5: cut off"
