@@ -68,7 +68,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.format == "text":
         if remarks:
             print("\n".join(remarks))
-        print(_summary(len(arguments.specs), findings))
+        if findings or not (unreadable or broken):
+            print(_summary(len(arguments.specs), findings))
     if unreadable or broken:
         return 2
     return int(arguments.strict and bool(findings))
@@ -76,15 +77,21 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _findings(text: str, name: str, constants: dict[str, str]) -> tuple[list[Diagnostic], bool]:
     """What is to be said about a file, and whether it is unfit for use."""
-    from rvmon.errors import SpecError
+    from rvmon.errors import RvmonError, SpecError
+    from rvmon.monitor import compile_spec
     from rvmon.spec import compile_text
 
     directory = None if name == "-" else Path(name).parent
     shown = "<stdin>" if name == "-" else name
     try:
-        _, warnings = compile_text(text, name=shown, constants=constants, directory=directory)
+        checked, warnings = compile_text(text, name=shown, constants=constants, directory=directory)
     except SpecError as error:
         return list(error.diagnostics), True
+    try:
+        compile_spec(checked)
+    except RvmonError as error:  # well formed, but beyond all engines
+        print(f"error: {error}", file=sys.stderr)
+        return list(warnings), True
     return list(warnings), False
 
 

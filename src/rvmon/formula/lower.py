@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import assert_never
 
+from rvmon.errors import RvmonError
 from rvmon.formula.core import Core, Sense
 from rvmon.formula.factory import Factory
 from rvmon.formula.state import Elapsed, State
@@ -37,6 +38,10 @@ _FUTURE = {
     BinaryOp.WEAK_UNTIL,
     BinaryOp.STRONG_RELEASE,
 }
+
+
+class UnmonitorableError(RvmonError):
+    """A formula is beyond all engines; the message says which part of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +87,7 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
 
     Raises:
-        NotImplementedError: a future operator stands below a past one.
+        UnmonitorableError: a future operator stands below a past one.
     """
     lowering = _Lowering(factory, period)
     match requirement.trigger:
@@ -114,11 +119,11 @@ class _Lowering:
         match formula:
             case Unary(op=op, operand=operand, interval=interval):
                 if op in _FUTURE:
-                    raise NotImplementedError("a future operator below a past one")
+                    raise UnmonitorableError("a future operator below a past one")
                 return self._state_unary(op, self.state(operand), interval)
             case Binary(op=op, left=left, right=right, interval=interval):
                 if op in _FUTURE:
-                    raise NotImplementedError("a future operator below a past one")
+                    raise UnmonitorableError("a future operator below a past one")
                 return self._state_binary(op, self.state(left), self.state(right), interval)
             case Constant(value=value):
                 return factory.state_true if value else factory.state_false
@@ -212,7 +217,7 @@ class _Lowering:
             case Binary(op=op, left=left, right=right, interval=interval):
                 return self._core_binary(op, left, right, interval, positive)
             case _:
-                raise NotImplementedError("a future operator below a past one")
+                raise UnmonitorableError("a future operator below a past one")
 
     def _core_binary(
         self, op: BinaryOp, left: Formula, right: Formula, interval: Interval | None, positive: bool
@@ -240,7 +245,7 @@ class _Lowering:
                 both = self._both(left, positive, right, positive, positive)
                 return self._until(self.core(right, positive), both, interval, positive)
             case _:
-                raise NotImplementedError("a future operator below a past one")
+                raise UnmonitorableError("a future operator below a past one")
 
     def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)

@@ -17,7 +17,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
-from rvmon.formula.lower import Obligation, lower
+from rvmon.formula.lower import Obligation, UnmonitorableError, lower
 from rvmon.formula.state import State
 from rvmon.monitor.wording import Words
 from rvmon.spec.checked import CheckedSpec, Compare, Requirement
@@ -206,7 +206,12 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
         try:
             obligation = lower(requirement, factory, checked.period)
-        except NotImplementedError as error:
-            raise RvmonError(f"{name} cannot be monitored: {error}") from None
+        except UnmonitorableError as error:
+            span = requirement.span
+            place = "" if span is None else f"{span.source.name}:{span.line}: "
+            raise RvmonError(
+                f"{place}{name} cannot be monitored: {error}. "
+                "Say it with past operators in the trigger and future ones in what is owed"
+            ) from None
         made[name] = CompiledRequirement(rank, requirement, obligation, factory)
     return CompiledSpec(checked, made)

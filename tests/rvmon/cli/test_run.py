@@ -140,3 +140,13 @@ def test_an_absent_column_is_told(files, capsys):
     assert main(["run", "door.rv", "less.csv"]) == 0
     shown = capsys.readouterr().out
     assert "knock  absent" in shown
+
+
+def test_check_refuses_what_no_engine_can_judge(files, capsys):
+    """What is well formed but beyond all engines is told by `check` and `run` alike."""
+    (files / "mixed.rv").write_text(
+        SPEC + "requirement D2\n  upon knock\n  then once (eventually closed)\n"
+    )
+    for words in (["check", "mixed.rv"], ["run", "mixed.rv", "P.csv"]):
+        assert main(words) == 2
+        assert "mixed.rv:8: D2 cannot be monitored: a future operator" in capsys.readouterr().err

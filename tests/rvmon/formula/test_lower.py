@@ -5,7 +5,7 @@ import pytest
 from rvmon.formula.core import Literal, Release, Sense, Until
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
-from rvmon.formula.lower import lower
+from rvmon.formula.lower import UnmonitorableError, lower
 from rvmon.testing.build import (
     always,
     compared,
@@ -97,5 +97,5 @@ def test_horizon(formula, ticks):
 
 def test_a_future_operator_below_a_past_one_is_refused():
     """Nothing is known at once of what lies ahead."""
-    with pytest.raises(NotImplementedError):
+    with pytest.raises(UnmonitorableError):
         owed(once(eventually(p, 0, 2), 0, 3), upon=e)
