@@ -14,6 +14,12 @@ CASES = {
         [(0, {})],
         5,
     ),
+    "a signal that nothing reads grows stale between two ticks": (
+        "sampled every 3 ns",
+        "upon e\n  then true",
+        [(8, {}), (13, {"unread": 1.0}), (16, {"e": True})],
+        16,
+    ),
     "an instance begins between two ticks of the clock": (
         "sampled every 3 ns",
         "upon g\n  then start\n  for each v in g.k",
@@ -29,7 +35,8 @@ def test_engines_agree_with_the_law(name, engine):
     """Each engine gives the oracle's verdicts and decision instants."""
     time, requirement, samples, end = CASES[name]
     spec = rvmon.loads(
-        f"spec s\ntime {time}\nsignal p, q : bool\nevent e\nevent g(k: int)\n"
+        f"spec s\ntime {time}\nsignal p, q : bool\nsignal unread : real stale after 1 ns\n"
+        f"event e\nevent g(k: int)\n"
         f"requirement R1\n  {requirement}\n"
     )
     monitor = spec.monitor(engine=engine)
