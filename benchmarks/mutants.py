@@ -33,6 +33,15 @@ EQUIVALENT = {
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
         "`true and x` is only not made smaller; it still means x"
     ),
+    "lower.py and/or: `interval and interval.high` => `interval or interval.high`": (
+        "`held` always has an interval"
+    ),
+    "lane.py dropped statement: `self._pass_to(min(position - 1, limit))` => `pass`": (
+        "a visit, and `reach`, let time pass to the instant before by themselves"
+    ),
+    "construct.py off by one: `entered[clock] + 1` => `entered[clock]`": (
+        "another age of the same region, or a row for one in which no step can happen"
+    ),
 }
 """Changes that no test could see, with the reason."""
 
