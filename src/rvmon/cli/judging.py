@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from rvmon.cli.progress import shown_while_reading
@@ -15,6 +16,7 @@ from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
+    from rvmon.trace.sample import Sample
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -26,7 +28,7 @@ class Options:
     Attributes:
         only: ids of the requirements, or `None` for all.
         engine: `auto` or the name of one.
-        until: the end of the recordings in seconds, if after their last sample.
+        until: the instant in seconds to which recordings are judged; default their last sample.
         strict_columns: whether missing and undeclared columns are errors.
     """
 
@@ -91,19 +93,31 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
     """Judge one recording; if it is broken, what was decided before the break stays decided."""
     before: list[Attempt] = []
     try:
-        recording = FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)
+        ordered = spec.checked.max_delay is None
+        recording = FileRecording(trace, spec.schema, ordered=ordered)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
         monitor = spec.monitor(only=options.only, engine=options.engine, sources=recording.names)
-        for sample in shown_while_reading(recording):
-            before.extend(monitor.step_ns(sample.t, sample.values))
         end = None if options.until is None else ticks_of_seconds(options.until)
+        for sample in _up_to(end, shown_while_reading(recording), ordered=ordered):
+            before.extend(monitor.step_ns(sample.t, sample.values))
         report = monitor.finish_ns(end)
+        if report.end is None:
+            raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(trace, None, tuple(before), place + message)
     return Judged(trace, _named(report, trace, recording.health()))
+
+
+def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iterator[Sample]:
+    """The samples up to an instant (ticks); what comes behind the first later one may be broken."""
+    if end is None:
+        return samples
+    if ordered:
+        return takewhile(lambda sample: sample.t <= end, samples)
+    return (sample for sample in samples if sample.t <= end)
 
 
 def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:

@@ -39,7 +39,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
     )
     parser.add_argument(
-        "--until", metavar="T", type=instant, help="the recording ended at T seconds"
+        "--until",
+        metavar="T",
+        type=instant,
+        help="judge to T seconds, be it before or after the last sample",
     )
     parser.add_argument("--engine", default="auto", help="how to judge (default: auto)")
     parser.add_argument(
@@ -108,14 +111,21 @@ def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
             print(f"error: {one.error}", file=sys.stderr)
             for line in _before_lines(one.before):
                 print(f"  judged before that: {line}", file=sys.stderr)
-    reports = [one.report for one in judged if one.report is not None]
     if form == "json":
-        texts = [report.to_json() for report in reports]
-        print(texts[0] if len(judged) == 1 and texts else f"[{','.join(texts)}]")
+        texts = [_json(one) for one in judged]
+        print(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
 
-    print_reports(reports, spec.checked)
+    print_reports([one.report for one in judged if one.report is not None], spec.checked)
+
+
+def _json(one: Judged) -> str:
+    if one.report is not None:
+        return one.report.to_json()
+    from rvmon.verdict.report_json import encode_broken
+
+    return encode_broken(one.trace, one.error, one.before)
 
 
 def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -34,7 +35,11 @@ def encode(report: Report) -> str:
     """Write a report as JSON text."""
     attempts: dict[str, list[dict[str, object]]] = {name: [] for name in report.verdicts}
     for attempt in report.attempts:
-        attempts[attempt.requirement].append(_attempt(attempt, report.origin))
+        seconds = {
+            "triggered_s": _seconds(attempt.triggered, report.origin),
+            "decided_s": _seconds(attempt.decided, report.origin),
+        }
+        attempts[attempt.requirement].append({**_attempt(attempt), **seconds})
     document = {
         "trace": report.trace,
         "origin": report.origin,
@@ -49,6 +54,23 @@ def encode(report: Report) -> str:
         },
         "health": report.health,
     }
+    return msgspec.json.encode(document).decode()
+
+
+def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
+    """Write as JSON text what is known of a recording that broke off.
+
+    It has no verdicts: what comes behind the break could still have changed them.
+
+    Args:
+        trace: its path.
+        error: what was wrong with it.
+        before: the attempts that were decided before the break.
+    """
+    attempts: dict[str, list[dict[str, object]]] = {}
+    for attempt in before:
+        attempts.setdefault(attempt.requirement, []).append(_attempt(attempt))
+    document = {"trace": trace, "error": error, "judged_before": attempts}
     return msgspec.json.encode(document).decode()
 
 
@@ -79,15 +101,13 @@ def decode(text: str | bytes) -> Report:
     )
 
 
-def _attempt(attempt: Attempt, origin: int) -> dict[str, object]:
+def _attempt(attempt: Attempt) -> dict[str, object]:
     shown: dict[str, object] = {}
     for field in fields(Attempt):
         value = getattr(attempt, field.name)
         if field.name in _ALWAYS or value not in (None, "", {}):
             shown[field.name] = value
     del shown["requirement"]
-    shown["triggered_s"] = _seconds(attempt.triggered, origin)
-    shown["decided_s"] = _seconds(attempt.decided, origin)
     return shown
 
 

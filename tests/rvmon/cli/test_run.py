@@ -90,6 +90,35 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys):
     assert "Traceback" not in told
 
 
+def test_a_broken_recording_is_an_entry_in_json(files, capsys):
+    """The error and what was judged before it stand where the verdicts of others do."""
+    (files / "cut.csv").write_text(FAIL + "6,,\n9,maybe,\n")
+    assert main(["run", "door.rv", "cut.csv", "P.csv", "--format", "json"]) == 2
+    cut, whole = json.loads(capsys.readouterr().out)
+    assert cut["trace"] == "cut.csv"
+    assert "line 6" in cut["error"]
+    assert [attempt["verdict"] for attempt in cut["judged_before"]["D1"]] == ["F"]
+    assert "verdicts" not in cut
+    assert whole["requirements"]["D1"]["verdict"] == "P"
+
+
+@pytest.mark.parametrize(("until", "verdict"), [("2", "I"), ("3", "I"), ("30", "F")])
+def test_until_is_the_end_that_is_judged(files, capsys, until, verdict):
+    """What comes after --until is not judged; time goes on to it where samples end before."""
+    (files / "late.csv").write_text(FAIL + "6,,\n9,maybe,\n" if until != "30" else FAIL)
+    main(["run", "door.rv", "late.csv", "--until", until, "--format", "json"])
+    report = json.loads(capsys.readouterr().out)
+    assert report["end"] == int(until) * 10**9
+    assert report["requirements"]["D1"]["verdict"] == verdict
+
+
+def test_until_before_the_first_sample_is_told(files, capsys):
+    """A recording of which nothing is left is no recording that passed."""
+    (files / "late.csv").write_text("t,knock,closed\n5,,1\n")
+    assert main(["run", "door.rv", "late.csv", "--until", "4"]) == 2
+    assert "no sample up to --until 4 s" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
