@@ -11,6 +11,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from rvmon import __version__
 from rvmon.cli import guarded
 from rvmon.cli.numbers import positive
 
@@ -34,6 +35,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Simulated robot-to-human handovers, judged by requirements.",
         epilog="example: handover run --strategy constrained --tests 50 --out out/mine",
     )
+    parser.add_argument("--version", action="version", version=f"handover {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_run(commands)
     _add_demo(commands)

@@ -27,12 +27,14 @@ def run_replay(arguments: argparse.Namespace) -> int:
     test = load_test(arguments.test)
     robot = "legacy" if arguments.legacy else test.robot or "correct"
     spec = load(arguments.spec or spec_path(robot))
+    # A folder that cannot be written to is told before anything is played.
+    folder = made(arguments.out) if arguments.out else None
     run, report = play_again(test, robot, spec)
     _show(arguments.format, spec, run, report)
-    if arguments.out:
+    if folder is not None:
         words = ["replay", arguments.test, *(["--legacy"] if arguments.legacy else [])]
         # The file is named after the test's file: what it says inside is no path.
-        target = made(arguments.out) / Path(arguments.test).stem
+        target = folder / Path(arguments.test).stem
         others = [
             judged(*play_again(one.test, robot, spec))
             for one in comparable_jobs(Job(test, robot), (), ())

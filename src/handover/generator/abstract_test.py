@@ -73,7 +73,7 @@ class AbstractTest(
         expected: verdicts by requirement, for tests that know them.
     """
 
-    name: str
+    name: Annotated[str, msgspec.Meta(min_length=1)]
     strategy: Literal["pseudorandom", "constrained", "model-based", "directed"]
     seed: Annotated[int, msgspec.Meta(ge=0)]
     actions: tuple[Action, ...]

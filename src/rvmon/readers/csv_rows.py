@@ -49,6 +49,14 @@ class Layout:
         return frozenset(column.name for column in (*self.signals, *self.events))
 
 
+def _other_separator(header: list[str]) -> str:
+    """What to mend if the cells are not separated by commas."""
+    for separator, name in ((";", "semicolons"), ("\t", "tabs"), ("|", "bars")):
+        if len(header) == 1 and separator in header[0]:
+            return f". The columns look separated by {name}: separate them by commas"
+    return ""
+
+
 def read_layout(header: list[str], schema: Schema) -> Layout:
     """Match the header's names with the declared ones.
 
@@ -65,7 +73,7 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
         found = ", ".join(f"`{shorten(name)}`" for name in header[:8]) or "nothing"
         raise TraceError(
             "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
-            f"in the header; found {'both' if times else found}"
+            f"in the header; found {'both' if times else found}{_other_separator(header)}"
         )
     signals, events, ignored = [], [], []
     for name, index in seen.items():

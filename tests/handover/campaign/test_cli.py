@@ -93,6 +93,7 @@ def test_exit_codes_of_a_campaign(capsys):
     [
         ("{", "not JSON"),
         ('{"name": "x"}', "not an abstract test"),
+        (f'{{"name":"","strategy":"directed","seed":1,"actions":{ACTIONS}}}', "`$.name`"),
         (
             f'{{"name":"x","strategy":"directed","seed":1,"actions":{ACTIONS},"mutation":"no"}}',
             "no",
@@ -110,6 +111,15 @@ def test_a_bad_test_is_told_in_one_message(tmp_path, capsys, content, told):
     error = capsys.readouterr().err
     assert told in error
     assert "Traceback" not in error
+
+
+def test_a_folder_that_cannot_be_written_to_is_told_first(demo, capsys):
+    """Nothing is played for output that could not be kept."""
+    test = str(demo / "tests" / "released.json")
+    assert main(["replay", test, "--out", test]) == 2
+    told = capsys.readouterr()
+    assert "cannot write to" in told.err
+    assert not told.out
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ ACTIONS = st.one_of(
 )
 TESTS = st.builds(
     AbstractTest,
+    name=st.text(min_size=1, max_size=20),
     seed=st.integers(0, 2**63 - 1),
     actions=st.lists(ACTIONS, max_size=5).map(tuple),
     text=st.text(max_size=20),
