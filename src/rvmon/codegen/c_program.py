@@ -10,7 +10,17 @@ from rvmon.codegen.plan import Plan
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind
 
-_PARTS = ("program.c.in", "read_csv.c.in", "read_jsonl.c.in", "program_main.c.in")
+_PARTS = (
+    "program_head.c.in",
+    "program_numbers.c.in",
+    "program_samples.c.in",
+    "read_csv.c.in",
+    "read_json.c.in",
+    "read_jsonl.c.in",
+    "read_binary.c.in",
+    "program_report.c.in",
+    "program_main.c.in",
+)
 
 _KINDS = {
     Kind.BOOL: "KIND_BOOL",

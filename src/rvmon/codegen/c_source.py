@@ -15,6 +15,15 @@ from rvmon.errors import RvmonError
 from rvmon.formula.state import Elapsed, State, StateOp
 from rvmon.spec.checked import Compare, ProbeAtom, SignalAtom
 
+_PARTS = (
+    "monitor_head.c.in",
+    "monitor_past.c.in",
+    "monitor_tokens.c.in",
+    "monitor_attempts.c.in",
+    "monitor_clock.c.in",
+    "monitor_api.c.in",
+)
+
 
 @dataclass(frozen=True, slots=True)
 class CFiles:
@@ -58,7 +67,7 @@ class _Writer:
             "NAMES": "\n".join(self._constants()),
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }
-        source = template("monitor.c.in")
+        source = "".join(template(part) for part in _PARTS)
         if not self._count(StateOp.SINCE):
             source = _without(source, "PAST")
         source = source.replace("@PAST_BEGIN@\n", "").replace("@PAST_END@\n", "")
@@ -289,6 +298,7 @@ class _Writer:
         yield f"    const double value = known ? sample->value[{number}] : unknown_value();"
         if stale_after is not None:
             yield f"    m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
+            yield f"    m->alarm = least(m->alarm, m->stale_at[{number}]);"
         if uses is not None and (uses.history or uses.marked):
             yield f"    m->updated[{number}] = 1;"
             if uses.history:

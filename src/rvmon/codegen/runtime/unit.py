@@ -184,10 +184,11 @@ class Unit:
             self.c[signal] = max(changed, self.c.get(signal, FALSE))
 
     def set_stale(self, signal: int, t: int) -> None:
-        """Note when a signal will be stale."""
-        if self.stale_at[signal] == NEVER:
-            heappush(self.timers, (t, self.NODES + signal))
+        """Note when a signal that is not awaited to be so will be stale."""
+        heappush(self.timers, (t, self.NODES + signal))
         self.stale_at[signal] = t
+        # The update may have changed no value: then nothing else has the timer seen to.
+        self.wake = min(self.wake, t)
 
     def set_wake(self, place: int, t: int) -> None:
         """Note when a node changes by itself."""
