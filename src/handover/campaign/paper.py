@@ -36,8 +36,14 @@ _MODEL_BASED = {
     "R5": (4, 0, 0, 0),
 }
 
-FITTED = {("constrained", "R5")}
-"""Cells that the fitted start-up loss reproduces by construction: they are no evidence."""
+FITTED_BY_LOSS = {("constrained", "R5")}
+"""Cells that the fitted start-up loss reproduces by construction."""
+
+FITTED_BY_SLOWNESS = {("pseudorandom", "R4"), ("constrained", "R4")}
+"""Cells from which the slowness of polls was taken."""
+
+FITTED = FITTED_BY_LOSS | FITTED_BY_SLOWNESS
+"""Cells that are no evidence."""
 
 
 def paper_table() -> VerdictTable:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from handover.campaign.paper import FITTED, paper_table
+from handover.campaign.paper import FITTED_BY_LOSS, paper_table
 from handover.campaign.summary import CampaignSummary, RobotSummary
 from rvmon.report.table import Counts, RunGroup, VerdictTable
 from rvmon.verdict.verdict import Verdict
@@ -81,13 +81,16 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
 def fitted_note(table: VerdictTable, unfitted: VerdictTable) -> str:
     """Which cells were fitted, and what they are without the fit."""
     shown = []
-    for strategy, requirement in sorted(FITTED):
+    for strategy, requirement in sorted(FITTED_BY_LOSS):
         with_fit, without = (_cell(one, strategy, requirement) for one in (table, unfitted))
         if with_fit and without:
             shown.append(f"{strategy} {requirement} ({with_fit} with it, {without} without)")
     if not shown:
         return ""
-    return f"The loss of signals at start-up is fitted to {', '.join(shown)}: that is no evidence."
+    return (
+        f"No evidence: {', '.join(shown)}, to which the loss of signals at start-up is fitted, "
+        "and R4, to which the slowness of polls is."
+    )
 
 
 def _cell(table: VerdictTable, strategy: str, requirement: str) -> str:
