@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from rvmon.monitor.compiled import CompiledSpec
     from rvmon.session import Spec
 
-_CODE = re.compile(r"RV\d+", re.IGNORECASE)
+_CODE = re.compile(r"RV\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)
+"""A diagnostic's code, in words, or the word for all."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -23,7 +24,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="a requirement, or a diagnostic's code, in plain words",
         description="Explain a requirement: in plain words, its automaton, and the shortest runs "
         "on which it passes, fails, is not triggered, stays open. Two: where they differ. "
-        "A diagnostic's code such as RV012: its page.",
+        "A diagnostic's code such as RV012: its page; `codes`: all codes.",
         epilog="example: rvmon explain specs/door.rv D1",
     )
     parser.add_argument("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
@@ -42,8 +43,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Explain, and return the exit code."""
-    if _CODE.fullmatch(arguments.subject) and not Path(arguments.subject).exists():
-        _explain_code(arguments.subject.upper())
+    if not Path(arguments.subject).exists() and _CODE.fullmatch(arguments.subject):
+        from rvmon.explain.codes import code_list, page_of
+
+        listed = arguments.subject == "codes"
+        print(code_list() if listed else page_of(arguments.subject), end="")
         return 0
     from rvmon.cli.constants import constants_of
     from rvmon.monitor import compile_spec
@@ -109,14 +113,3 @@ def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace)
                 Path(arguments.svg).write_text(graph_svg(graph, name), encoding="utf-8")
             except OSError as error:
                 raise RvmonError(f"error: {arguments.svg}: {error.strerror or error}") from None
-
-
-def _explain_code(code: str) -> None:
-    from rvmon.analysis.rules import analysis_rules
-    from rvmon.spec.pages import rule_page
-    from rvmon.spec.rules.registry import all_rules
-
-    rules = {**all_rules(), **analysis_rules()}
-    if code not in rules:
-        raise UnknownNameError(f"error: no diagnostic `{code}`: there are {', '.join(rules)}")
-    print(rule_page(rules[code]), end="")

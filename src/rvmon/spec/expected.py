@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from contextlib import suppress
 from typing import Any
@@ -12,6 +11,7 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
+from rvmon.spec.mends import mend_of
 from rvmon.spec.rules import names, syntax, types
 from rvmon.spec.units import unit_table
 from rvmon.spec.words import ITEM_WORDS, NOT_UNITS, RESERVED
@@ -21,6 +21,7 @@ _OPERAND_ALL = _OPERAND | {
     "WITHIN", "FOR", "IMMEDIATELY", "CTL", "PATH", "QUANTIFIER", "TRUTH", "START", "END", "CALL",
     "LPAR",
 }  # fmt: skip
+_DURATION = {"NUMBER", "NAME", "LPAR", "MINUS"}
 _ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
 _INFIX = {"AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS"}
 _CLAUSES = {"TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE"}
@@ -39,31 +40,13 @@ _WORDS = {
     "MONITOR_AS_RESPONSE": "`monitor as response`",
     "MAX_DELAY": "`max delay`",
     "COMPARE": "a comparison",
+    "MINUS": "`-`",
     "UPON": "`upon`",
     "WHENEVER": "`whenever`",
     "THEN": "`then`",
     "WITHIN": "`within`",
 }
 _SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
-_MEND = {
-    "≤": "write `<=`",
-    "≥": "write `>=`",
-    "≠": "write `!=`",
-    "→": "write `->`",
-    "↔": "write `<->`",
-    "∧": "write `and`",
-    "∨": "write `or`",
-    "¬": "write `not`",
-    "□": "write `always`",
-    "◇": "write `eventually`",
-    '"': "a text ends on the line it starts on, with a second quote",
-    "“": 'write straight quotes: "',
-    "”": 'write straight quotes: "',
-    "'": 'texts stand in double quotes: "',
-    "`": "a quoted name ends on the line it starts on, with a second backtick",
-    "%": "`%` is a unit and stands behind a number",
-    ";": "items and clauses need no `;`",
-}
 
 
 def explain_unexpected(
@@ -91,7 +74,8 @@ def explain_unexpected(
     expected = _in_words(accepted, parser)
     shown = f"`{syntax.short(found)}`" if found else "the end of the item"
     message = f"found {shown}" + (f", expected {expected}" if expected else "")
-    return syntax.syntax_error(message, place, _mend(found, accepted, parser, place))
+    mend = mend_of(found, accepted, parser, Span(source, start, place.start))
+    return syntax.syntax_error(message, place, mend)
 
 
 def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span:
@@ -119,6 +103,8 @@ def _accepted(parser: lark.Lark, text: str, rule: str) -> set[str]:
 def _in_words(accepted: set[str], parser: lark.Lark) -> str:
     rest = set(accepted)
     words = []
+    if rest == _DURATION:
+        return "a duration such as `3 s`"
     if rest >= _OPERAND:
         words.append("a formula or a number")
         rest -= _OPERAND_ALL
@@ -142,28 +128,3 @@ def _word(terminal: str, parser: lark.Lark) -> str:
     pattern = parser.get_terminal(terminal).pattern
     word = re.match(r"[a-z]+", pattern.value)
     return f"`{word[0] if word and pattern.type == 're' else pattern.value}`"
-
-
-def _mend(found: str, accepted: set[str], parser: lark.Lark, place: Span) -> str:
-    if found in _MEND:
-        return _MEND[found]
-    before = place.source.text[: place.start]
-    call = re.search(r"([^\W\d]\w*)[ \t]+$", before)
-    if found == "(" and call:
-        return f"a call has no space before its bracket: `{call[1]}(`"
-    if re.match(r"[AE][\[<]", found) and "AND" not in accepted:
-        return f"put brackets around `{found} …`"
-    if "THEN" in accepted:
-        return "what is owed stands behind `then`"
-    if re.fullmatch(r"[^\W\d]\w*", found):
-        words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", _word_pattern(t, parser))]
-        close = difflib.get_close_matches(found, sorted({*words, *ITEM_WORDS}), 1, 0.75)
-        if close and close[0] != found:
-            return f"did you mean `{close[0]}`?"
-    return ""
-
-
-def _word_pattern(terminal: str, parser: lark.Lark) -> str:
-    if terminal in ("$END", "NAME", "NUMBER", "CALL", "UNIT", "STRING"):
-        return ""
-    return str(parser.get_terminal(terminal).pattern.value)

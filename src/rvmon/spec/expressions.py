@@ -26,7 +26,7 @@ from rvmon.spec.effort import Cost, Effort
 from rvmon.spec.findings import Findings
 from rvmon.spec.functions import applied
 from rvmon.spec.items import ConstItem, DefineItem
-from rvmon.spec.kinds import formula_of, number_of
+from rvmon.spec.kinds import formula_of, looking_back, number_of
 from rvmon.spec.quantities import arithmetic
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
@@ -289,13 +289,13 @@ class Checker:
 
     # Operators.
 
-    def _prefix(self, prefix: Prefix, scope: Scope) -> Unary:
+    def _prefix(self, prefix: Prefix, scope: Scope) -> Formula:
         operand = self.value(prefix.operand, scope)
         interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
         if operand is None:
             raise Reported
         formula = formula_of(operand, prefix.operand.span)
-        return Unary(prefix.op, formula, interval, prefix.span)
+        return looking_back(Unary(prefix.op, formula, interval, prefix.span), prefix.op_span)
 
     def _interval_of(
         self, op: UnaryOp, window: Window | None, span: Span, scope: Scope
@@ -310,7 +310,7 @@ class Checker:
             return None
         return self.interval(window, scope)
 
-    def _infix(self, infix: Infix, scope: Scope) -> Binary:
+    def _infix(self, infix: Infix, scope: Scope) -> Formula:
         operands = [self.value(side, scope) for side in (infix.left, infix.right)]
         interval = None
         if infix.op in _TEMPORAL:
@@ -321,13 +321,8 @@ class Checker:
         left, right = operands
         if left is None or right is None:
             raise Reported
-        return Binary(
-            infix.op,
-            formula_of(left, infix.left.span),
-            formula_of(right, infix.right.span),
-            interval,
-            infix.span,
-        )
+        sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
+        return looking_back(Binary(infix.op, *sides, interval, infix.span), infix.op_span)
 
     def interval(self, window: Window | None, scope: Scope) -> Interval:
         """The window in ticks; none is from 0 on.
@@ -340,5 +335,9 @@ class Checker:
             return Interval()
         low = 0 if window.low is None else self.duration(window.low, scope)
         high = None if window.high is None else self.duration(window.high, scope)
+        if window.low and window.high and high is not None and high < low:
+            raise Refusal(
+                time_rules.reversed_bounds(window.span, window.low.span, window.high.span)
+            )
         opens = {"low_open": window.low_open, "high_open": window.high_open}
         return closed_interval(low, high, **opens, span=window.span)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -24,6 +25,7 @@ _OPERATORS = (
 _NO_SPACE_AFTER = ("LPAR", "LSQB", "LBRACE", "CALL")
 _NO_SPACE_BEFORE = ("RPAR", "RSQB", "RBRACE", "COMMA", "COLON")
 _TAKES_WINDOW = ("TEMPORAL", "INFIX", "PATH", "CTL", "QUANTIFIER", "LEADS_TO")
+_PLAIN = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?")
 _OPERANDS = ("NAME", "NUMBER", "RPAR", "RSQB", "TRUTH", "START", "END", "STRING")
 
 
@@ -66,13 +68,19 @@ def _spaced(left: Piece, right: Piece) -> bool:
 
 
 def _segments(pieces: Sequence[Piece]) -> list[list[Piece]]:
-    """Cut before comments on their own line and behind those that end a line."""
+    """Cut before comments on their own line, behind those that end a line, and where it matters."""
     segments = [[pieces[0]]]
     for left, right in pairwise(pieces):
-        if left.behind or right.above:
+        if left.behind or right.above or _would_be_unit(left, right):
             segments.append([])
         segments[-1].append(right)
     return segments
+
+
+def _would_be_unit(left: Piece, right: Piece) -> bool:
+    """Whether a name would be read as the unit of the number before it, on one line."""
+    plain = left.kind == "NUMBER" and _PLAIN.fullmatch(left.text) is not None
+    return plain and right.kind in ("NAME", "CALL")
 
 
 def _wrapped(pieces: Sequence[Piece], indent: int) -> list[str]:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.render import render_full
-from rvmon.errors import SpecError
-from rvmon.spec.compile import compile_text
 from rvmon.spec.rules.rule import Rule
 
 MOST_FINDINGS = 5
 """Of more findings the first and the last are shown."""
 
 
-def rule_page(rule: Rule) -> str:
-    """A rule's page as Markdown: what, why, an example with its message, the same mended."""
+def rule_page(rule: Rule, found: Sequence[Diagnostic]) -> str:
+    """A rule's page as Markdown: what, why, an example with its message, the same mended.
+
+    Args:
+        rule: the rule.
+        found: what is found in its example.
+    """
     return "\n".join(
         (
             f"# {rule.code} {rule.name}",
@@ -27,7 +31,7 @@ def rule_page(rule: Rule) -> str:
             "",
             *_fenced(_cut(rule.example), "rv"),
             "",
-            *_fenced(example_message(rule), "text"),
+            *_fenced(message_about(found), "text"),
             "",
             "## Instead",
             "",
@@ -47,12 +51,8 @@ def index_page(rules: Mapping[str, Rule]) -> str:
     return "\n".join((*head, "|---|---|---|---|", *rows, ""))
 
 
-def example_message(rule: Rule) -> str:
-    """What is said about the rule's example; of a long list the beginning and the end."""
-    try:
-        _, found = compile_text(rule.example, name="demo.rv")
-    except SpecError as error:
-        found = error.diagnostics
+def message_about(found: Sequence[Diagnostic]) -> str:
+    """What is said about an example; of a long list the beginning and the end."""
     if len(found) <= MOST_FINDINGS:
         return render_full(found)
     return f"{render_full(found[:1])}\n\n…\n\n{render_full(found[-1:])}"

@@ -60,6 +60,7 @@ Parts = tuple[Mode, Formula, Formula]
 
 def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement | None:
     """Check a requirement; `None` if it is wrong, and then that is reported."""
+    policy = _policy(checker, item)
     try:
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
@@ -67,7 +68,6 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         mode, trigger, consequent = _scoped(
             checker, item, outer, _parts(checker, item, outer, inner, ctl)
         )
-        policy = _policy(item)
     except Refusal as refusal:
         checker.report(refusal.finding)
         return None
@@ -166,10 +166,11 @@ def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts)
 def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) -> Parts:
     trigger = checker.top(body.trigger, outer)
     consequent = checker.top(body.consequent, inner)
+    if trigger and (ahead := future_part(trigger)):
+        checker.report(rules.future_trigger(ahead.span or body.trigger.span))
+        raise Reported
     if trigger is None or consequent is None:
         raise Reported
-    if ahead := future_part(trigger):
-        raise Refusal(rules.future_trigger(ahead.span or body.trigger.span))
     alone = isinstance(trigger, BoundAtom) and body.mode is Mode.UPON
     for formula, place in ((trigger, body.trigger), (consequent, body.consequent)):
         end = end_part(formula)
@@ -196,11 +197,12 @@ def _on_purpose(expression: Expression) -> bool:
     return isinstance(expression, Immediately)
 
 
-def _policy(item: RequirementItem) -> EndPolicy:
+def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
+    policies = [str(policy) for policy in EndPolicy]
     for clause in _clauses(item, AtEndClause):
-        if clause.policy.text not in EndPolicy.__members__.values():
-            raise Refusal(rules.unknown_policy(clause.policy.span, [str(p) for p in EndPolicy]))
-        return EndPolicy(clause.policy.text)
+        if clause.policy.text in policies:
+            return EndPolicy(clause.policy.text)
+        checker.report(rules.unknown_policy(clause.policy.span, policies))
     return EndPolicy.DEFAULT
 
 

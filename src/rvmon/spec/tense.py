@@ -37,6 +37,19 @@ FUTURE: frozenset[UnaryOp | BinaryOp] = frozenset(
 )
 """The operators that look ahead."""
 
+PAST: frozenset[UnaryOp | BinaryOp] = frozenset(
+    {
+        UnaryOp.PREVIOUS,
+        UnaryOp.ONCE,
+        UnaryOp.HISTORICALLY,
+        UnaryOp.RISE,
+        UnaryOp.FALL,
+        UnaryOp.HELD,
+        BinaryOp.SINCE,
+    }
+)
+"""The operators that look back."""
+
 _TIMELESS = frozenset((UnaryOp.NOT, UnaryOp.RISE, UnaryOp.FALL))
 _CONNECTIVES = frozenset((BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES, BinaryOp.IFF, BinaryOp.XOR))
 

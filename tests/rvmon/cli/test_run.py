@@ -178,4 +178,6 @@ def test_check_refuses_what_no_engine_can_judge(files, capsys):
     )
     for words in (["check", "mixed.rv"], ["run", "mixed.rv", "P.csv"]):
         assert main(words) == 2
-        assert "mixed.rv:8: D2 cannot be monitored: a future operator" in capsys.readouterr().err
+        shown = capsys.readouterr().err
+        assert "error[RV047 future-below-past]: `once` looks back at what lies ahead" in shown
+        assert "mixed.rv:10:8" in shown

@@ -173,7 +173,8 @@ def double(name: str, kind: str, here: Span, first: Span) -> Diagnostic:
 
 def unknown(span: Span, name: str, close: str) -> Diagnostic:
     """A name that stands for nothing; `close` describes one that is alike, or is empty."""
-    return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, mend=close)
+    mend = close or f"declare it, as `signal {name} : bool` or `event {name}`"
+    return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, mend=mend)
 
 
 def unknown_constant(name: str, known: Sequence[str]) -> Diagnostic:

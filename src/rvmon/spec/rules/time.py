@@ -155,7 +155,11 @@ RULES = (
 def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
     """Something that is no constant with a unit of time; `plain`: a number without unit."""
     text = short(span.text)
-    mend = f"did you mean `{text} s`?" if plain else "a duration is written as `3 s` or `200 ms`"
+    mend = (
+        f"did you mean `{text.strip('() ')} s`?"
+        if plain
+        else "a duration is written as `3 s` or `200 ms`"
+    )
     return finding(NO_DURATION, f"`{text}` is no duration", span, mend=mend)
 
 
@@ -179,7 +183,10 @@ def too_long(span: Span) -> Diagnostic:
 def negative(span: Span) -> Diagnostic:
     """A duration below 0."""
     return finding(
-        EMPTY_INTERVAL, f"`{short(span.text)}` is negative", span, mend="durations start at 0"
+        EMPTY_INTERVAL,
+        f"`{short(span.text)}` is negative, and a duration is not",
+        span,
+        mend="write it without `-`; what has been is asked for by `once` and `historically`",
     )
 
 
@@ -189,7 +196,18 @@ def empty(span: Span) -> Diagnostic:
         EMPTY_INTERVAL,
         f"no instant lies in `{short(span.text)}`",
         span,
-        mend="the first bound must not be after the second",
+        mend="an open bound leaves its own instant out: write `[` and `]`",
+    )
+
+
+def reversed_bounds(span: Span, low: Span, high: Span) -> Diagnostic:
+    """An interval whose first bound is after its second."""
+    swapped = f"{span.text[0]}{short(high.text)}, {short(low.text)}{span.text[-1]}"
+    return finding(
+        EMPTY_INTERVAL,
+        f"`{short(span.text)}` ends before it starts",
+        span,
+        mend=f"did you mean `{swapped}`?",
     )
 
 

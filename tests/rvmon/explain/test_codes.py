@@ -5,23 +5,19 @@ from pathlib import Path
 
 import pytest
 
-from rvmon.errors import SpecError
-from rvmon.spec import compile_text
-from rvmon.spec.pages import example_message, index_page, rule_page
-from rvmon.spec.rules.registry import all_rules
+from rvmon.errors import UnknownNameError
+from rvmon.explain.codes import code_list, every_rule, findings_about, page_of
+from rvmon.spec.pages import index_page, message_about
 
 ROOT = Path(__file__).parents[3]
 GOLDEN = Path(__file__).parent / "golden"
 PAGES = ROOT / "docs" / "codes"
-RULES = all_rules()
+RULES = every_rule()
 
 
-def findings(text):
-    """All findings of a specification, errors and warnings."""
-    try:
-        return compile_text(text)[1]
-    except SpecError as error:
-        return error.diagnostics
+def found_in_example(code):
+    """What is found in the example of a code."""
+    return findings_about(RULES[code], RULES[code].example)
 
 
 def same_as_file(path, text):
@@ -35,7 +31,7 @@ def same_as_file(path, text):
 @pytest.mark.parametrize("code", RULES)
 def test_example_breaks_its_rule(code):
     """The example is found by its own rule, first of all."""
-    found = findings(RULES[code].example)
+    found = found_in_example(code)
     assert code in [finding.code for finding in found]
     if code != "RV006":  # so many of another rule that this one speaks
         assert {finding.code for finding in found} == {code}
@@ -45,19 +41,22 @@ def test_example_breaks_its_rule(code):
 @pytest.mark.parametrize("code", RULES)
 def test_mended_example_is_in_order(code):
     """The mended example has no findings at all."""
-    assert findings(RULES[code].instead) == ()
+    assert findings_about(RULES[code], RULES[code].instead) == ()
 
 
 @pytest.mark.parametrize("code", RULES)
 def test_message_is_as_kept(code):
     """The message about the example is the one in the golden file."""
-    same_as_file(GOLDEN / f"{code}.txt", example_message(RULES[code]) + "\n")
+    same_as_file(
+        GOLDEN / f"{code}.txt",
+        message_about(found_in_example(code)) + "\n",
+    )
 
 
 @pytest.mark.parametrize("code", RULES)
 def test_page_is_up_to_date(code):
     """The page in the documentation is the one that the rule makes."""
-    same_as_file(PAGES / f"{code}.md", rule_page(RULES[code]))
+    same_as_file(PAGES / f"{code}.md", page_of(code))
 
 
 def test_index_is_up_to_date():
@@ -74,6 +73,21 @@ def test_every_page_has_a_rule():
 @pytest.mark.parametrize("code", RULES)
 def test_message_says_how_to_mend(code):
     """Each first finding has a place and a mend."""
-    first = next(finding for finding in findings(RULES[code].example) if finding.code == code)
+    first = next(finding for finding in found_in_example(code) if finding.code == code)
     assert first.spans or code == "RV006"
     assert first.help
+
+
+def test_codes_in_words_and_all():
+    """A page is found by its code in words too, in any case; all codes are listed."""
+    assert page_of("Unknown-Signal") == page_of("rv012") == page_of("RV012")
+    assert [line.split()[0] for line in code_list().splitlines()] == list(RULES)
+
+
+def test_unknown_code():
+    """Of a code that does not exist those most alike are named, and where all are."""
+    with pytest.raises(UnknownNameError) as caught:
+        page_of("RV999")
+    assert "`rvmon explain codes` lists all" in str(caught.value)
+    with pytest.raises(UnknownNameError, match="RV074  implied"):
+        page_of("RV075")

@@ -1,0 +1,69 @@
+"""All diagnostic codes of specifications, those of the analysis among them, with their pages."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+
+from rvmon.analysis.rules import analysis_rules
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.errors import SpecError, UnknownNameError
+from rvmon.spec.compile import compile_text
+from rvmon.spec.pages import rule_page
+from rvmon.spec.rules.registry import all_rules
+from rvmon.spec.rules.rule import Rule
+
+
+def every_rule() -> Mapping[str, Rule]:
+    """Every rule by its code, in order of codes."""
+    return {**all_rules(), **analysis_rules()}
+
+
+def findings_about(rule: Rule, text: str) -> tuple[Diagnostic, ...]:
+    """What is found in a text by the pass that a rule belongs to: the check, or the analysis.
+
+    Args:
+        rule: the rule.
+        text: a small specification, such as the rule's example.
+    """
+    try:
+        checked, found = compile_text(text, name="demo.rv")
+    except SpecError as error:
+        return tuple(error.diagnostics)
+    if rule.code not in analysis_rules():
+        return tuple(found)
+    from rvmon.explain.analysed import analyse
+    from rvmon.monitor.compiled import compile_spec
+
+    return analyse(compile_spec(checked), timelines=0).findings
+
+
+def page_of(code: str) -> str:
+    """The page of a code as Markdown.
+
+    Args:
+        code: such as `RV012`; also the code in words, such as `unknown-signal`.
+
+    Raises:
+        UnknownNameError: there is no such code; those most alike are named.
+    """
+    rules = every_rule()
+    named = {rule.name: rule for rule in rules.values()}
+    rule = rules.get(code.upper()) or named.get(code.lower())
+    if rule is None:
+        raise UnknownNameError(_unknown(code, rules))
+    return rule_page(rule, findings_about(rule, rule.example))
+
+
+def code_list() -> str:
+    """All codes with their names, a line each."""
+    return "\n".join(f"{rule.code}  {rule.name}" for rule in every_rule().values()) + "\n"
+
+
+def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
+    close = difflib.get_close_matches(code.upper(), rules, 3, 0.5)
+    shown = [f"  {name}  {rules[name].name}" for name in close]
+    listed = "`rvmon explain codes` lists all"
+    if not shown:
+        return f"error: no diagnostic `{code}`: {listed}"
+    return "\n".join((f"error: no diagnostic `{code}`; alike are", *shown, listed))

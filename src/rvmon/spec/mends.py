@@ -1,0 +1,126 @@
+"""What mends a syntax error: what people write who come from another language."""
+
+from __future__ import annotations
+
+import difflib
+import re
+
+import lark
+
+from rvmon.diagnostics.span import Span
+from rvmon.spec.words import ITEM_WORDS
+
+_MEND = {
+    "≤": "write `<=`",
+    "≥": "write `>=`",
+    "≠": "write `!=`",
+    "→": "write `->`",
+    "↔": "write `<->`",
+    "∧": "write `and`",
+    "∨": "write `or`",
+    "¬": "write `not`",
+    "□": "write `always`",
+    "◇": "write `eventually`",
+    '"': "a text ends on the line it starts on, with a second quote",
+    "“": 'write straight quotes: "',
+    "”": 'write straight quotes: "',
+    "'": 'texts stand in double quotes: "',
+    "`": "a quoted name ends on the line it starts on, with a second backtick",
+    "%": "`%` is a unit and stands behind a number",
+    ";": "items and clauses need no `;`",
+}
+_TYPES = {
+    "float": "real",
+    "double": "real",
+    "number": "real",
+    "boolean": "bool",
+    "integer": "int",
+    "string": "{one, another}",
+    "enum": "{one, another}",
+}
+
+
+def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
+    """What mends a syntax error; empty if nothing is known to.
+
+    Args:
+        found: the word or sign that could not stand there; empty at the end of the item.
+        accepted: the terminals that could have.
+        parser: knows their patterns.
+        before: what of the item stands before it.
+    """
+    return (
+        _MEND.get(found, "")
+        or _number_mend(found, before)
+        or _structure_mend(found, accepted, before.text)
+        or _word_mend(found, accepted, parser, before.text)
+        or _decimal_comma(before.text)
+    )
+
+
+def _structure_mend(found: str, accepted: set[str], before: str) -> str:
+    """What mends parts of an item that are in a wrong place or missing."""
+    call = re.search(r"([^\W\d]\w*)[ \t]+$", before)
+    if found == "(" and call:
+        return f"a call has no space before its bracket: `{call[1]}(`"
+    if re.match(r"[AE][\[<]", found) and "AND" not in accepted:
+        return f"put brackets around `{found} …`"
+    if "THEN" in accepted:
+        return "what is owed stands behind `then`"
+    if accepted == {"NAME"} and before.split() == ["requirement"]:
+        return 'its name comes first: `requirement R1 "text"`'
+    if "COLON" in accepted and re.match(r"signal\b", before):
+        return "a signal has a type, as in `signal x : real [m]`"
+    if accepted == {"COLON"} and re.match(r"event\b", before):
+        return "a field has a type, as in `event pick(id: int)`"
+    return ""
+
+
+def _word_mend(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
+    """What mends a word that is none of the language, or stands where none can."""
+    if not re.fullmatch(r"[^\W\d]\w*", found):
+        return ""
+    if "LBRACE" in accepted and found.lower() in _TYPES:
+        return f"write `{_TYPES[found.lower()]}`"
+    words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", _word_pattern(t, parser))]
+    close = difflib.get_close_matches(found, sorted({*words, *ITEM_WORDS}), 1, 0.75)
+    if close and close[0] != found:
+        return f"did you mean `{close[0]}`?"
+    if "AND" not in accepted:
+        return ""
+    if found in ("within", "for"):
+        return f"`{found}` stands before what it speaks of: `{found} 3 s (…)`"
+    last = re.search(r"(\w+)\s*$", before)
+    if last and last[1].lower() in ("if", "when", "where", "once"):
+        return f"for `{last[1]}` write `upon` (an instant) or `whenever` (as long as it holds)"
+    return f"an operator is missing before `{found}`, or a word too many"
+
+
+def _number_mend(found: str, before: Span) -> str:
+    """What mends a number or duration that is written as it is elsewhere."""
+    digits = re.search(r"(?<![\w.])\d*$", before.text)
+    behind = re.compile(r"[.,](\d*)").match(before.source.text, before.end)
+    if digits and behind and (behind[1] or (digits[0] and found == ".")):
+        return f"write `{digits[0] or 0}.{behind[1] or 0}`"
+    word = re.search(r"(?<![\w.])(within|for)[ \t]+([\w.]+(?:[ \t]+\w+)?)?[ \t]*$", before.text)
+    if word is None:
+        return ""
+    if word[2] is None:
+        operator = "eventually" if word[1] == "within" else "always"
+        window = f"`{word[1]}` takes a duration; a window stands behind `{operator}`"
+        return window if found == "[" else ""
+    if found in ("+", "-", "*", "/"):
+        return "a duration that is computed stands in brackets"
+    return "no comma stands behind a duration" if found == "," else ""
+
+
+def _decimal_comma(text: str) -> str:
+    """What mends a number that is written with a comma, if there is one."""
+    comma = re.search(r"(?<![\w.,])(\d+),(\d+)(?![\w.,])", text)
+    return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
+
+
+def _word_pattern(terminal: str, parser: lark.Lark) -> str:
+    if terminal in ("$END", "NAME", "NUMBER", "CALL", "UNIT", "STRING"):
+        return ""
+    return str(parser.get_terminal(terminal).pattern.value)

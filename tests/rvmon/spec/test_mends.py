@@ -1,0 +1,81 @@
+"""What people write who come from elsewhere is mended in the words of the language."""
+
+import pytest
+
+from rvmon.errors import SpecError
+from rvmon.spec import compile_text
+
+HEAD = """spec demo
+event asked, released
+signal speed : real [m/s]
+const T = 3 s
+"""
+
+
+def first_finding(text):
+    """The first finding of a specification."""
+    with pytest.raises(SpecError) as caught:
+        compile_text(HEAD + text)
+    return caught.value.diagnostics[0]
+
+
+@pytest.mark.parametrize(
+    ("owed", "mend"),
+    [
+        ("within -1 s released", "write it without `-`"),
+        ("within -T released", "write it without `-`"),
+        ("within 1,5 s released", "write `1.5`"),
+        ("within .5 s released", "write `0.5`"),
+        ("within 1. s released", "write `1.0`"),
+        ("within (3) released", "did you mean `3 s`?"),
+        ("within 1.5 released", "`1.5 s released`"),
+        ("within 3 s, released", "no comma stands behind a duration"),
+        ("within [1 s, 2 s] released", "a window stands behind `eventually`"),
+        ("for [1 s, 2 s] released", "a window stands behind `always`"),
+        ("within T + 1 s released", "a duration that is computed stands in brackets"),
+        ("within 3 sec released", "did you mean `s`?"),
+        ("eventually[3 s, 1 s] released", "did you mean `[1 s, 3 s]`?"),
+        ("eventually(3 s, 3 s] released", "an open bound leaves its own instant out"),
+        ("released within 3 s", "`within 3 s (…)`"),
+        ("always (speed < 1,5 m/s)", "write `1.5`"),
+        ("within 3 s relesed", "did you mean `released`?"),
+        ("within 3 s xyzzy", "declare it, as `signal xyzzy : bool` or `event xyzzy`"),
+        ("within 3 s released asked", "an operator is missing before `asked`"),
+    ],
+)
+def test_what_is_owed(owed, mend):
+    """Durations, numbers and names that are written as they are elsewhere."""
+    assert mend in first_finding(f"requirement R\n  upon asked\n  then {owed}\n").help
+
+
+@pytest.mark.parametrize(
+    ("item", "mend"),
+    [
+        ("requirement R if asked then within 3 s released", "for `if` write `upon`"),
+        ("requirement R when asked then within 3 s released", "for `when` write `upon`"),
+        ("requirement R upon asked, then released", "what is owed stands behind `then`"),
+        ('requirement "R" upon asked then released', "its name comes first"),
+        ("signal x", "a signal has a type"),
+        ("signal x : float", "write `real`"),
+        ("signal x : string", "write `{one, another}`"),
+        ("event e(x)", "a field has a type"),
+    ],
+)
+def test_items(item, mend):
+    """Items in the manner of other languages."""
+    assert mend in first_finding(item + "\n").help
+
+
+def test_a_trigger_and_what_is_owed_are_both_looked_at():
+    """What looks ahead in a trigger is found beside errors in what is owed, and in clauses."""
+    with pytest.raises(SpecError) as caught:
+        compile_text(
+            HEAD + "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"
+        )
+    assert [found.code for found in caught.value.diagnostics] == ["RV040", "RV012", "RV045"]
+
+
+def test_the_expected_is_said_in_words():
+    """No pattern of the grammar comes through."""
+    found = first_finding("requirement R\n  upon asked\n  then within ! released\n")
+    assert found.message == "found `!`, expected a duration such as `3 s`"
