@@ -41,7 +41,8 @@ from rvmon.spec.checked import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.dice import Dice, chance, pick
+from rvmon.testing.dice import Dice, chance
+from rvmon.testing.generate_ltl import random_ltl
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import both, no, to_core, until
 from rvmon.testing.peers.dialects import LTLF, spelling, translate
@@ -57,34 +58,6 @@ JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
 ALIVE = SignalAtom("alive")
 EVER = Interval(0, None)
 Word = list[frozenset[str]]
-
-_UNARY = (UnaryOp.NOT, UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS)
-_BINARY = (
-    BinaryOp.AND,
-    BinaryOp.OR,
-    BinaryOp.IMPLIES,
-    BinaryOp.IFF,
-    BinaryOp.XOR,
-    BinaryOp.UNTIL,
-    BinaryOp.RELEASE,
-    BinaryOp.WEAK_UNTIL,
-    BinaryOp.STRONG_RELEASE,
-)
-_TIMED = (*_BINARY[5:], UnaryOp.EVENTUALLY, UnaryOp.ALWAYS)
-
-
-def random_ltl(dice: Dice, depth: int) -> Formula:
-    """A random untimed future formula."""
-    if depth == 0 or chance(dice, 8):
-        return SignalAtom(pick(dice, BOOLS))
-    if chance(dice, 45):
-        unary = pick(dice, _UNARY)
-        window = EVER if unary in _TIMED else None
-        return Unary(unary, random_ltl(dice, depth - 1), window)
-    binary = pick(dice, _BINARY)
-    window = EVER if binary in _TIMED else None
-    left = random_ltl(dice, dice.randint(0, depth - 1))
-    return Binary(binary, left, random_ltl(dice, depth - 1), window)
 
 
 def embed(core: Formula) -> Formula:

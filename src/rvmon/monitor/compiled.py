@@ -8,6 +8,7 @@ from functools import cached_property
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
+from rvmon.automaton.forecast import Forecaster
 from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.table import TableMachine
@@ -133,6 +134,11 @@ class CompiledRequirement:
                 f"{self.requirement.id} has no automaton ({self.refusal}): use the engine `auto`"
             )
         return self._progression
+
+    @cached_property
+    def forecaster(self) -> Forecaster:
+        """Tells what is still possible for its open attempts."""
+        return Forecaster()
 
     @cached_property
     def shared_graph(self) -> Graph:

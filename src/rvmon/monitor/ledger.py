@@ -10,6 +10,7 @@ from rvmon.automaton.machine import Token
 from rvmon.formula.progress import after, holds_at_end
 from rvmon.formula.state import TRUE, UNKNOWN
 from rvmon.monitor.explain import Explanation, explain_decision, explain_open
+from rvmon.monitor.forecast import forecast_of
 from rvmon.monitor.judge import Judge, Open
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt, Decision
@@ -70,12 +71,15 @@ class Ledger:
             why = replace(why, reason=reason)
         decided = None if decision is Decision.OPEN else end
         record = _record(judge, attempt, decided, verdict, decision, why)
+        if decided is None:
+            record = replace(record, forecast=forecast_of(judge, attempt))
         self._decided.append((judge, attempt, record))
 
     def open_record(self, judge: Judge, attempt: Open) -> Attempt:
         """The record of an attempt that is still running."""
         why = explain_open(judge, attempt)
-        return _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
+        record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
+        return replace(record, forecast=forecast_of(judge, attempt))
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
