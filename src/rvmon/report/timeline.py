@@ -81,6 +81,8 @@ def _offending(attempt: Attempt | None) -> tuple[int, ...]:
 def _obligation(attempt: Attempt, view: View, origin: int, end: int) -> ET.Element:
     """The window in which something was owed, between labels of its instants."""
     first, last = _window(attempt)
+    if last is None:
+        last = attempt.decided  # nothing was owed any more
     left = view.fraction(first)
     right = min(view.fraction(max(end, first) if last is None else last), 1.0)
     kind = "window unbounded" if last is None else "window"

@@ -127,6 +127,17 @@ def test_the_offending_sample_and_the_threshold_are_marked():
     assert section.count('class="sample"') == 1
 
 
+def test_a_window_ends_with_the_decision_if_nothing_else_ends_it():
+    """Only what is still owed fades out to the right."""
+    page = run_page(content(judged("t", [(0.0, {"closed": True, "gap": 1.0})])))
+    for number, classes in (("D2-1", ["window"]), ("D3-1", ["window"])):
+        section = page[page.index(f'<section id="{number}"') :].split("</section>")[0]
+        assert re.findall(r'class="(window[^"]*)"', section) == classes
+    page = run_page(content(judged("t", [(0.0, {"closed": False, "gap": 1.0})])))
+    section = page[page.index('<section id="D3-1"') :].split("</section>")[0]
+    assert re.findall(r'class="(window[^"]*)"', section) == ["window unbounded"]
+
+
 def test_the_nearest_passing_attempt_is_the_ghost():
     """Of all that pass, the one that differs least."""
     far, near = door("far", answer=0.1), door("near", answer=1.9)
