@@ -7,16 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rvmon.codegen.c_build import built
 from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_rows import value_type
 from rvmon.codegen.c_source import c_files
-from rvmon.codegen.c_tables import DECISIONS, VERDICTS
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
-from rvmon.verdict.attempt import Attempt
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 NOTHING, NO, UNKNOWN, YES = range(4)
@@ -24,44 +24,33 @@ NOTHING, NO, UNKNOWN, YES = range(4)
 
 WHERE_IT_ENDS = -(1 << 63)
 
+RECORD = np.dtype(
+    [
+        ("requirement", np.int32),
+        ("number", np.uint32),
+        ("triggered", np.int64),
+        ("decided", np.int64),
+        ("verdict", np.uint8),
+        ("decision", np.uint8),
+    ],
+    align=True,
+)
+"""The record of an attempt; verdict and decision count in `rvmon.codegen.c_tables`."""
+
 
 @dataclass(frozen=True, slots=True)
 class Column:
     """One signal, event or payload field.
 
     Attributes:
-        states: uint8[n], what each row says; of a field, left out.
-        values: float64[n]: booleans as 0 and 1, labels by number; of an event, left out.
+        states: uint8[n], what each row says; of a field, left out; of a signal, left out if every
+            row has a value.
+        values: of a Boolean signal bool[n], of others float64[n] with labels by number; of an
+            event, left out.
     """
 
     states: NDArray[np.uint8] | None = None
-    values: NDArray[np.float64] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Judged:
-    """What a batch found.
-
-    Attributes:
-        attempts: the records, without reasons, in the order in which they were made.
-        end: the last instant of the trace; `None` if it has none.
-        rows: the rows that were taken; fewer than given if one was out of order.
-    """
-
-    attempts: tuple[Attempt, ...]
-    end: int | None
-    rows: int
-
-
-class _Record(ctypes.Structure):
-    _fields_ = (
-        ("requirement", ctypes.c_int32),
-        ("number", ctypes.c_uint32),
-        ("triggered", ctypes.c_int64),
-        ("decided", ctypes.c_int64),
-        ("verdict", ctypes.c_uint8),
-        ("decision", ctypes.c_uint8),
-    )
+    values: NDArray[Any] | None = None
 
 
 class _In(ctypes.Structure):
@@ -73,24 +62,7 @@ class _In(ctypes.Structure):
         ("value", ctypes.c_void_p),
         ("event", ctypes.c_void_p),
         ("field", ctypes.c_void_p),
-        ("absent", ctypes.c_void_p),
-        ("until", ctypes.c_int64),
-        ("records", ctypes.c_void_p),
-        ("capacity", ctypes.c_int64),
     )
-
-
-def _out_type(rules: int) -> type[ctypes.Structure]:
-    class Out(ctypes.Structure):
-        _fields_ = (
-            ("records", ctypes.c_int64),
-            ("rows", ctypes.c_int64),
-            ("end", ctypes.c_int64),
-            ("overflow", ctypes.c_bool),
-            ("verdict", ctypes.c_uint8 * max(rules, 1)),
-        )
-
-    return Out
 
 
 class BatchLibrary:
@@ -107,86 +79,122 @@ class BatchLibrary:
         self.names = Names(plan)
         self.plan = plan
         made = c_files(plan)
-        sources = [f"{made.prefix}.c", f"{made.prefix}_batch.c"]
-        path = built(made.texts, sources, ".so", ["-shared", "-fPIC"])
+        path = built(made.texts, [f"{made.prefix}_batch.c"], ".so", ["-O3", "-shared", "-fPIC"])
         library = ctypes.CDLL(str(path))
-        self._batch = library[f"{made.prefix}_batch"]
-        self._batch.restype = ctypes.c_bool
-        self._out = _out_type(len(plan.rules))
-        result = ctypes.c_int64()
-        sizes = library[f"{made.prefix}_sizes"]
-        sizes.restype = ctypes.c_int64
-        if (sizes(ctypes.byref(result)), result.value) != (
-            ctypes.sizeof(_Record),
-            ctypes.sizeof(self._out),
-        ):
-            raise RvmonError("the C compiler lays out records otherwise than Python does")
+        address, number = ctypes.c_void_p, ctypes.c_int64
 
-    def judge(
+        def function(name: str, result: Any, *arguments: Any) -> Any:
+            found = library[f"{made.prefix}_{name}"]
+            found.restype, found.argtypes = result, arguments
+            return found
+
+        self.open = function("open", address, address)
+        self.feed = function("feed", number, address, address)
+        self.close = function("close", number, address, number)
+        self.records = function("records", number, address, address)
+        self.trouble = function("trouble", ctypes.c_int32, address)
+        self.free = function("free", None, address)
+        rows = ctypes.c_int64()
+        sizes = function("sizes", number, address)
+        if (sizes(ctypes.byref(rows)), rows.value) != (RECORD.itemsize, ctypes.sizeof(_In)):
+            raise RvmonError("the C compiler lays out records otherwise than Python does")
+        self.value_types = [
+            np.dtype(bool if value_type(plan, name) == "uint8_t" else np.float64)
+            for name in plan.signals
+        ]
+
+
+class BatchRun:
+    """One recording, fed in pieces; a context manager.
+
+    Args:
+        library: compiled for the specification.
+        absent: the names without a source.
+    """
+
+    def __init__(self, library: BatchLibrary, absent: frozenset[str] = frozenset()) -> None:
+        self._library = library
+        self._fields = [f"{event}.{field}" for event, field in library.names.fields]
+        self._records: list[NDArray[Any]] = []
+        flags = np.zeros(max(len(library.plan.signals) + len(library.plan.events), 1), np.uint8)
+        for name in absent:
+            flags[library.names.number(name)] = 1
+        self._batch = library.open(flags.ctypes.data)
+        if not self._batch:
+            raise RvmonError("not enough memory")
+
+    def __enter__(self) -> BatchRun:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._library.free(self._batch)
+
+    def feed(
         self,
         times: NDArray[np.int64],
         columns: Mapping[str, Column],
-        *,
-        absent: frozenset[str] = frozenset(),
-        until: int | None = None,
         advances: NDArray[np.uint8] | None = None,
-    ) -> Judged:
-        """Judge one recording.
+    ) -> int:
+        """Judge some rows.
 
         Args:
             times: int64[n] ticks, strictly increasing.
-            columns: by signal, event, and `event.field`; what is left out never comes.
-            absent: the names without a source.
-            until: the end of the trace, if it is after all rows.
+            columns: by signal, event, and `event.field`; what is left out does not come.
             advances: uint8[n], 1 where a row is no sample but says how far time has come.
+
+        Returns:
+            How many rows were taken: fewer than given if one is out of order.
 
         Raises:
             RvmonError: memory ran out, or a static capacity.
         """
-        import numpy as np
-
-        plan, names = self.plan, self.names
-        keep: list[Any] = [times, advances]
-        flags = np.zeros(max(len(plan.signals) + len(plan.events), 1), np.uint8)
-        for name in absent:
-            flags[names.number(name)] = 1
-        fields = [f"{event}.{field}" for event, field in names.fields]
+        plan = self._library.plan
+        keep: list[Any] = [times := np.ascontiguousarray(times, np.int64), advances]
+        none = Column()
+        values = [
+            _laid(columns.get(name, none).values, kind)
+            for name, kind in zip(plan.signals, self._library.value_types, strict=True)
+        ]
         given = _In(
             n=len(times),
             t=times.ctypes.data,
             advance=None if advances is None else advances.ctypes.data,
-            signal=_pointers([columns.get(name, Column()).states for name in plan.signals], keep),
-            value=_pointers([columns.get(name, Column()).values for name in plan.signals], keep),
-            event=_pointers([columns.get(name, Column()).states for name in plan.events], keep),
-            field=_pointers([columns.get(name, Column()).values for name in fields], keep),
-            absent=flags.ctypes.data,
-            until=WHERE_IT_ENDS if until is None else until,
+            signal=_pointers([columns.get(name, none).states for name in plan.signals], keep),
+            value=_pointers(values, keep),
+            event=_pointers([columns.get(name, none).states for name in plan.events], keep),
+            field=_pointers([columns.get(name, none).values for name in self._fields], keep),
         )
-        out = self._out()
-        capacity = 1024
-        while True:
-            records = (_Record * capacity)()
-            given.records, given.capacity = ctypes.addressof(records), capacity
-            if not self._batch(ctypes.byref(given), ctypes.byref(out)):
-                raise RvmonError("not enough memory for the open attempts")
-            if out.records <= capacity:
-                break
-            capacity = out.records
-        if out.overflow:
-            raise RvmonError("the capacity of a past operator is too small for this recording")
-        attempts = tuple(self._attempt(record) for record in records[: out.records])
-        return Judged(attempts, None if out.end == WHERE_IT_ENDS else out.end, out.rows)
+        rows: int = self._library.feed(self._batch, ctypes.byref(given))
+        self._take_records()
+        return rows
 
-    def _attempt(self, record: _Record) -> Attempt:
-        decision = DECISIONS[record.decision]
-        return Attempt(
-            self.plan.rules[record.requirement].requirement.id,
-            record.number,
-            record.triggered,
-            None if decision is DECISIONS[3] else record.decided,
-            VERDICTS[record.verdict],
-            decision,
-        )
+    def close(self, until: int | None = None) -> tuple[NDArray[Any], int | None]:
+        """End the run.
+
+        Args:
+            until: the end of the trace, if it is after all rows.
+
+        Returns:
+            `RECORD`s in the order in which they were made; the last instant of the trace, `None`
+            if it has none.
+        """
+        end = self._library.close(self._batch, WHERE_IT_ENDS if until is None else until)
+        self._take_records()
+        return np.concatenate(self._records), None if end == WHERE_IT_ENDS else end
+
+    def _take_records(self) -> None:
+        trouble = self._library.trouble(self._batch)
+        if trouble:
+            what = "memory for the open attempts"
+            raise RvmonError(f"not enough {what if trouble == 1 else 'room for a past operator'}")
+        start = ctypes.c_void_p()
+        count = self._library.records(self._batch, ctypes.byref(start))
+        copied = ctypes.string_at(start, count * RECORD.itemsize) if count else b""
+        self._records.append(np.frombuffer(copied, RECORD))
+
+
+def _laid(values: NDArray[Any] | None, kind: np.dtype[Any]) -> NDArray[Any] | None:
+    return None if values is None else np.ascontiguousarray(values, kind)
 
 
 def _pointers(arrays: Sequence[NDArray[Any] | None], keep: list[Any]) -> int:

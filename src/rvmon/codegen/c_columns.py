@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rvmon.codegen.c_batch import NO, UNKNOWN, YES, Column
 from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_rows import value_type
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.time import format_ticks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 def columns_of_samples(samples: Sequence[Sample], names: Names) -> dict[str, Column]:
@@ -32,7 +36,10 @@ class _Columns:
         plan = names.plan
         self.names = names
         self.states = {name: np.zeros(count, np.uint8) for name in (*plan.signals, *plan.events)}
-        self.values = {name: np.zeros(count) for name in plan.signals}
+        self.values: dict[str, NDArray[Any]] = {
+            name: np.zeros(count, bool if value_type(plan, name) == "uint8_t" else float)
+            for name in plan.signals
+        }
         self.values |= {f"{event}.{field}": np.full(count, np.nan) for event, field in names.fields}
 
     def of(self, samples: Sequence[Sample]) -> dict[str, Column]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_source import comment, filled, template
+from rvmon.codegen.c_text import comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind

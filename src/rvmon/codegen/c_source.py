@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.resources import files
 
-from rvmon.codegen.c_leaves import leaf_value, node_body, uses_library
+from rvmon.codegen.c_leaves import node_body, uses_library
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_tables import array, automata_source
+from rvmon.codegen.c_rows import rows_source
+from rvmon.codegen.c_samples import take_source
+from rvmon.codegen.c_tables import array, automata_source, lists
+from rvmon.codegen.c_text import comment, filled, template, without, without_function
 from rvmon.codegen.plan import Plan
-from rvmon.dataflow.numbers import inputs_of
 from rvmon.errors import RvmonError
-from rvmon.formula.state import Elapsed, State, StateOp
-from rvmon.spec.checked import Compare, ProbeAtom, SignalAtom
+from rvmon.formula.state import Elapsed, StateOp
+from rvmon.spec.checked import ProbeAtom
 
 _PARTS = (
     "monitor_head.c.in",
@@ -55,9 +56,10 @@ class _Writer:
 
     def files(self) -> CFiles:
         prefix = self.names.prefix
-        places = {  # the first two hold others
+        places = {  # the first three hold others
             "HELPERS": "\n".join(self._helpers()),
             "TABLES": "\n".join(self._tables()),
+            "ROWS": "\n".join(rows_source(self.plan, self.names)),
             "SPEC": comment(self.plan.spec.name),
             "GUARD": f"{prefix.upper()}_MONITOR_H",
             "HEADER": f"{prefix}.h",
@@ -69,10 +71,10 @@ class _Writer:
         }
         source = "".join(template(part) for part in _PARTS)
         if not self._count(StateOp.SINCE):
-            source = _without(source, "PAST")
+            source = without(source, "PAST")
         source = source.replace("@PAST_BEGIN@\n", "").replace("@PAST_END@\n", "")
         if not self._count(StateOp.PREVIOUS):
-            source = _without_function(source, "static uint8_t previous(")
+            source = without_function(source, "static uint8_t previous(")
         return CFiles(
             prefix,
             {
@@ -140,7 +142,7 @@ class _Writer:
         calls = "\n".join(
             line for place in range(len(self.plan.graph.nodes)) for line in self._body(place)
         )
-        calls += "\n".join(self._take())
+        calls += "\n".join(take_source(self.plan, self.names))
         if self._count(StateOp.SINCE):
             calls += "sum("
         chosen: list[str] = []
@@ -178,7 +180,7 @@ class _Writer:
         yield "    (void)t;"
         yield "    return value;"
         yield "}"
-        yield from self._take()
+        yield from take_source(self.plan, self.names)
         yield from self._index_tables()
         yield from automata_source(self.plan)
         yield from self._letters()
@@ -261,143 +263,3 @@ class _Writer:
         yield "        *better += better_weights[3 * i + truth];"
         yield "    }"
         yield "}"
-
-    # Samples.
-
-    def _take(self) -> Iterator[str]:
-        prefix = self.names.prefix
-        yield ""
-        yield "/* Take the updates of a sample; tells whether something may have changed. */"
-        yield "static void soil(monitor *m, int32_t place);"
-        yield f"static bool take(monitor *m, int64_t t, const {prefix}_sample *sample)"
-        yield "{"
-        yield "    bool dirty = false;"
-        for name in self.plan.signals:
-            if name in self.plan.graph.by_name or self._keeps(name):
-                yield from (f"    {line}" for line in self._take_signal(name))
-        for name in self.plan.events:
-            if name in self.plan.graph.by_name:
-                yield from (f"    {line}" for line in self._take_event(name))
-        yield "    (void)t;"
-        yield "    (void)m;"
-        yield "    (void)sample;"
-        yield "    return dirty;"
-        yield "}"
-
-    def _keeps(self, name: str) -> bool:
-        return self.plan.spec.signals[name].stale_after is not None
-
-    def _take_signal(self, name: str) -> Iterator[str]:
-        prefix = self.names.prefix
-        number = self.names.signal(name)
-        uses = self.plan.uses.get(name)
-        places = self.plan.graph.by_name.get(name, ())
-        stale_after = self.plan.spec.signals[name].stale_after
-        yield f"if (sample->signal[{number}] != {prefix}_NOTHING) {{ /* {comment(name)} */"
-        yield f"    const bool known = sample->signal[{number}] == {prefix}_YES;"
-        yield f"    const double value = known ? sample->value[{number}] : unknown_value();"
-        if stale_after is not None:
-            yield f"    m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
-            yield f"    m->alarm = least(m->alarm, m->stale_at[{number}]);"
-        if uses is not None and (uses.history or uses.marked):
-            yield f"    m->updated[{number}] = 1;"
-            if uses.history:
-                yield f"    m->changed[{number}] = either(m->changed[{number}],"
-                yield f"        remember(&m->history[{number}], t, value));"
-            yield "    m->gathered = true;"
-            yield from (f"    {line}" for line in _soil(places))
-        yield f"    if (!same(value, m->value[{number}])) {{"
-        yield f"        m->value[{number}] = value;"
-        for place in places:
-            state = self.plan.graph.nodes[place]
-            if self._is_instant(name, state) and state.leaf is not None:
-                yield f"        if ({leaf_value(self.names, state.leaf)} != m->truth[{place}]) {{"
-                yield from (f"            {line}" for line in _soil([place]))
-                yield "        }"
-            else:
-                yield from (f"        {line}" for line in _soil([place]))
-        yield "    }"
-        yield "}"
-
-    def _is_instant(self, name: str, state: State) -> bool:
-        if isinstance(state.leaf, SignalAtom):
-            return True
-        uses = self.plan.uses[name]
-        return (
-            isinstance(state.leaf, Compare)
-            and not uses.history
-            and inputs_of(state.leaf.left, state.leaf.right) == {name}
-        )
-
-    def _take_event(self, name: str) -> Iterator[str]:
-        prefix = self.names.prefix
-        number = self.names.event(name)
-        places = self.plan.graph.by_name[name]
-        yield f"if (sample->event[{number}] != {prefix}_NOTHING) {{ /* {comment(name)} */"
-        if self.plan.uses[name].marked:
-            yield f"    m->updated[{self.names.number(name)}] = 1;"
-            yield "    m->gathered = true;"
-            yield from (f"    {line}" for line in _soil(places))
-        yield f"    if (sample->event[{number}] != {prefix}_NO) {{"
-        yield f"        const bool known = sample->event[{number}] == {prefix}_YES;"
-        yield "        m->gathered = true;"
-        yield f"        m->occurs[{number}] = either(m->occurs[{number}], truth_of(known, true));"
-        fields = [self.names.field(name, field) for field in self.plan.spec.events[name].fields]
-        if fields:
-            upper = prefix.upper()
-            yield f"        if (m->payloads[{number}] < {upper}_PAYLOADS) {{"
-            yield f"            const int32_t p = m->payloads[{number}];"
-            yield f"            m->payload_known[p][{number}] = known ? 1U : 0U;"
-            for field in fields:
-                yield f"            m->payload[p][{field}] = sample->field[{field}];"
-            yield f"            m->payloads[{number}]++;"
-            yield "        } else {"
-            yield "            m->overflow = true;"
-            yield "        }"
-        yield from (f"        {line}" for line in _soil(places))
-        yield "    }"
-        yield "}"
-
-
-def _soil(places: Iterable[int]) -> Iterator[str]:
-    for place in places:
-        yield f"soil(m, {place});"
-        yield "dirty = true;"
-
-
-def lists(first: str, name: str, values: Sequence[Sequence[int]]) -> Iterator[str]:
-    """Lists one behind the other, and where each begins."""
-    starts = [0]
-    for own in values:
-        starts.append(starts[-1] + len(own))
-    yield array("int32_t", first, starts)
-    yield array("int32_t", name, [value for own in values for value in own])
-
-
-def comment(text: str) -> str:
-    """A text that cannot end a comment."""
-    return ascii(text)[1:-1].replace("*/", "* /").replace("/*", "/ *").replace("\\", "/")
-
-
-def template(name: str) -> str:
-    """The text of a file of this package's folder `c`."""
-    return files("rvmon.codegen").joinpath("c", name).read_text(encoding="utf-8")
-
-
-def filled(text: str, places: dict[str, str]) -> str:
-    """A template with its `@PLACES@` filled, in the order given."""
-    for name, part in places.items():
-        text = text.replace(f"@{name}@", part)
-    return text
-
-
-def _without(text: str, part: str) -> str:
-    before, rest = text.split(f"@{part}_BEGIN@\n", 1)
-    return before + rest.split(f"@{part}_END@\n", 1)[1]
-
-
-def _without_function(text: str, start: str) -> str:
-    if start not in text:
-        return text
-    before, rest = text.split(start, 1)
-    return before + rest.split("\n}\n", 1)[1]

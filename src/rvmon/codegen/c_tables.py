@@ -122,3 +122,12 @@ def array(kind: str, name: str, values: Sequence[int]) -> str:
     """A constant array; one of no elements holds a zero that nobody reads."""
     texts = [f"INT64_C({v})" if kind == "int64_t" else str(v) for v in values] or ["0"]
     return f"static const {kind} {name}[] = {{{', '.join(texts)}}};"
+
+
+def lists(first: str, name: str, values: Sequence[Sequence[int]]) -> Iterator[str]:
+    """Lists one behind the other, and where each begins."""
+    starts = [0]
+    for own in values:
+        starts.append(starts[-1] + len(own))
+    yield array("int32_t", first, starts)
+    yield array("int32_t", name, [value for own in values for value in own])

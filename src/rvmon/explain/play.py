@@ -64,7 +64,7 @@ def play(
     ledger.flush()
     ids = [one.requirement.id for one in requirements]
     report = report_of(ids, ledger.attempts, origin=samples[0].t, end=end)
-    example = Example(tuple(samples), end, report.verdicts, report.attempts)
+    example = Example(tuple(samples), end, report.verdicts, tuple(report.attempts))
     return Played(example, situation, cut)
 
 

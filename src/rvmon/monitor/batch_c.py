@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.codegen.c_batch import YES, BatchLibrary, Column
+from rvmon.codegen.c_batch import NO, YES, BatchLibrary, BatchRun, Column
 from rvmon.codegen.c_columns import columns_of_samples
 from rvmon.errors import TimeOrderError
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.generated import plan_alone
+from rvmon.monitor.recorded import report_of_records
+from rvmon.spec.checked import CheckedSpec
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+PIECE = 1 << 14
+"""Samples that are laid out as columns at a time."""
 
 
 def library_of(compiled: CompiledSpec, only: Sequence[str] | None) -> BatchLibrary:
@@ -55,52 +60,70 @@ def evaluate_arrays(
     Raises:
         TimeOrderError: an instant is not after the one before.
     """
-    library = library_of(compiled, only)
-    signals = compiled.checked.signals
+    with _Judging(compiled, only, frozenset(columns)) as judging:
+        judging.take(times, array_columns(compiled.checked, columns))
+        return judging.report(until)
+
+
+def array_columns(spec: CheckedSpec, columns: Mapping[str, NDArray[Any]]) -> dict[str, Column]:
+    """Arrays of truth values and numbers as a compiled monitor takes them."""
     made = {}
     for name, column in columns.items():
-        if name in signals:
-            states = np.full(len(times), YES, np.uint8)
-            made[name] = Column(states, np.ascontiguousarray(column, np.float64))
+        if name in spec.signals:
+            made[name] = Column(None, column)
         else:
-            made[name] = Column(column.astype(np.uint8) * np.uint8(YES))
-    return _judged(library, times, made, frozenset(columns), compiled, only, until)
+            made[name] = Column(np.where(column, np.uint8(YES), np.uint8(NO)))
+    return made
 
 
 def evaluate_recording(
     compiled: CompiledSpec, recording: Recording, *, only: Sequence[str] | None, until: int | None
 ) -> Report:
-    """Judge a recording; all of it is in memory at once.
+    """Judge a recording; so many samples at a time are in memory.
 
     Raises:
         TimeOrderError: an instant is not after the one before.
         TraceError: an instant has two payloads of one event.
     """
-    library = library_of(compiled, only)
-    samples = tuple(recording)
-    times = np.array([sample.t for sample in samples], np.int64)
-    columns = columns_of_samples(samples, library.names)
-    end = recording.end if until is None else until
-    return _judged(library, times, columns, recording.names, compiled, only, end)
+    with _Judging(compiled, only, recording.names) as judging:
+        names = judging.library.names
+        samples = iter(recording)
+        while some := list(islice(samples, PIECE)):
+            times = np.array([sample.t for sample in some], np.int64)
+            judging.take(times, columns_of_samples(some, names))
+        return judging.report(recording.end if until is None else until)
 
 
-def _judged(
-    library: BatchLibrary,
-    times: NDArray[np.int64],
-    columns: Mapping[str, Column],
-    names: frozenset[str] | None,
-    compiled: CompiledSpec,
-    only: Sequence[str] | None,
-    until: int | None,
-) -> Report:
-    declared = {*compiled.checked.signals, *compiled.checked.events}
-    absent = frozenset() if names is None else frozenset(declared - names)
-    judged = library.judge(np.ascontiguousarray(times), columns, absent=absent, until=until)
-    if judged.rows < len(times):
-        raise TimeOrderError(
-            f"row {judged.rows} at {format_ticks(int(times[judged.rows]))} is not after the one "
-            "before: sort the recording by time"
-        )
-    ids = [name for name in compiled.requirements if only is None or name in only]
-    origin = int(times[0]) if len(times) else 0
-    return report_of(ids, judged.attempts, origin=origin, end=judged.end)
+class _Judging:
+    """A run of a compiled monitor over the rows of one recording."""
+
+    def __init__(
+        self, compiled: CompiledSpec, only: Sequence[str] | None, names: frozenset[str] | None
+    ) -> None:
+        declared = {*compiled.checked.signals, *compiled.checked.events}
+        self.library = library_of(compiled, only)
+        self._ids = [rule.requirement.id for rule in self.library.plan.rules]
+        self._run = BatchRun(self.library, frozenset(declared - (names or declared)))
+        self._rows = 0
+        self._origin: int | None = None
+
+    def __enter__(self) -> _Judging:
+        return self
+
+    def __exit__(self, *what: object) -> None:
+        self._run.__exit__(*what)
+
+    def take(self, times: NDArray[np.int64], columns: Mapping[str, Column]) -> None:
+        taken = self._run.feed(times, columns)
+        if taken < len(times):
+            raise TimeOrderError(
+                f"row {self._rows + taken} at {format_ticks(int(times[taken]))} is not after the "
+                "one before: sort the recording by time"
+            )
+        if self._origin is None and len(times):
+            self._origin = int(times[0])
+        self._rows += taken
+
+    def report(self, until: int | None) -> Report:
+        records, end = self._run.close(until)
+        return report_of_records(self._ids, records, origin=self._origin or 0, end=end)

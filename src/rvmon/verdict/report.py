@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.trace.health import Health
@@ -26,7 +26,7 @@ class Report:
     """
 
     verdicts: Mapping[str, Verdict]
-    attempts: tuple[Attempt, ...]
+    attempts: Sequence[Attempt]
     counts: Mapping[str, Mapping[Verdict, int]]
     health: tuple[Health, ...] = ()
     trace: str = ""

@@ -1,0 +1,113 @@
+"""Reports of compiled monitors: their records become attempts when someone looks at them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from rvmon.codegen.c_tables import DECISIONS, VERDICTS
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict, fold
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_OPEN = DECISIONS.index(Decision.OPEN)
+
+
+class RecordedAttempts(Sequence[Attempt]):
+    """Attempts without reasons, made from the records of a compiled monitor.
+
+    Args:
+        ids: of the requirements, by number.
+        records: array of `rvmon.codegen.c_batch.RECORD`, in the order of reports.
+    """
+
+    def __init__(self, ids: Sequence[str], records: NDArray[Any]) -> None:
+        self._ids = tuple(ids)
+        self._records = records
+
+    def __len__(self) -> int:
+        return len(self._records)
+
+    @overload
+    def __getitem__(self, index: int) -> Attempt: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Attempt]: ...
+    def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
+        if isinstance(index, slice):
+            return RecordedAttempts(self._ids, self._records[index])
+        return self._attempt(*self._records[index].tolist())
+
+    def __iter__(self) -> Iterator[Attempt]:
+        return (self._attempt(*record) for record in self._records.tolist())
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Sequence):
+            return NotImplemented
+        return tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _attempt(
+        self,
+        requirement: int,
+        number: int,
+        triggered: int,
+        decided: int,
+        verdict: int,
+        decision: int,
+    ) -> Attempt:
+        return Attempt(
+            self._ids[requirement],
+            number,
+            triggered,
+            None if decision == _OPEN else decided,
+            VERDICTS[verdict],
+            DECISIONS[decision],
+        )
+
+
+def report_of_records(
+    ids: Sequence[str], records: NDArray[Any], *, origin: int, end: int | None
+) -> Report:
+    """Sort, count and fold records, as `rvmon.verdict.assemble.report_of` does attempts.
+
+    Args:
+        ids: of all requirements that were judged, by number.
+        records: array of `rvmon.codegen.c_batch.RECORD`, in any order.
+        origin: the instant from which people count seconds, ticks.
+        end: the last instant of the trace, ticks.
+
+    Source: SEMANTICS, section 3.
+    """
+    codes = records["requirement"] * len(VERDICTS) + records["verdict"]
+    seen = np.bincount(codes, minlength=len(ids) * len(VERDICTS)).reshape(-1, len(VERDICTS))
+    counts = {
+        name: {verdict: int(seen[index, VERDICTS.index(verdict)]) for verdict in _COUNTED}
+        for index, name in enumerate(ids)
+    }
+    return Report(
+        verdicts={
+            name: fold([verdict for verdict, count in own.items() if count])
+            for name, own in counts.items()
+        },
+        attempts=RecordedAttempts(ids, _ordered(records)),
+        counts=counts,
+        origin=origin,
+        end=end,
+    )
+
+
+_COUNTED = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
+
+
+def _ordered(records: NDArray[Any]) -> NDArray[Any]:
+    """By decision instant, requirement and number; the undecided ones last."""
+    undecided = records["decision"] == _OPEN
+    decided = np.where(undecided, 0, records["decided"])
+    order = np.lexsort((records["number"], records["requirement"], decided, undecided))
+    return records[order]
