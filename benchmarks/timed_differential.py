@@ -22,7 +22,7 @@ from rvmon.timed.verify import verify
 KINDS = (
     "E<> p", "A[] p", "A<> p", "E[] p", "p --> q", "p -->[<=T] q", "E<>[<=T] p", "A<>[<=T] p",
     "E<> deadlock", "A[] (deadlock imply p)", "A[] (p imply EF q)", "E<> (p and AG q)",
-    "A[] (p or AF q)",
+    "A[] (p or AF q)", "E<>[<=T] deadlock",
 )  # fmt: skip
 """The queries of a random network, in order."""
 

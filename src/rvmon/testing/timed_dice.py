@@ -117,4 +117,5 @@ class _Dice:
             f"A[] ({self._state(1)} imply EF {self._state(1)})",
             f"E<> ({self._state(1)} and AG {self._state(1)})",
             f"A[] ({self._state(1)} or AF {self._state(1)} or {self._state(1)})",
+            f"E<>[<={bound}] deadlock",
         ]

@@ -241,12 +241,9 @@ def decide(network: Network, query: Query, limit: int = 5_000) -> bool:
 
 def _reaches(network: Network, formula: Expression, bound: int | None, limit: int) -> bool:
     graph = RegionGraph(network, [formula], bound, limit)
-    regions = graph.reachable([graph.start()])
+    regions = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
     if not speaks_of_deadlock(formula):
-        return any(
-            satisfies(region.now, formula) and (bound is None or region.timer <= bound)
-            for region in regions
-        )
+        return any(satisfies(region.now, formula) for region in regions)
     by_death = {dead: with_deadlock(formula, dead) for dead in (True, False)}
     return any(satisfies(r.now, by_death[graph.is_dead(r)]) for r in regions)
 

@@ -103,10 +103,11 @@ def _edges(
 ) -> Iterator[Edge]:
     """One edge for each choice of the selected values."""
     source, target = _location(written.source, names), _location(written.target, names)
-    ranges = [
-        values_of(resolver.type(selection.type, scope), selection.span)
-        for selection in written.selections
-    ]
+    ranges, selected_names = [], Scope()
+    for selection in written.selections:
+        refuse_double(selection.name, selection.span, selected_names)
+        selected_names.places[selection.name] = selection.span
+        ranges.append(values_of(resolver.type(selection.type, scope), selection.span))
     for count, chosen in enumerate(product(*ranges)):
         if count >= MAX_VALUES:
             raise model_error("TA019", f"more than {MAX_VALUES:,} edges in one", written.span)

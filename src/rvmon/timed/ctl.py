@@ -53,7 +53,7 @@ class Satisfaction:
         self._space = space
         self._dim = space.dim
         self._meter = meter
-        self._into = _moves_into(space)
+        self._into = _moves_into(space, meter)
         self._makers: dict[Expression, PieceMaker] = {}
         self._reaching: dict[Expression, dict[State, Federation]] = {}
 
@@ -120,13 +120,13 @@ class Satisfaction:
         return found
 
 
-def _moves_into(space: Space) -> dict[State, list[tuple[State, Move]]]:
+def _moves_into(space: Space, meter: Meter) -> dict[State, list[tuple[State, Move]]]:
     """For each discrete state the moves that lead to it, with their sources."""
     start = space.initial()
     assert start is not None  # noqa: S101 - the network can start
     into: dict[State, list[tuple[State, Move]]] = {start: []}
     waiting = [start]
-    while waiting:
+    while waiting and meter.count(len(waiting)):
         state = waiting.pop()
         for move in space.moves(state):
             if move.failure is not None:

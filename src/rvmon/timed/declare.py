@@ -27,6 +27,12 @@ from rvmon.timed.scope import (
 )
 from rvmon.timed.syntax import BaseType
 
+MAX_CLOCKS = 255
+"""The most clocks of a network: a zone has the square of it in numbers."""
+
+MAX_PARTS = 100_000
+"""The most variables, and the most channels, of a network with all elements of its arrays."""
+
 Part = TypeVar("Part", Clock, Variable, Channel)
 Read = TypeVar("Read")
 
@@ -117,18 +123,18 @@ def _symbol(item: syntax.Declared, scope: Scope, parts: Parts, resolver: Resolve
         case BaseType.CLOCK | BaseType.CHANNEL if value is not None:
             raise model_error("TA004", f"`{item.name}` cannot have an initial value", item.span)
         case BaseType.CLOCK:
-            first = len(parts.clocks)
+            first = _room(parts.clocks, extents, MAX_CLOCKS, "clocks", item.span)
             parts.clocks += _spread(extents, lambda suffix: Clock(name + suffix))
             return ClockSymbol(Slot(first, extents))
         case BaseType.CHANNEL:
-            first = len(parts.channels)
+            first = _room(parts.channels, extents, MAX_PARTS, "channels", item.span)
             parts.channels += _spread(
                 extents, lambda suffix: Channel(name + suffix, kind.broadcast, kind.urgent)
             )
             parts.channel_spans += [item.span] * prod(map(len, extents))
             return ChannelSymbol(Slot(first, extents))
         case BaseType.INT | BaseType.BOOL | BaseType.NAMED:
-            first = len(parts.variables)
+            first = _room(parts.variables, extents, MAX_PARTS, "variables", item.span)
             numbers = iter(_flatten(_default(kind, extents) if value is None else value))
             parts.variables += _spread(
                 extents, lambda suffix: _variable(name + suffix, kind, next(numbers))
@@ -136,6 +142,16 @@ def _symbol(item: syntax.Declared, scope: Scope, parts: Parts, resolver: Resolve
             return VariableSymbol(Slot(first, extents))
         case _:
             assert_never(kind.base)
+
+
+def _room(
+    parts: Sequence[Part], extents: tuple[range, ...], most: int, what: str, span: Span
+) -> int:
+    """The index of the next part, if as many as a declaration makes may be added."""
+    if len(parts) + prod(map(len, extents)) > most:
+        mend = "declare smaller arrays, or fewer instances of what has them"
+        raise model_error("TA019", f"more than {most:,} {what}", span, mend)
+    return len(parts)
 
 
 def _variable(name: str, kind: ResolvedType, initial: int) -> Variable:
@@ -155,6 +171,8 @@ def array_extent(size: syntax.Size, scope: Scope, resolver: Resolver) -> range:
     number = resolver.constant(size, scope)
     if number < 1:
         raise model_error("TA007", f"an array of {number} elements", size.span)
+    if number > MAX_VALUES:
+        raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", size.span)
     return range(number)
 
 

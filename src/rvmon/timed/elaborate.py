@@ -9,7 +9,7 @@ from math import prod
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.timed import syntax
 from rvmon.timed.automata import automaton_of, location_names
-from rvmon.timed.declare import Findings, Parts, declare
+from rvmon.timed.declare import Findings, Parts, declare, refuse_double
 from rvmon.timed.guards import is_discrete
 from rvmon.timed.instantiate import processes_of
 from rvmon.timed.model import Automaton, Expression, LeadsToFormula, Network, Query, Signal
@@ -53,8 +53,9 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
     if not automata and not findings.found:
         findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
     names = Names(top, symbols)
-    queries = _queries(document.queries, names, findings)
-    signals = _signals(document.signals, names, findings)
+    # Without an automaton, which is an error itself, no query has a meaning.
+    queries = _queries(document.queries if symbols else (), names, findings)
+    signals = _signals(document.signals if symbols else (), names, findings)
     _check_channels(parts, automata, findings)
     findings.raise_errors()
     return Network(
@@ -109,9 +110,12 @@ def _queries(
     written: Iterable[syntax.QueryText], names: Names, findings: Findings
 ) -> tuple[Query, ...]:
     resolver, top = Resolver(names.automata), names.top
-    queries = []
+    queries, ids = [], Scope()
     for query in written:
         with findings.collect():
+            if query.id:
+                refuse_double(query.id, query.span, ids)
+                ids.places[query.id] = query.span
             meaning = _formula(query.formula, resolver, top)
             queries.append(Query(query.id, query.remark, query.text, meaning, query.span))
     return tuple(queries)
@@ -131,9 +135,11 @@ def signal_on(network: Network, name: str, text: str) -> Signal:
 
 
 def _signals(written: Iterable[SignalText], names: Names, findings: Findings) -> tuple[Signal, ...]:
-    resolver, signals = Resolver(names.automata), []
+    resolver, signals, taken = Resolver(names.automata), list[Signal](), Scope()
     for signal in written:
         with findings.collect():
+            refuse_double(signal.name, signal.span, taken)
+            taken.places[signal.name] = signal.span
             value = resolver.expression(signal.value, names.top)
             if not is_discrete(value):
                 mend = "use locations and variables only"
@@ -148,8 +154,7 @@ def _formula(
     if not isinstance(written, syntax.LeadsTo):
         return resolver.expression(written, top)
     left, right = resolver.expression(written.left, top), resolver.expression(written.right, top)
-    bound = None if written.bound is None else resolver.constant(written.bound, top)
-    return LeadsToFormula(left, right, bound)
+    return LeadsToFormula(left, right, resolver.limit(written.bound, top))
 
 
 def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findings) -> None:

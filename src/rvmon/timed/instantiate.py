@@ -8,7 +8,7 @@ from itertools import product
 
 from rvmon.timed import syntax
 from rvmon.timed.declare import Findings, array_extent, check_range, refuse_double
-from rvmon.timed.resolve import Resolver, suggest, values_of
+from rvmon.timed.resolve import MAX_VALUES, Resolver, suggest, values_of
 from rvmon.timed.rules import model_error
 from rvmon.timed.scope import (
     ChannelSymbol,
@@ -65,6 +65,7 @@ def _instances(
     family: Family, families: Mapping[str, Family], top: Scope, resolver: Resolver
 ) -> Iterator[Process]:
     """One process for each choice of the parameters' values."""
+    _refuse_circle(family, families)
     ranges = []
     for parameter in family.parameters:
         if parameter.reference or parameter.sizes:
@@ -72,12 +73,28 @@ def _instances(
             message = f"the parameter `{parameter.name}` needs an argument"
             raise model_error("TA015", message, parameter.span, mend)
         ranges.append(values_of(resolver.type(parameter.type, top), parameter.type.span))
-    for arguments in product(*ranges):
+    for count, arguments in enumerate(product(*ranges)):
+        if count >= MAX_VALUES:
+            mend = "narrow the types of its parameters"
+            raise model_error("TA019", f"more than {MAX_VALUES:,} instances", family.span, mend)
         bound = [ConstantSymbol(value) for value in arguments]
         template, scope = _bind(family, bound, families, top, resolver)
         listed = f"({', '.join(map(str, arguments))})" if arguments else ""
         scope.prefix = f"{family.name}{listed}."
         yield Process(family.name, arguments, template, scope)
+
+
+def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:
+    """Refuse an instance of an instance of … itself."""
+    seen: set[str] = set()
+    current: Family | None = family
+    while isinstance(current, syntax.Instance):
+        if current.name in seen:
+            mend = "make it an instance of an automaton"
+            message = f"`{current.name}` is an instance of itself"
+            raise model_error("TA015", message, current.span, mend)
+        seen.add(current.name)
+        current = families.get(current.template.name)
 
 
 def _bind(
@@ -89,17 +106,19 @@ def _bind(
 ) -> tuple[syntax.Template, Scope]:
     scope = Scope(top)
     for parameter, argument in zip(family.parameters, arguments, strict=True):
+        refuse_double(parameter.name, parameter.span, scope)
         scope.symbols[parameter.name] = argument
         scope.places[parameter.name] = parameter.span
     if isinstance(family, syntax.Template):
         return family, scope
     target = families.get(family.template.name)
-    if target is None or target is family:
+    if target is None:
         mend = suggest(family.template.name, list(families))
         message = f"no template `{family.template.name}`"
         raise model_error("TA002", message, family.template.span, mend)
     if len(target.parameters) != len(family.arguments):
-        message = f"`{target.name}` takes {len(target.parameters)} arguments"
+        count = len(target.parameters)
+        message = f"`{target.name}` takes {count} argument{'' if count == 1 else 's'}"
         raise model_error("TA015", f"{message}, {len(family.arguments)} given", family.span)
     bound = [
         _argument(parameter, written, scope, resolver)

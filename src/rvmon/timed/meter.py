@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import gc
-import resource
+import mmap
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from rvmon.timed.search import Budget, Progress, Statistics, Watch
 
-CHECK_EVERY = 512
+CHECK_EVERY = 128
 """States between two looks at the clock and at the memory."""
 
 
@@ -67,12 +68,29 @@ class Meter:
         budget, seconds = self._budget, self.seconds
         if budget.seconds is not None and seconds > budget.seconds:
             self.stopped = f"{budget.seconds:g} s went by"
-        elif budget.megabytes is not None and _megabytes() > budget.megabytes:
+        elif budget.megabytes is not None and _is_full(budget.megabytes):
             self.stopped = f"{budget.megabytes:,} MB of memory were in use"
         elif self._watch is not None:
             self._watch(Progress(self.visited, waiting, seconds))
 
 
+def _is_full(limit: int) -> bool:
+    if _megabytes() <= limit:
+        return False
+    gc.collect()  # what earlier searches left behind goes round in circles
+    return _megabytes() > limit
+
+
 def _megabytes() -> float:
+    """What the process holds now; at its highest, or 0, where the system tells no more."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+        return pages * mmap.PAGESIZE / (1 << 20)
+    except OSError:
+        pass
+    try:
+        import resource
+    except ImportError:
+        return 0.0
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)

@@ -27,11 +27,15 @@ class NestedReachability(Steps):
     def __init__(self, network: Network, formula: Expression, meter: Meter) -> None:
         super().__init__(network, formula, bisimilar=True)
         self._formula = formula
+        self._meter = meter
         self._satisfaction = Satisfaction(self.space, meter)
 
     def goal(self, site: State, zone: Zone) -> Piece | None:
         """A part of the zone where the formula holds."""
-        for part in self._satisfaction.of(self._formula, site):
+        parts = self._satisfaction.of(self._formula, site)
+        if self._meter.stopped:
+            return None  # what the backward search has not met yet may decide otherwise
+        for part in parts:
             piece = piece_of(part, self.dim)
             if meets(zone, self.dim, piece):
                 return piece

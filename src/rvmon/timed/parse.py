@@ -12,6 +12,7 @@ import lark
 
 from rvmon.diagnostics import Source, Span
 from rvmon.errors import ModelError
+from rvmon.timed.foreign import reason_at
 from rvmon.timed.rules import model_error
 from rvmon.timed.syntax import Document, QueryText
 from rvmon.timed.syntax_builder import SyntaxBuilder
@@ -101,13 +102,8 @@ def _syntax_error(
     start = len(text) if at_end else error.pos_in_stream or 0
     length = 0 if at_end else len(token) if token is not None else 1
     found = "the end" if at_end else f"`{text[start : start + length]}`"
-    if found in _UNSUPPORTED:
-        return model_error("TA016", _UNSUPPORTED[found], place(start, start + length))
-    if found == "`(`" and rule in ("declarations", "system"):
-        mend = "write its body out where it is used"
-        return model_error(
-            "TA016", "functions are not supported", place(start, start + length), mend
-        )
+    if (reason := reason_at(text, start, length, rule)) is not None:
+        return model_error("TA016", reason[0], place(start, start + length), reason[1])
     words = _words(set(expected))
     message = f"found {found}" + (f", expected {words}" if words else "")
     return model_error("TA001", message, place(start, start + length), _mend(text, start))
@@ -122,10 +118,6 @@ def _mend(text: str, offset: int) -> str:
 
 
 _PATH = re.compile(r"[AE](?:<>|\[\])")
-_UNSUPPORTED = {
-    "`'`": "rates of clocks (stop-watches, hybrid models) are not supported",
-    "`{`": "blocks of statements are not supported",
-}
 _OPERATORS = {
     "AND", "OR", "IMPLY", "EQUALITY", "RELATION", "PLUS", "MINUS", "FACTOR", "LSQB", "DOT",
     "RECEIVE", "__ANON_2", "__ANON_3",

@@ -64,10 +64,15 @@ class DeadlockReachability(Steps):
     Args:
         network: where to look.
         formula: normalised.
+        within: units of time since the start; `None`: whenever.
     """
 
-    def __init__(self, network: Network, formula: Expression) -> None:
-        super().__init__(network, formula, bisimilar=True)
+    def __init__(self, network: Network, formula: Expression, *, within: int | None) -> None:
+        timer = 1 + len(network.clocks)
+        bounds = [] if within is None else [(timer, float(within))]
+        uppers = [(clock, -bound) for clock, bound in bounds]
+        super().__init__(network, formula, len(bounds), uppers, bounds, bisimilar=True)
+        self._due: Piece = tuple((0, clock, bound) for clock, bound in bounds)
         self._deadlocks = Deadlocks(self.space)
         self._if_dead = piece_maker(with_deadlock(formula, value=True))
         self._if_alive = piece_maker(with_deadlock(formula, value=False))
@@ -84,8 +89,9 @@ class DeadlockReachability(Steps):
         for parts, pieces in ((dead, dead_pieces), (alive, alive_pieces)):
             for part in parts:
                 for piece in pieces:
-                    if meets(part, self.dim, piece):
-                        return (*piece, *piece_of(part, self.dim))
+                    due = (*piece, *self._due)
+                    if meets(part, self.dim, due):
+                        return (*due, *piece_of(part, self.dim))
         return None
 
     def ending(self, site: State, piece: Piece) -> Ending:

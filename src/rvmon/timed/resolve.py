@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.timed import syntax
 from rvmon.timed.evaluate import apply_binary, apply_unary
+from rvmon.timed.foreign import type_reason
 from rvmon.timed.guards import is_discrete
 from rvmon.timed.model import (
     BinaryOperation,
@@ -23,7 +24,7 @@ from rvmon.timed.model import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.rules import model_error
+from rvmon.timed.rules import model_error, refusal
 from rvmon.timed.scope import (
     AutomatonKey,
     AutomatonSymbol,
@@ -40,6 +41,9 @@ from rvmon.timed.zones import MAX_TIME
 
 MAX_VALUES = 10_000
 """The most values that a quantifier, a `select`, a parameter or an array may range over."""
+
+MAX_UNROLLED = 200_000
+"""The most conditions that the quantifiers of a model may stand for together."""
 
 INT16 = (-32768, 32767)
 """UPPAAL's `int` without a range."""
@@ -66,10 +70,12 @@ class Resolver:
     Attributes:
         automata: by name and arguments; only queries can see them.
         open_ints: whether `int` without a range is allowed.
+        unrolled: conditions that quantifiers stood for so far.
     """
 
     automata: Mapping[AutomatonKey, AutomatonSymbol] = field(default_factory=dict)
     open_ints: bool = False
+    unrolled: int = 0
 
     def expression(self, written: syntax.Expression, scope: Scope) -> Expression:
         """The expression over the network.
@@ -102,22 +108,28 @@ class Resolver:
                     return yes if test.value else no
                 return Choice(test, yes, no)
             case syntax.Quantified(universal, name, kind, body, span):
-                op = BinaryOp.AND if universal else BinaryOp.OR
-                result: Expression = Constant(int(universal))
-                for value in values_of(self.type(kind, scope), kind.span):
-                    inner = scope.inner({name: ConstantSymbol(value)})
-                    result = _binary(op, result, self.expression(body, inner), span)
-                return result
+                values = values_of(self.type(kind, scope), kind.span)
+                self._count(len(values), span)
+                parts = [
+                    self.expression(body, scope.inner({name: ConstantSymbol(value)}))
+                    for value in values
+                ]
+                return _joined(BinaryOp.AND if universal else BinaryOp.OR, parts, span)
             case syntax.Path(op, body, bound, span):
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
-                limit = None if bound is None else self.constant(bound, scope)
-                return PathFormula(op, self.expression(body, scope), limit)
+                return PathFormula(op, self.expression(body, scope), self.limit(bound, scope))
             case syntax.LeadsTo(_, _, _, span):
                 mend = "write A[] (p imply A<> q)"
                 raise model_error("TA020", "`-->` can only stand outermost", span, mend)
             case _:
                 assert_never(written)
+
+    def _count(self, parts: int, span: Span) -> None:
+        self.unrolled += parts
+        if self.unrolled > MAX_UNROLLED:
+            message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
+            raise model_error("TA019", message, span, "let them range over smaller types")
 
     def constant(self, written: syntax.Expression, scope: Scope) -> int:
         """The value of an expression that must not depend on the state.
@@ -132,6 +144,20 @@ class Resolver:
                 mend = "use numbers, `const` names and parameters only"
                 raise model_error("TA006", "this is not constant", written.span, mend)
 
+    def limit(self, written: syntax.Expression | None, scope: Scope) -> int | None:
+        """The bound of a path operator in units of time, if it has one.
+
+        Raises:
+            ModelError: it is not constant, or no time.
+        """
+        if written is None:
+            return None
+        units = self.constant(written, scope)
+        if not 0 <= units < MAX_TIME:
+            mend = f"bounds are from 0 to {MAX_TIME - 1:,}"
+            raise model_error("TA007", f"a bound of {units}", written.span, mend)
+        return units
+
     def type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
         """The type with its range evaluated.
 
@@ -144,6 +170,8 @@ class Resolver:
         if written.base is BaseType.NAMED:
             symbol = scope.find(written.name)
             if not isinstance(symbol, TypeSymbol):
+                if (reason := type_reason(written.name)) is not None:
+                    raise model_error("TA016", reason[0], written.span, reason[1])
                 types = [n for n in scope.names() if isinstance(scope.find(n), TypeSymbol)]
                 mend = suggest(written.name, [*types, "int", "bool", "clock", "chan"])
                 raise model_error("TA002", f"no type named `{written.name}`", written.span, mend)
@@ -177,6 +205,8 @@ class Resolver:
         match written:
             case syntax.Name(name, span):
                 symbol = scope.find(name)
+                if symbol is None and scope.declares(name):
+                    raise refusal()  # why its declaration has no meaning is told there
                 if symbol is None:
                     candidates = [*scope.names(), *(n for n, _ in self.automata)]
                     raise model_error("TA002", f"no name `{name}`", span, suggest(name, candidates))
@@ -272,7 +302,8 @@ def compare_clock(clock: int, op: BinaryOp, bound: Expression, span: Span) -> Ex
     if not is_discrete(bound):
         raise model_error("TA008", "a clock compared with clocks", span)
     if isinstance(bound, Constant) and not 0 <= bound.value < MAX_TIME:
-        raise model_error("TA007", f"a clock compared with {bound.value}", span)
+        mend = f"clocks are compared with numbers from 0 to {MAX_TIME - 1:,}"
+        raise model_error("TA007", f"a clock compared with {bound.value}", span, mend)
     match op:
         case BinaryOp.EQ:
             return BinaryOperation(
@@ -321,6 +352,14 @@ def _binary(op: BinaryOp, left: Expression, right: Expression, span: Span) -> Ex
             return truth(other) if value else Constant(1)
         case _:
             return BinaryOperation(op, left, right)
+
+
+def _joined(op: BinaryOp, parts: Sequence[Expression], span: Span) -> Expression:
+    """Conditions joined as a balanced tree, which stays shallow however many there are."""
+    if len(parts) == 1:
+        return truth(parts[0])
+    half = len(parts) // 2
+    return _binary(op, _joined(op, parts[:half], span), _joined(op, parts[half:], span), span)
 
 
 def truth(expression: Expression) -> Expression:

@@ -100,6 +100,15 @@ class Scope:
             scope = scope.parent
         return None
 
+    def declares(self, name: str) -> bool:
+        """Whether a name is declared here or around, be it without a meaning."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.places:
+                return True
+            scope = scope.parent
+        return False
+
     def names(self) -> list[str]:
         """All names that can be seen from here."""
         return [*self.symbols, *(self.parent.names() if self.parent else ())]

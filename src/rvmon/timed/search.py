@@ -94,7 +94,7 @@ class Budget:
     Attributes:
         states: symbolic states visited.
         seconds: of wall-clock time.
-        megabytes: of memory that the whole process holds at its highest.
+        megabytes: of memory that the whole process holds.
     """
 
     states: int | None = None

@@ -16,6 +16,9 @@ from rvmon.timed.rules import model_error
 from rvmon.timed.syntax import BaseType, BinaryOp, LocationKind, PathOp, TypeText, UnaryOp
 from rvmon.trace.time import TICKS_PER_UNIT
 
+LARGEST = (1 << 31) - 1
+"""The largest number that a model may contain, as in UPPAAL."""
+
 _CTL = {
     "EF": PathOp.POSSIBLY,
     "AG": PathOp.INVARIANTLY,
@@ -67,14 +70,14 @@ class SyntaxBuilder(Transformer[Token, Any]):
         )
 
     def unit(self, meta: Meta, items: Sequence[Token]) -> Tree[int]:
-        number, unit = items
-        if unit not in TICKS_PER_UNIT or int(number) == 0:
+        number, unit = self._whole(items[0]), items[1]
+        if unit not in TICKS_PER_UNIT or number == 0:
             mend = "write a whole number above 0 of " + ", ".join(TICKS_PER_UNIT)
             raise model_error("TA001", "this is no unit of time", self._span(meta), mend)
-        return Tree("unit", [int(number) * TICKS_PER_UNIT[unit]])
+        return Tree("unit", [number * TICKS_PER_UNIT[unit]])
 
     def system_line(self, meta: Meta, items: Sequence[Token]) -> Tree[syntax.Name]:
-        return Tree("system_line", [self._name(name) for name in items])
+        return Tree("system_line", [self._name(i) for i in items if i.type == "NAME"])
 
     def system(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
         return (
@@ -288,7 +291,7 @@ class SyntaxBuilder(Transformer[Token, Any]):
         return syntax.UpdateText(target, value, span)
 
     def step(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
-        target, sign = items
+        target, sign = items if items[1] in ("++", "--") else reversed(items)
         span = self._span(meta)
         value = syntax.Binary(BinaryOp(sign[0]), target, syntax.Number(1, span), span)
         return syntax.UpdateText(target, value, span)
@@ -324,7 +327,14 @@ class SyntaxBuilder(Transformer[Token, Any]):
         return syntax.Quantified(word == "forall", str(name), kind, body, self._span(meta))
 
     def number(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
-        return syntax.Number(int(items[0]), self._span(meta))
+        return syntax.Number(self._whole(items[0]), self._span(meta))
+
+    def _whole(self, token: Token) -> int:
+        # Python itself refuses to read a few thousand digits.
+        if len(token.lstrip("0")) > len(str(LARGEST)) or int(token) > LARGEST:
+            mend = f"numbers go up to {LARGEST:,}"
+            raise model_error("TA007", "the number is too large", self._token_span(token), mend)
+        return int(token)
 
     def truth(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
         return syntax.Number(int(items[0] == "true"), self._span(meta))

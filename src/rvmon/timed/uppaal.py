@@ -28,7 +28,7 @@ from rvmon.timed.syntax import LocationKind
 from rvmon.timed.xml_tree import Element, read_xml
 from rvmon.trace.time import TICKS_PER_UNIT
 
-_UNIT = re.compile(r"^\s*//\s*unit\s+([1-9]\d*)\s+(\w+)\s*$", re.MULTILINE)
+_UNIT = re.compile(r"^\s*//\s*unit\s+([1-9]\d{0,9})\s+(\w+)\s*$", re.MULTILINE)
 _NAME = re.compile(r"^\s*//\s*network\s+(\w+)(?:\s+\"([^\"\n]*)\")?\s*$", re.MULTILINE)
 _WEIGHT = re.compile(r"^\s*weight\s+(\d+(?:\.\d+)?)\s*$", re.MULTILINE)
 _LABEL = re.compile(r"^\s*as\s+(\S+)\s*$", re.MULTILINE)
@@ -183,7 +183,7 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
             why = "; ".join(diagnostic.message for diagnostic in error.diagnostics)
             span = error.diagnostics[0].spans[0].span if error.diagnostics[0].spans else None
             message = f"query {number} is left out: {why}"
-            mend = "E<>, A[], A<>, E[] and --> are understood"
+            mend = error.diagnostics[0].help or "E<>, A[], A<>, E[] and --> are understood"
             warnings.append(finding("TA020", message, span, mend, severity=Severity.WARNING))
             continue
         length = len(formula.text.rstrip())

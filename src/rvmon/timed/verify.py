@@ -22,7 +22,7 @@ from rvmon.timed.reach import DeadlockReachability, Reachability
 from rvmon.timed.respond import BoundedResponse, UnboundedResponse
 from rvmon.timed.rules import model_error
 from rvmon.timed.run import Ending, Run
-from rvmon.timed.search import UNLIMITED, Budget, Node, Watch
+from rvmon.timed.search import UNLIMITED, Budget, Found, Node, Watch
 from rvmon.timed.start import check_start
 from rvmon.timed.stay import Inside
 from rvmon.timed.symbolic import Steps, lowest
@@ -75,7 +75,9 @@ def verify(
     meter = question.meter
     holds = None if run is None and meter.stopped else (run is not None) == shows
     remark = f"not decided: {meter.stopped}" if holds is None else _remark(run)
-    return Outcome(asked, holds, run, policy if chosen else None, meter.statistics(), remark)
+    if run is not None and chosen not in (None, policy):
+        remark = f"no {policy} run was found: {meter.stopped}"
+    return Outcome(asked, holds, run, chosen, meter.statistics(), remark)
 
 
 def _remark(run: Run | None) -> str:
@@ -88,18 +90,18 @@ def _remark(run: Run | None) -> str:
             return ""
 
 
-def _search(question: _Question, query: Query) -> tuple[bool, Run | None, bool]:
+def _search(question: _Question, query: Query) -> tuple[bool, Run | None, Policy | None]:
     """Look for a run that decides a query.
 
     Returns:
         Whether a run shows that the query holds (else that it does not); the run, `None` if there
-        is none; whether the policy chose it.
+        is none; the policy that chose it, if there was a choice.
     """
     match query.formula:
         case LeadsToFormula(left, right, bound):
             _refuse_nests(query, left, right)
             _refuse_deadlock(query, left, right)
-            return False, _unanswered(question, left, right, bound), False
+            return False, _unanswered(question, left, right, bound), None
         case PathFormula(op, body, bound):
             if op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = normal_form(body), True
@@ -107,14 +109,15 @@ def _search(question: _Question, query: Query) -> tuple[bool, Run | None, bool]:
                 sought, shows = normal_form(body, positive=False), False
             match op:
                 case PathOp.POSSIBLY | PathOp.INVARIANTLY if has_paths(sought):
-                    return shows, _reach_nested(question, query, sought, bound), False
+                    return shows, _reach_nested(question, query, sought, bound), None
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if speaks_of_deadlock(sought):
+                    return shows, _reach_deadlock(question, sought, bound), None
                 case PathOp.POSSIBLY | PathOp.INVARIANTLY:
-                    dead = speaks_of_deadlock(sought)
-                    return shows, reach(question, sought, bound), not dead
+                    return shows, *_reach(question, sought, bound)
                 case PathOp.EVENTUALLY | PathOp.POTENTIALLY_ALWAYS:
                     _refuse_nests(query, sought)
                     _refuse_deadlock(query, sought)
-                    return shows, _avoidance(question, sought, bound), False
+                    return shows, _avoidance(question, sought, bound), None
                 case _:
                     assert_never(op)
         case _:
@@ -138,36 +141,41 @@ def _refuse_deadlock(query: Query, *parts: Expression) -> None:
 # Reaching.
 
 
-def reach(question: _Question, formula: Expression, within: int | None) -> Run | None:
-    """A run to a normalised formula, as the policy chooses it."""
-    if speaks_of_deadlock(formula):
-        return _reach_deadlock(question, formula)
+def _reach(
+    question: _Question, formula: Expression, within: int | None
+) -> tuple[Run | None, Policy | None]:
+    """A run to a normalised formula, as the policy chooses it, or the shortest if that ends early.
+
+    Returns:
+        The run and how it was chosen; twice `None` if there is none.
+    """
     network, meter = question.network, question.meter
-    problem = Reachability(network, formula, within=within)
-    found = explore(problem, meter)
+    found = explore(Reachability(network, formula, within=within), meter)
     if found.node is None or found.piece is None:
-        return None
-    match question.policy:
-        case Policy.SHORTEST:
-            pass
-        case Policy.FASTEST:
-            problem = Reachability(network, formula, within=within, timed=True)
-            timer, dim = problem.timer, problem.dim
-            found = explore_best(
-                problem,
-                lambda _before, _move, zone: lowest(zone, dim, timer),
-                lambda _before, zone, piece: _earliest_in(zone, dim, piece, timer),
-                meter,
-            )
-        case Policy.LIKELIEST:
-            found = explore_best(
-                problem, _unlikeliness, lambda before, _zone, _piece: before, meter
-            )
-        case _:
-            assert_never(question.policy)
-    if found.node is None or found.piece is None:
-        return None
-    return _run_to(network, found.node, found.piece)
+        return None, None
+    best = None
+    if question.policy is not Policy.SHORTEST:
+        best = _best(question, formula, within)
+    if best is None or best.node is None or best.piece is None:
+        return _run_to(network, found.node, found.piece), Policy.SHORTEST
+    return _run_to(network, best.node, best.piece), question.policy
+
+
+def _best(question: _Question, formula: Expression, within: int | None) -> Found[State, Move]:
+    """The end of the run that is fastest or likeliest."""
+    fastest = question.policy is Policy.FASTEST
+    problem = Reachability(question.network, formula, within=within, timed=fastest)
+    if not fastest:
+        return explore_best(
+            problem, _unlikeliness, lambda before, _zone, _piece: before, question.meter
+        )
+    timer, dim = problem.timer, problem.dim
+    return explore_best(
+        problem,
+        lambda _before, _move, zone: lowest(zone, dim, timer),
+        lambda _before, zone, piece: _earliest_in(zone, dim, piece, timer),
+        question.meter,
+    )
 
 
 def _run_to(network: Network, node: Node[State, Move], piece: Piece) -> Run:
@@ -189,8 +197,8 @@ def _unlikeliness(before: float, move: Move | None, _zone: Zone) -> float:
     return before - sum(log(edge.edge.weight) for edge in move.edges)
 
 
-def _reach_deadlock(question: _Question, formula: Expression) -> Run | None:
-    problem = DeadlockReachability(question.network, formula)
+def _reach_deadlock(question: _Question, formula: Expression, within: int | None) -> Run | None:
+    problem = DeadlockReachability(question.network, formula, within=within)
     found = explore(problem, question.meter)
     if found.node is None or found.piece is None:
         return None

@@ -1,10 +1,13 @@
 """A search stops at its budget and says that it has not decided."""
 
+import mmap
 from pathlib import Path
 
 import pytest
 
-from rvmon.timed.load import load_network
+from rvmon.testing.timed_dice import random_model
+from rvmon.timed.load import load_network, loads_network
+from rvmon.timed.outcome import Policy
 from rvmon.timed.search import Budget, Progress
 from rvmon.timed.verify import verify
 
@@ -39,3 +42,42 @@ def test_progress_is_told():
     verify(network, network.queries[0], watch=heard.append)
     assert len(heard) >= 2
     assert [p.visited for p in heard] == sorted(p.visited for p in heard)
+
+
+@pytest.mark.parametrize("seed", [3, 18, 40])
+def test_no_budget_turns_an_answer_round(seed):
+    """Whatever was seen before the budget ended, the answer is the right one or none."""
+    network = loads_network(random_model(seed))
+    for query in network.queries:
+        answer = verify(network, query).holds
+        for states in (1, 2, 3, 5, 8, 13):
+            assert verify(network, query, budget=Budget(states=states)).holds in (None, answer)
+
+
+def test_what_is_reached_is_reached_though_no_fastest_run_was_found():
+    """A budget that ends while the fastest run is sought leaves the shortest one, and says so."""
+    network = load_network(MODEL.with_name("bridge.ta"))
+    query = network.queries[0]
+    least = verify(network, query).statistics.visited
+    outcome = verify(network, query, budget=Budget(states=least + 5), policy=Policy.FASTEST)
+    assert (outcome.holds, outcome.policy) == (True, Policy.SHORTEST)
+    assert outcome.remark.startswith("no fastest run was found: ")
+
+
+def test_memory_that_was_given_back_does_not_count():
+    """A budget of memory is for what is held now, not for what was held before."""
+    large = [bytes(1 << 20) for _ in range(64)]
+    held = sum(map(len, large)) >> 20
+    del large
+    network = load_network(MODEL, constants={"N": 3})
+    now = _resident()
+    outcome = verify(network, network.queries[0], budget=Budget(megabytes=now + held // 2))
+    assert outcome.holds
+
+
+def _resident() -> int:
+    try:
+        fields = Path("/proc/self/statm").read_text(encoding="ascii").split()
+    except OSError:
+        pytest.skip("the system does not tell what a process holds now")
+    return int(fields[1]) * mmap.PAGESIZE >> 20
