@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.spec.checked import CheckedSpec
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -27,7 +29,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--format",
         choices=("text", "concise", "json"),
         default="text",
-        help="how to print findings: in full, one line each, or JSON (default: text)",
+        help="how to print findings: in full, one line each, or as JSON, which has a line for each "
+        "as well (default: text)",
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if there are warnings")
     parser.add_argument(
@@ -57,57 +60,48 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"error: {name}: {reason}", file=sys.stderr)
             unreadable += 1
             continue
-        found, wrong = _findings(text, name, constants)
+        checked, found = _checked(text, name, constants)
         findings += found
-        broken += wrong
-        if arguments.analyse and not wrong:
-            more, remark = _analysed(text, name, constants, arguments.seconds)
+        broken += checked is None
+        if arguments.analyse and checked is not None:
+            more, remark = _analysed(checked, arguments.seconds)
             findings += more
             remarks += remark
+    findings = list(dict.fromkeys(findings))  # a file may be imported by several
     _show(arguments.format, findings)
     if arguments.format == "text":
         if remarks:
             print("\n".join(remarks))
         if findings or not (unreadable or broken):
-            print(_summary(len(arguments.specs), findings))
+            print(_summary(len(arguments.specs) - unreadable, findings))
     if unreadable or broken:
         return 2
     return int(arguments.strict and bool(findings))
 
 
-def _findings(text: str, name: str, constants: dict[str, str]) -> tuple[list[Diagnostic], bool]:
-    """What is to be said about a file, and whether it is unfit for use."""
-    from rvmon.errors import RvmonError, SpecError
-    from rvmon.monitor import compile_spec
+def _checked(
+    text: str, name: str, constants: Mapping[str, str]
+) -> tuple[CheckedSpec | None, Sequence[Diagnostic]]:
+    """The specification, or nothing if it is unfit for use, and what is to be said about it."""
+    from rvmon.errors import SpecError
     from rvmon.spec import compile_text
 
     directory = None if name == "-" else Path(name).parent
     shown = "<stdin>" if name == "-" else name
     try:
-        checked, warnings = compile_text(text, name=shown, constants=constants, directory=directory)
+        return compile_text(text, name=shown, constants=constants, directory=directory)
     except SpecError as error:
-        return list(error.diagnostics), True
-    try:
-        compile_spec(checked)
-    except RvmonError as error:  # well formed, but beyond all engines
-        print(f"error: {error}", file=sys.stderr)
-        return list(warnings), True
-    return list(warnings), False
+        return None, error.diagnostics
 
 
-def _analysed(
-    text: str, name: str, constants: dict[str, str], seconds: float
-) -> tuple[list[Diagnostic], list[str]]:
+def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic], list[str]]:
     """What an analysis finds, and in words the timelines of conflicts and what was not decided."""
     from rvmon.explain.analysed import analyse
     from rvmon.monitor import compile_spec
     from rvmon.report.analysis_text import analysis_lines
-    from rvmon.spec import compile_text
 
-    directory = None if name == "-" else Path(name).parent
-    checked, _ = compile_text(text, name=name, constants=constants, directory=directory)
     analysis = analyse(compile_spec(checked), seconds=seconds)
-    return list(analysis.findings), analysis_lines(analysis, checked)
+    return analysis.findings, analysis_lines(analysis, checked)
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Label
-from rvmon.diagnostics.snippet import snippet
+from rvmon.diagnostics.snippet import printable, snippet
 from rvmon.diagnostics.span import Source, Span
 
 
@@ -22,8 +22,12 @@ def render_concise(diagnostics: Sequence[Diagnostic]) -> str:
 
 
 def render_json(diagnostics: Sequence[Diagnostic]) -> str:
-    """A JSON array of findings; lines and columns count from 1, offsets from 0."""
-    return json.dumps([_plain(diagnostic) for diagnostic in diagnostics], indent=2)
+    """A JSON array with a line for each finding; lines and columns count from 1, offsets from 0.
+
+    The first place stands before all else, so that a pattern can read it off the line.
+    """
+    lines = [json.dumps(_plain(diagnostic)) for diagnostic in diagnostics]
+    return "[\n" + ",\n".join(lines) + "\n]" if lines else "[]"
 
 
 def _full(diagnostic: Diagnostic) -> str:
@@ -32,7 +36,7 @@ def _full(diagnostic: Diagnostic) -> str:
         arrow, mark = (":::", "-") if number else ("-->", "^")
         lines.append(snippet(label.span, label.text, arrow=arrow, mark=mark))
     if diagnostic.help:
-        lines.append(f"help: {diagnostic.help}")
+        lines.append(f"help: {_one_line(diagnostic.help)}")
     return "\n".join(lines)
 
 
@@ -45,23 +49,29 @@ def _concise(diagnostic: Diagnostic) -> str:
     place = ""
     if diagnostic.spans:
         span = diagnostic.spans[0].span
-        place = f"{span.source.name}:{span.line}:{span.column}: "
+        place = f"{printable(span.source.name)}:{span.line}:{span.column}: "
     mend = f" (help: {_one_line(diagnostic.help)})" if diagnostic.help else ""
     return f"{place}{_heading(diagnostic)}{mend}"
 
 
 def _one_line(text: str) -> str:
-    return " ".join(text.split("\n"))
+    """Fit for one line of a terminal: what does not print there could steer it."""
+    return printable(" ".join(text.split("\n")))
 
 
 def _plain(diagnostic: Diagnostic) -> dict[str, Any]:
+    places = [_place(label) for label in diagnostic.spans]
+    first = places[0] if places else None
     return {
+        "file": first["file"] if first else "",
+        "line": first["start"]["line"] if first else 0,
+        "column": first["start"]["column"] if first else 0,
+        "severity": str(diagnostic.severity),
         "code": diagnostic.code,
         "name": diagnostic.name,
-        "severity": str(diagnostic.severity),
-        "message": diagnostic.message,
-        "spans": [_place(label) for label in diagnostic.spans],
-        "help": diagnostic.help,
+        "message": _one_line(diagnostic.message),
+        "help": _one_line(diagnostic.help),
+        "spans": places,
     }
 
 

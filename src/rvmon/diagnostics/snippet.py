@@ -6,7 +6,7 @@ import unicodedata
 
 from rvmon.diagnostics.span import Span
 
-WIDEST = 160
+WIDEST = 100
 """Longer lines are cut to so many characters around the place."""
 
 
@@ -42,7 +42,7 @@ def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^"
     underline = " " * _width(head) + mark * max(_width(body), 1)
     return "\n".join(
         (
-            f"{gutter}{arrow} {span.source.name}:{number}:{span.column}",
+            f"{gutter}{arrow} {printable(span.source.name)}:{number}:{span.column}",
             f"{gutter} |",
             f"{number:>{width}} | {head}{body}{tail}".rstrip(),
             f"{gutter} | {underline}{' ' + remark if remark else ''}",
@@ -50,12 +50,16 @@ def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^"
     )
 
 
-def _shown(text: str) -> str:
-    """Tabs as one space, what does not print as the replacement character."""
+def printable(text: str) -> str:
+    """The text with tabs as spaces, and the replacement character for what does not print."""
     return "".join(
         " " if char in "\t " else char if char.isprintable() else "\N{REPLACEMENT CHARACTER}"
-        for char in text.rstrip("\r")
+        for char in text
     )
+
+
+def _shown(text: str) -> str:
+    return printable(text.rstrip("\r"))
 
 
 def _width(text: str) -> int:

@@ -61,9 +61,18 @@ def code_list() -> str:
 
 
 def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
-    close = difflib.get_close_matches(code.upper(), rules, 3, 0.5)
-    shown = [f"  {name}  {rules[name].name}" for name in close]
-    listed = "`rvmon explain codes` lists all"
-    if not shown:
-        return f"error: no diagnostic `{code}`: {listed}"
-    return "\n".join((f"error: no diagnostic `{code}`; alike are", *shown, listed))
+    shown = [f"  {rule.code}  {rule.name}" for rule in _alike(code, rules)]
+    return "\n".join(
+        (f"error: no diagnostic `{code}`; alike are", *shown, "`rvmon explain codes` lists all")
+    )
+
+
+def _alike(code: str, rules: Mapping[str, Rule]) -> list[Rule]:
+    """The three rules with the nearest numbers, or with names most alike."""
+    digits = code.upper().removeprefix("RV")
+    if digits.isdecimal():
+        number = int(digits[:9])
+        near = sorted(rules, key=lambda known: abs(int(known.removeprefix("RV")) - number))
+        return [rules[known] for known in sorted(near[:3])]
+    named = {rule.name: rule for rule in rules.values()}
+    return [named[name] for name in difflib.get_close_matches(code.lower(), named, 3, 0.0)]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.render import render_full
-from rvmon.diagnostics.span import Source
+from rvmon.diagnostics.span import Source, Span
 from rvmon.errors import SpecError
 from rvmon.spec.check import check, never_read
 from rvmon.spec.checked import CheckedSpec
@@ -16,7 +16,7 @@ from rvmon.spec.constants import overridden
 from rvmon.spec.findings import MOST, Enough, Findings
 from rvmon.spec.load import load_files
 from rvmon.spec.resolve import resolve
-from rvmon.spec.rules.syntax import too_many
+from rvmon.spec.rules.syntax import empty_file, too_many
 
 
 def compile_text(
@@ -53,6 +53,8 @@ def compile_text(
         checked = check(resolve(files, findings), findings)
         if not _errors(findings.found):
             findings.extend(never_read(checked))
+        if not files[0].items and not findings.found:
+            findings.add(empty_file(Span(source, 0, 0)))
     found = sorted(findings.found, key=lambda finding: _place(finding, source))
     if len(found) >= MOST:
         found.append(too_many(MOST))

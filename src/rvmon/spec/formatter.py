@@ -59,7 +59,8 @@ def format_text(text: str, *, name: str = "<string>") -> str:
         raise SpecError(findings.found, render_full(findings.found))
     places = split_items(text)
     if not places:
-        return "\n".join([*_gap_lines(text.split("\n")), ""]).lstrip("\n")
+        remarks = "\n".join(_gap_lines(text.split("\n"))).strip("\n")
+        return f"{remarks}\n" if remarks else ""
     blocks: list[Block] = []
     gap = text[: places[0][0]].split("\n")[:-1]
     for start, end in places:

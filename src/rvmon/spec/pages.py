@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.render import render_full
 from rvmon.spec.rules.rule import Rule
+
+WIDTH = 80
+"""Columns of the text, which is read in terminals as well."""
 
 MOST_FINDINGS = 5
 """Of more findings the first and the last are shown."""
@@ -23,9 +27,9 @@ def rule_page(rule: Rule, found: Sequence[Diagnostic]) -> str:
         (
             f"# {rule.code} {rule.name}",
             "",
-            f"*{rule.severity}* · {rule.what}",
+            textwrap.fill(f"*{rule.severity}* · {rule.what}", WIDTH),
             "",
-            rule.why,
+            textwrap.fill(rule.why, WIDTH, break_on_hyphens=False),
             "",
             "## Example",
             "",
@@ -59,7 +63,8 @@ def message_about(found: Sequence[Diagnostic]) -> str:
 
 
 def _cut(text: str) -> str:
-    return "\n".join(line if len(line) <= 100 else f"{line[:99]}…" for line in text.splitlines())
+    lines = text.splitlines()
+    return "\n".join(line if len(line) <= WIDTH else f"{line[: WIDTH - 1]}…" for line in lines)
 
 
 def _fenced(text: str, language: str) -> tuple[str, ...]:

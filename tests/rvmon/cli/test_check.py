@@ -61,6 +61,25 @@ def test_concise_and_json(write, capsys):
     assert json.loads(capsys.readouterr().out) == []
 
 
+def test_an_imported_file_is_reported_once(write, capsys):
+    """An error in a file that two others import is one error, with the place in that file."""
+    write("names.rv", "signal a : boool\n")
+    paths = [write(name, f'import "names.rv"\nevent e{name[0]}\n') for name in ("a.rv", "b.rv")]
+    assert main(["check", *paths]) == 2
+    shown = capsys.readouterr()
+    assert shown.err.count("error[RV001 syntax]") == 1
+    assert "names.rv:1:12" in shown.err
+    assert "did you mean `bool`?" in shown.err
+
+
+def test_an_empty_file_is_said(write, capsys):
+    """A file in which there is nothing is a warning, not a success."""
+    assert main(["check", write("a.rv", "# nothing\n")]) == 0
+    shown = capsys.readouterr()
+    assert "warning[RV007 empty-file]: there is nothing in this file" in shown.err
+    assert shown.out == "1 file: 1 warning\n"
+
+
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00\x01", None])
 def test_unreadable_files(write, tmp_path, capsys, content):
     """A binary or missing file is one line and 2."""

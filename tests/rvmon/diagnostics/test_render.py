@@ -58,6 +58,26 @@ def test_json():
     assert first["spans"][1]["text"] == "declared here"
 
 
+def test_json_has_a_line_for_each_finding():
+    """A pattern for lines finds the first place of each."""
+    first, second = render_json([FINDING, BARE]).splitlines()[1:-1]
+    assert first.startswith(
+        '{"file": "specs/demo.rv", "line": 3, "column": 19, "severity": "error"'
+    )
+    assert second.startswith('{"file": "", "line": 0')
+    assert json.loads(render_json([])) == []
+
+
+def test_nothing_steers_the_terminal():
+    """Control characters of a text or a file's name are replaced."""
+    source = Source("a\x1b[2J.rv", "\x1b[31m")
+    found = Diagnostic(
+        "RV001", "syntax", Severity.ERROR, "found `\x1b`", (Label(Span(source, 0, 5)),)
+    )
+    for text in (render_full([found]), render_concise([found]), render_json([found])):
+        assert "\x1b" not in text
+
+
 def lines(text, start, end):
     """The line and its underline."""
     shown = snippet(Span(Source("x", text), start, end)).splitlines()
@@ -82,6 +102,8 @@ def test_wide_and_unprintable_characters():
 def test_long_lines_are_cut_around_the_place():
     """A line of thousands of characters shows the part that matters."""
     line, underline = lines("x" * 5000 + "HERE" + "y" * 5000, 5000, 5004)
-    assert len(line) < 200
+    assert len(line) <= 110
+    assert line.startswith(" 1 | …")
+    assert line.endswith("…")
     assert line[underline.index("^") :][:4] == "HERE"
     assert underline.count("^") == 4

@@ -89,5 +89,6 @@ def test_unknown_code():
     with pytest.raises(UnknownNameError) as caught:
         page_of("RV999")
     assert "`rvmon explain codes` lists all" in str(caught.value)
-    with pytest.raises(UnknownNameError, match="RV074  implied"):
-        page_of("RV075")
+    assert "  RV074  implied\n" in str(caught.value)
+    with pytest.raises(UnknownNameError, match="RV046  never-read"):
+        page_of("never-raed")

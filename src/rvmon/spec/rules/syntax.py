@@ -131,7 +131,25 @@ TOO_MANY = Rule(
     "spec demo\nsignal door1 : bool\n\nrequirement R1\n  always door1\n",
 )
 
-RULES = (SYNTAX, REACH, MIXED_CHAIN, COMPARISON_CHAIN, TOO_DEEP, TOO_MANY)
+EMPTY = Rule(
+    "RV007",
+    "empty-file",
+    Severity.WARNING,
+    "There is nothing in the file.",
+    "All requirements of an empty file hold. It may have been emptied by accident, or another one "
+    "was meant.",
+    "# requirements of the door\n",
+    """# requirements of the door
+spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+""",
+)
+
+RULES = (SYNTAX, REACH, MIXED_CHAIN, COMPARISON_CHAIN, TOO_DEEP, TOO_MANY, EMPTY)
 
 
 def syntax_error(message: str, span: Span, mend: str = "") -> Diagnostic:
@@ -208,6 +226,16 @@ def too_much_work(span: Span) -> Diagnostic:
         "the macros of this file expand to more than can be checked",
         span,
         mend="use macros without parameters where you can: they are expanded once",
+    )
+
+
+def empty_file(span: Span) -> Diagnostic:
+    """A file without items."""
+    return finding(
+        EMPTY,
+        "there is nothing in this file: no signal, no requirement",
+        span,
+        mend="`rvmon init DATA` writes a first specification from a recording",
     )
 
 
