@@ -152,7 +152,7 @@ class Spec:
         """The fast way for NumPy arrays and Arrow tables; `None` where it does not lead."""
         if not (hasattr(trace, "column_names") or isinstance(trace, Mapping)):
             return None
-        from rvmon.monitor.batch import arrays_of, can_batch, evaluate_columns
+        from rvmon.monitor.batch import arrays_of, can_batch, evaluate_columns, in_order
 
         arrays = arrays_of(trace, self.checked, time)
         if arrays is None:
@@ -162,7 +162,7 @@ class Spec:
             from rvmon.monitor.batch_c import evaluate_arrays
 
             return evaluate_arrays(self._compiled, columns, times, only=only, until=until)
-        if not can_batch(self._compiled, only):
+        if not can_batch(self._compiled, only) or not in_order(times):
             return None
         return evaluate_columns(
             self._compiled, columns, times, only=only, engine=engine, until=until

@@ -145,7 +145,7 @@ def _refreshing(plan: Plan, names: Names) -> Iterator[str]:
     yield ""
     yield "/* Rows that are further apart are marked: a signal may be stale between them. */"
     bound = "INT64_MAX" if shortest is None else f"INT64_C({shortest})"
-    yield f"static const int64_t farthest = {bound};"
+    yield f"#define FARTHEST {bound}"
     yield ""
     yield "/* Note that signals were updated at `t` by rows that were passed over. */"
     yield "static void refresh(monitor *m, const batch_in *in, int64_t t)"
