@@ -17,11 +17,9 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from rvmon.session import Spec
 from rvmon.spec.checked import TimeModel
-from rvmon.testing.case import Case
 from rvmon.testing.differential import Tally, campaign
-from rvmon.testing.drive import Monitored
+from rvmon.testing.forms import FORMS, Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 
@@ -29,21 +27,16 @@ MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeM
 FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale")
 
 
-def make_monitor(engine: str, case: Case) -> Monitored:
-    """A monitor of the public interface."""
-    return Spec(case.spec).monitor(engine=engine, sources=case.names)
-
-
 def run_part(
     options: argparse.Namespace, profile: Profile, traces: TraceProfile, seeds: list[str]
 ) -> Tally:
     """Judge the cases of some seeds; runs in a worker."""
     return campaign(
-        partial(make_monitor, options.engine),
+        Maker(options.engine),
         seeds,
         profile,
         traces,
-        online_every=options.online_every,
+        online_every=0 if options.engine == "c" else options.online_every,
         shrunk=0 if options.fail_fast else options.show,
     )
 
@@ -54,7 +47,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--pairs", type=int, default=1_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
-    parser.add_argument("--engine", default="auto")
+    parser.add_argument("--engine", choices=FORMS, default="auto")
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--depth", type=int, default=4)
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
@@ -102,6 +95,7 @@ def show(total: Tally, options: argparse.Namespace, seconds: float) -> None:
     decided = sum(n for name, n in total.attempts.items() if name != "I")
     print(f"engine {options.engine}, time {options.time or 'all'}, seed {options.seed}")
     print(f"pairs {total.pairs}, attempts {attempts}, in {seconds:.0f} s")
+    print(f"refused {total.refused}")
     print("verdicts  ", ", ".join(f"{name} {share[name]}" for name in sorted(share)))
     print("settled by", ", ".join(f"{name} {n}" for name, n in total.decisions.most_common()))
     on_bound = 100 * total.on_bound / max(decided, 1)

@@ -69,6 +69,8 @@ def _take_signal(plan: Plan, names: Names, name: str) -> Iterator[str]:
     yield f"    const double value = known ? sample->value[{number}] : unknown_value();"
     if stale_after is not None:
         yield f"    m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
+        # The update may change no value: then nothing else has the timer seen to.
+        yield f"    m->alarm = least(m->alarm, m->stale_at[{number}]);"
     if uses is not None and (uses.history or uses.marked):
         yield f"    m->updated[{number}] = 1;"
         if uses.history:

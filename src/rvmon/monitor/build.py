@@ -8,7 +8,6 @@ from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.generated import Forms, GeneratedMonitor, can_generate
 from rvmon.monitor.monitor import Monitor
-from rvmon.spec.checked import TimeModel
 
 _GENERATED = ("auto", "python")
 
@@ -51,9 +50,7 @@ def build_monitor(
     for requirement in chosen:
         requirement.machine(engine)
     given = None if sources is None else frozenset(sources)
-    # Between two ticks of a clock, generated code may pass over a stale signal that nothing reads.
-    clocked = engine == "auto" and compiled.checked.time is TimeModel.CLOCKED
-    if clocked or engine not in _GENERATED or not any(can_generate(one) for one in chosen):
+    if engine not in _GENERATED or not any(can_generate(one) for one in chosen):
         return Monitor(compiled, chosen, engine, settle, given)
     key = (tuple(one.requirement.id for one in chosen), given)
     forms = compiled.forms.get(key)

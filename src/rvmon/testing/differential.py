@@ -22,8 +22,8 @@ from rvmon.testing.walk import intervals
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
 
-MakeMonitor = Callable[[Case], Monitored]
-"""A fresh monitor for the spec and the sources of a case."""
+MakeMonitor = Callable[[Case], Monitored | None]
+"""A fresh monitor for the spec and the sources of a case; `None`: it judges no such specs."""
 
 
 @dataclass(slots=True)
@@ -32,6 +32,7 @@ class Tally:
 
     Attributes:
         pairs: cases judged.
+        refused: further cases, whose specification the engine does not judge.
         attempts: by verdict.
         decisions: by what settled them.
         on_bound: attempts that the prefix decided at a window's last instant, or a tick later.
@@ -39,6 +40,7 @@ class Tally:
     """
 
     pairs: int = 0
+    refused: int = 0
     attempts: Counter[str] = field(default_factory=Counter)
     decisions: Counter[str] = field(default_factory=Counter)
     on_bound: int = 0
@@ -47,6 +49,7 @@ class Tally:
     def add(self, other: Tally) -> None:
         """Take in the figures of another part."""
         self.pairs += other.pairs
+        self.refused += other.refused
         self.attempts += other.attempts
         self.decisions += other.decisions
         self.on_bound += other.on_bound
@@ -77,9 +80,17 @@ def disagreements(case: Case, make: MakeMonitor, *, online: bool = False) -> lis
         online: whether to check as well that each call returned what could be decided by then,
             no sooner and no later; costs one run of the oracle per action.
     """
+    return _found(case, make, online) or []
+
+
+def _found(case: Case, make: MakeMonitor, online: bool) -> list[str] | None:
+    """The disagreements on a case; `None` if it is refused."""
     expected = judge(case)
     try:
-        actual, returned = drive(make(case), case)
+        monitor = make(case)
+        if monitor is None:
+            return None
+        actual, returned = drive(monitor, case)
     except Exception as error:  # noqa: BLE001 - whatever an engine raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
     found = differences(expected, actual)
@@ -135,8 +146,11 @@ def campaign(
     for index, seed in enumerate(seeds):
         case = case_of(seed, profile, traces)
         online = online_every > 0 and index % online_every == 0
+        found = _found(case, make, online)
+        if found is None:
+            tally.refused += 1
+            continue
         count(tally, case)
-        found = disagreements(case, make, online=online)
         if found:
             lines = [f"seed {seed}", *found]
             if len(tally.disagreements) < shrunk:

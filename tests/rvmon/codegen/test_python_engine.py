@@ -1,14 +1,10 @@
 """Generated Python monitors against the oracle, and as monitors."""
 
-from functools import partial
-
 import pytest
 
 import rvmon
-from rvmon.session import Spec
-from rvmon.testing.case import Case
 from rvmon.testing.differential import campaign
-from rvmon.testing.drive import Monitored
+from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 
@@ -25,17 +21,13 @@ requirement D2 "It stays narrow"
 """
 
 
-def make(engine: str, case: Case) -> Monitored:
-    return Spec(case.spec).monitor(engine=engine, sources=case.names)
-
-
 @pytest.mark.parametrize("known", [True, False])
 def test_the_oracle_agrees(known):
     """Verdicts, instants and what each call returned are as the law has them."""
     seeds = [f"generated/{known}/{number}" for number in range(150)]
     profile = Profile(mixed=False)
     tally = campaign(
-        partial(make, "python"), seeds, profile, TraceProfile(unknowns=not known), online_every=5
+        Maker("python"), seeds, profile, TraceProfile(unknowns=not known), online_every=5
     )
     assert tally.pairs == 150
     assert not tally.disagreements, tally.disagreements[0]

@@ -8,14 +8,10 @@ import pytest
 import rvmon
 from rvmon.cli import main
 from rvmon.codegen.python_file import python_file
-from rvmon.session import Spec
-from rvmon.testing.case import Case
 from rvmon.testing.differential import campaign
+from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.verdict.assemble import report_of
-from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.verdict import Verdict
 
 SPEC = """
 spec door "A door"
@@ -39,61 +35,12 @@ def loaded(text: str) -> ModuleType:
     return module
 
 
-BEYOND = """
-requirement D4 "x"
-  upon knock
-  then immediately c > 1
-  let c = knock.force
-"""
-
-
-class Alone:
-    """A standalone monitor behind the interface that the differential test drives."""
-
-    def __init__(self, case: Case) -> None:
-        declared = {*case.spec.signals, *case.spec.events}
-        absent = () if case.names is None else sorted(declared - case.names)
-        self.case = case
-        self.monitor = loaded(python_file(Spec(case.spec).plan())).SpecMonitor(absent)
-
-    def _attempts(self, found):
-        return [Attempt(*one[:4], Verdict(one.verdict), Decision(one.decision)) for one in found]
-
-    def step_ns(self, t, values):
-        return self._attempts(self.monitor.step_ns(t, values))
-
-    def advance_ns(self, t):
-        return self._attempts(self.monitor.advance_ns(t))
-
-    def finish_ns(self, t=None):
-        verdicts = self.monitor.finish_ns(t)
-        attempts = self._attempts(self.monitor.attempts)
-        report = report_of(tuple(self.case.spec.requirements), attempts)
-        assert dict(report.verdicts) == verdicts
-        return report
-
-
-class Skipping:
-    """A standalone monitor, or the one in this process where none can be made."""
-
-    made = 0
-
-    def __call__(self, case: Case):
-        try:
-            alone = Alone(case)
-        except rvmon.RvmonError:
-            return Spec(case.spec).monitor(sources=case.names)
-        self.made += 1
-        return alone
-
-
 def test_the_oracle_agrees():
     """A file of its own judges as the law has it."""
-    make = Skipping()
     seeds = [f"file/{number}" for number in range(150)]
     profile = Profile(mixed=False, captures=False, for_each=False)
-    tally = campaign(make, seeds, profile, TraceProfile(), online_every=10)
-    assert make.made > 100
+    tally = campaign(Maker("file"), seeds, profile, TraceProfile(), online_every=10)
+    assert tally.pairs > 100
     assert not tally.disagreements, tally.disagreements[0]
 
 

@@ -1,0 +1,171 @@
+"""Every form that a monitor runs in, behind the interface that the differential test drives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import ModuleType
+from typing import Any
+
+from rvmon.codegen.c_batch import BatchLibrary, BatchRun
+from rvmon.codegen.plan import Plan
+from rvmon.codegen.python_file import python_file
+from rvmon.errors import RvmonError, TimeOrderError
+from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
+from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.generated import can_generate, plan_alone
+from rvmon.monitor.recorded import report_of_records
+from rvmon.spec.checked import CheckedSpec
+from rvmon.testing.case import Case
+from rvmon.testing.drive import Monitored
+from rvmon.trace.sample import Sample, Value
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+FORMS = (*ENGINES, "file", "c")
+"""The engines of `Spec.monitor`; the Python file that runs alone; the compiled C."""
+
+
+class Maker:
+    """Makes monitors of one form; what is compiled for a specification serves the next case too.
+
+    Args:
+        form: one of `FORMS`.
+    """
+
+    def __init__(self, form: str) -> None:
+        self.form = form
+        self._spec: CheckedSpec | None = None
+        self._made: Any = None
+
+    def __call__(self, case: Case) -> Monitored | None:
+        """A fresh monitor for a case; `None` if the form does not judge such specifications.
+
+        Raises:
+            RvmonError: no engine judges such specifications.
+        """
+        if case.spec is not self._spec:
+            self._made, self._spec = self._compiled(case.spec), case.spec
+        match self._made:
+            case CompiledSpec() as compiled:
+                return build_monitor(compiled, engine=self.form, sources=case.names)
+            case BatchLibrary() as library:
+                return _Compiled(library, case)
+            case ModuleType() as module:
+                return _Alone(module, case)
+            case _:
+                return None
+
+    def _compiled(self, spec: CheckedSpec) -> CompiledSpec | BatchLibrary | ModuleType | None:
+        compiled = compile_spec(spec)
+        if self.form not in ("automaton", "file", "c"):
+            return compiled
+        requirements = compiled.requirements.values()
+        if any(one.automaton is None for one in requirements):
+            return None
+        if self.form == "automaton":
+            return compiled
+        if not all(can_generate(one) for one in requirements):
+            return None
+        plan = plan_alone(compiled)
+        return BatchLibrary(plan) if self.form == "c" else _module_of(plan)
+
+
+def _module_of(plan: Plan) -> ModuleType:
+    """The file of a plan as a module."""
+    module = ModuleType("generated_monitor")
+    # The file holds names and numbers of the specification as literals only.
+    exec(compile(python_file(plan), "<generated file>", "exec"), module.__dict__)  # noqa: S102
+    return module
+
+
+def _absent(case: Case) -> frozenset[str]:
+    declared = {*case.spec.signals, *case.spec.events}
+    return frozenset() if case.names is None else frozenset(declared - case.names)
+
+
+class _Alone:
+    """A monitor that runs without rvmon, with the records and errors of one that does not."""
+
+    def __init__(self, module: ModuleType, case: Case) -> None:
+        self.names = tuple(case.spec.requirements)
+        self.monitor = module.SpecMonitor(sorted(_absent(case)))
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        """Take a sample."""
+        try:
+            return _records(self.monitor.step_ns(t_ns, values))
+        except ValueError as error:
+            raise TimeOrderError(str(error)) from error
+
+    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
+        """Let time pass."""
+        return _records(self.monitor.advance_ns(t_ns))
+
+    def finish_ns(self, t_ns: int | None = None, /) -> Report:
+        """End the trace.
+
+        Raises:
+            RvmonError: its fold of the verdicts is not that of the attempts.
+        """
+        verdicts = self.monitor.finish_ns(t_ns)
+        report = report_of(self.names, _records(self.monitor.attempts))
+        if dict(report.verdicts) != verdicts:
+            raise RvmonError(f"the file says {verdicts}, its attempts say {report.verdicts}")
+        return report
+
+
+def _records(found: Sequence[Any]) -> list[Attempt]:
+    return [
+        Attempt(
+            one.requirement,
+            one.number,
+            one.triggered,
+            one.decided,
+            Verdict(one.verdict),
+            Decision(one.decision),
+        )
+        for one in found
+    ]
+
+
+class _Compiled:
+    """A compiled monitor: it hears everything at the end, as of a recording."""
+
+    def __init__(self, library: BatchLibrary, case: Case) -> None:
+        self.library = library
+        self.case = case
+        self.actions: list[Sample | int] = []
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        """Take a sample."""
+        self.actions.append(Sample(t_ns, values))
+        return ()
+
+    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
+        """Let time pass."""
+        self.actions.append(t_ns)
+        return ()
+
+    def finish_ns(self, t_ns: int | None = None, /) -> Report:
+        """End the trace.
+
+        Raises:
+            TimeOrderError: a sample was not taken.
+        """
+        import numpy as np
+
+        from rvmon.codegen.c_columns import columns_of_samples
+
+        rows = [a if isinstance(a, Sample) else Sample(a, {}) for a in self.actions]
+        with BatchRun(self.library, _absent(self.case)) as run:
+            taken = run.feed(
+                np.array([row.t for row in rows], np.int64),
+                columns_of_samples(rows, self.library.names),
+                np.array([isinstance(a, int) for a in self.actions], np.uint8),
+            )
+            if taken != len(rows):
+                raise TimeOrderError(f"row {taken} was not taken")
+            records, end = run.close(t_ns)
+        return report_of_records(tuple(self.case.spec.requirements), records, origin=0, end=end)
