@@ -13,10 +13,11 @@ from rvmon.errors import TraceError
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec, load
 from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
-    from rvmon.trace.sample import Sample
+    from rvmon.trace.sample import Recording
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -108,6 +109,7 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(trace, None, tuple(before), place + message)
+    report = replace(report, misses=_misses(spec, trace, report, recording.names))
     return Judged(trace, _named(report, trace, recording.health()))
 
 
@@ -118,6 +120,32 @@ def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iter
     if ordered:
         return takewhile(lambda sample: sample.t <= end, samples)
     return (sample for sample in samples if sample.t <= end)
+
+
+def in_order(recording: Recording) -> list[Sample]:
+    """The samples in order of time, equal stamps merged (under `max delay` they may come late)."""
+    merged: dict[int, Sample] = {}
+    for sample in recording:
+        known = merged.get(sample.t)
+        values = sample.values if known is None else {**known.values, **sample.values}
+        merged[sample.t] = Sample(sample.t, values)
+    return [merged[t] for t in sorted(merged)]
+
+
+def _misses(spec: Spec, trace: str, report: Report, names: frozenset[str] | None) -> dict[str, str]:
+    """What the triggers lacked that never came true; standard input cannot be read again."""
+    silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
+    end = report.end
+    if trace == "-" or not silent or end is None:
+        return {}
+    from rvmon.explain.miss import nearest_miss
+
+    samples = [sample for sample in in_order(spec.recording(trace)) if sample.t <= end]
+    found = {
+        name: nearest_miss(spec.checked, spec.requirements[name], samples, end, names)
+        for name in silent
+    }
+    return {name: miss for name, miss in found.items() if miss}
 
 
 def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rvmon.cli.numbers import instant
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.trace.sample import Sample
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-    from rvmon.trace.sample import Recording
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -36,14 +36,21 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
     )
-    parser.add_argument("--until", metavar="T", type=float, help="the recording ended at T seconds")
+    parser.add_argument(
+        "--until",
+        metavar="T",
+        type=instant,
+        help="judge to T seconds, be it before or after the last sample",
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
     from rvmon.cli.constants import constants_of
+    from rvmon.cli.judging import in_order
     from rvmon.explain.dissect import dissect
+    from rvmon.explain.miss import nearest_miss
     from rvmon.session import load
     from rvmon.trace.time import ticks_of_seconds
 
@@ -52,12 +59,16 @@ def run(arguments: argparse.Namespace) -> int:
     spec = load(arguments.spec, const=constants_of(arguments.const))
     name, number = _named(arguments.attempt, spec)
     recording = spec.recording(arguments.trace)
-    samples = _in_order(recording)
+    until = None if arguments.until is None else ticks_of_seconds(arguments.until)
+    samples = [one for one in in_order(recording) if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)
     for sample in samples:
         monitor.step_ns(sample.t, sample.values)
-    until = None if arguments.until is None else ticks_of_seconds(arguments.until)
     report = monitor.finish_ns(until)
+    if not report.attempts and report.end is not None:
+        requirement = spec.requirements[name]
+        miss = nearest_miss(spec.checked, requirement, samples, report.end, recording.names)
+        report = replace(report, misses={name: miss})
     attempt = _chosen(report, name, number)
     assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
     anatomy = dissect(spec.checked, samples, report.end, attempt, recording.names)
@@ -76,16 +87,6 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _in_order(recording: Recording) -> list[Sample]:
-    """The samples in order of time, equal stamps merged (under `max delay` they may come late)."""
-    merged: dict[int, Sample] = {}
-    for sample in recording:
-        known = merged.get(sample.t)
-        values = sample.values if known is None else {**known.values, **sample.values}
-        merged[sample.t] = Sample(sample.t, values)
-    return [merged[t] for t in sorted(merged)]
-
-
 def _named(text: str, spec: Spec) -> tuple[str, int | None]:
     found = re.fullmatch(r"(?P<name>[^#]+)(#(?P<number>\d{1,9}))?", text)
     if found is None:
@@ -102,7 +103,8 @@ def _named(text: str, spec: Spec) -> tuple[str, int | None]:
 def _chosen(report: Report, name: str, number: int | None) -> Attempt:
     attempts = sorted(report.attempts, key=lambda attempt: attempt.number)
     if not attempts:
-        raise RvmonError(f"error: {name} was not triggered in this recording: no attempt to show")
+        miss = f": {report.misses[name]}" if report.misses.get(name) else ""
+        raise RvmonError(f"error: {name} was not triggered in this recording{miss}")
     if number is None:
         return _most_telling(attempts)
     for attempt in attempts:

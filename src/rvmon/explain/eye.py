@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import assert_never
 
-from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.graph import Graph, graph_of
-from rvmon.dataflow.inputs import Inputs
+from rvmon.explain.log import Truth, state_truths
 from rvmon.explain.spans import FOREVER, Spans, both, outside, union, until
 from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.core import Literal, Sense
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import has_future, lower
-from rvmon.formula.state import FALSE, TRUE, State
-from rvmon.monitor.instances import Instance, seen_by
-from rvmon.monitor.lane import Lane
+from rvmon.formula.state import State
+from rvmon.monitor.instances import Instance
 from rvmon.spec.checked import (
     Binary,
     BinaryOp,
@@ -32,16 +29,8 @@ from rvmon.spec.checked import (
     Unary,
     UnaryOp,
 )
-from rvmon.trace.sample import Sample, Scalar
+from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
-
-
-@dataclass(frozen=True, slots=True)
-class Truth:
-    """Where a formula is surely true, and where it may be (unknown or true), on all ticks."""
-
-    sure: Spans
-    may: Spans
 
 
 def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
@@ -87,7 +76,9 @@ class Eye:
             for _, formula in subformulas(whole, 0):
                 self._note(formula)
         roots = [state for state in self.states.values() if isinstance(state, State)]
-        self.log = _log(spec, roots, samples, end, self._instance(attempt), attempt.captured, names)
+        self.log = state_truths(
+            spec, roots, samples, end, self._instance(attempt), attempt.captured, names
+        )
         self.positions = _positions(spec, samples, end)
         self.made: dict[int, Truth] = {}
 
@@ -256,53 +247,3 @@ def _positions(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequen
             return range(-(-samples[0].t // period) * period, end + 1, period)
         case _:
             assert_never(spec.time)
-
-
-class _Log(Flow):
-    """A flow that remembers when its values changed.
-
-    Attributes:
-        history: per node, the instants from which on it had a value, and that value.
-    """
-
-    def __init__(
-        self, graph: Graph, inputs: Inputs, gap: int | None, captured: Mapping[str, Scalar]
-    ) -> None:
-        super().__init__(graph, inputs, gap, captured)
-        self.history: list[list[tuple[int, int]]] = [[] for _ in self.values]
-
-    def evaluate(self, t: int) -> list[int]:
-        """See `Flow`."""
-        changed = super().evaluate(t)
-        begun = any(self.history)
-        for place in changed if begun else range(len(self.values)):
-            self.history[place].append((t, self.values[place]))
-        return changed
-
-
-def _log(
-    spec: CheckedSpec,
-    roots: Sequence[State],
-    samples: Sequence[Sample],
-    end: int,
-    instance: Instance | None,
-    captured: Mapping[str, Scalar],
-    names: frozenset[str] | None,
-) -> dict[State, Truth]:
-    """The truth of state formulas over a recording; behind its end they may be anything."""
-    gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
-    flow = _Log(graph_of(roots), Inputs(spec, names), gap, captured)
-    lane = Lane(flow)
-    for sample in samples:
-        lane.through(sample.t - 1)
-        lane.sample(sample.t, seen_by(instance, sample.values))
-    lane.through(end)
-    found = {}
-    for root in roots:
-        entries = flow.history[flow.graph.index[root]]
-        stops = [*(t - 1 for t, _ in entries[1:]), end][: len(entries)]
-        spans = [(t, stop, value) for (t, value), stop in zip(entries, stops, strict=True)]
-        sure = union((t, stop) for t, stop, value in spans if value == TRUE)
-        may = union([*((t, stop) for t, stop, v in spans if v != FALSE), (end + 1, FOREVER)])
-        found[root] = Truth(sure, may)
-    return found

@@ -55,8 +55,14 @@ def _just_before(judge: Judge, token: Token, letter: int, t: int) -> Token:
     return run(judge.machine, token, letter, position + gap, t - 1, gap)[0]
 
 
-def explain_open(judge: Judge, attempt: Open) -> Explanation:
-    """What an undecided attempt waits for, or why it can wait no more."""
+def explain_open(judge: Judge, attempt: Open, end: int | None = None) -> Explanation:
+    """What an undecided attempt waits for, or why it can wait no more.
+
+    Args:
+        judge: of the attempt.
+        attempt: undecided.
+        end: the last instant of the trace, if it has ended.
+    """
     token = attempt.token if attempt.token[0] != FAILED else attempt.better
     if token is None or token[0] <= PASSED:
         return Explanation(f"left open by the input: {attempt.doubt}")
@@ -64,6 +70,16 @@ def explain_open(judge: Judge, attempt: Open) -> Explanation:
     residual = judge.machine.residual(location)
     owed = judge.compiled.words.owed(residual, anchors)
     last = deadline(residual, anchors)
-    until = "" if last is None else f", until {format_ticks(last)}"
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    return Explanation(f"still owed: {owed}{until}{doubt}", owed, last)
+    return Explanation(f"still owed: {owed}{_longest(last, end)}{doubt}", owed, last)
+
+
+def _longest(last: int | None, end: int | None) -> str:
+    """How much longer it may take to decide what can be met up to `last`."""
+    if end is None:
+        return ""
+    if last is None:
+        return "; no time bounds it"
+    if last <= end:
+        return "; a tick longer would decide it"
+    return f"; more than {format_ticks(last - end)} longer would decide it"

@@ -25,7 +25,8 @@ def headline(run: str, panel: Panel, origin: int) -> str:
     """
     attempt = panel.attempt
     if attempt is None:
-        return f"{panel.requirement} {MARKS[Verdict.NOT_TRIGGERED].word}, {run}"
+        miss = f": {with_moments(panel.miss, panel.view)}" if panel.miss else ""
+        return f"{panel.requirement} {MARKS[Verdict.NOT_TRIGGERED].word}, {run}{miss}"
     when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
     reason = f": {with_moments(attempt.reason, panel.view)}" if attempt.reason else ""
     return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

@@ -66,7 +66,8 @@ def _add_case(
     if verdict is Verdict.PASS:
         return
     if verdict is Verdict.NOT_TRIGGERED:
-        ET.SubElement(case, "skipped", message="NT: never triggered")
+        miss = f": {report.misses[name]}" if name in report.misses else ""
+        ET.SubElement(case, "skipped", message=_clean(f"NT: never triggered{miss}"))
         return
     reasons = [
         _clean(f"attempt {attempt.number}, {_when(attempt.decided)}: {attempt.reason}")

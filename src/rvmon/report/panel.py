@@ -21,6 +21,7 @@ class Panel:
         view: the stretch of time that is shown.
         tracks: of the signals and events concerned.
         ghost: the nearest passing attempt, for a failed one.
+        miss: if it was never triggered, what the trigger lacked when it was nearest.
     """
 
     id: str
@@ -29,6 +30,7 @@ class Panel:
     view: View
     tracks: tuple[Track, ...]
     ghost: Ghost | None
+    miss: str = ""
 
     @property
     def instant(self) -> int:

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 
 from rvmon.report.concerned import blamed_names
+from rvmon.report.forecast import forecast_sentence
 from rvmon.report.headline import headline
 from rvmon.report.markup import Child, e, with_code
 from rvmon.report.panel import Panel
@@ -137,6 +138,8 @@ def _values(attempt: Attempt | None) -> ET.Element | None:
     )
     if attempt.owed:
         details.append(e("p", None, "still owed: ", e("code", None, attempt.owed)))
+    if attempt.forecast is not None:
+        details.append(e("p", None, forecast_sentence(attempt.forecast)))
     if attempt.robustness is not None:
         details.append(e("p", None, f"robustness: {attempt.robustness:.4g}"))
     if not details:

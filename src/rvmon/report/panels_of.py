@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from rvmon.explain.miss import nearest_miss
 from rvmon.report.choose import shown_attempts
 from rvmon.report.nearest import Candidate, nearest_passing
 from rvmon.report.panel import Panel
@@ -11,6 +12,7 @@ from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.report.tracks import Track
 from rvmon.report.tracks_of import tracks_of
 from rvmon.report.view import view_of, whole_run
+from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -36,7 +38,7 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
     tracks = tracks_in(content.run)
     if not attempts:
         view = whole_run(report, samples[0].t if samples else report.origin)
-        yield Panel(panel_id(name, None), name, None, view, tracks, None)
+        yield Panel(panel_id(name, None), name, None, view, tracks, None, _miss(content, name))
     candidates: list[Candidate] = []
     if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
         candidates.append(Candidate(content.run, tracks))
@@ -48,6 +50,19 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
         if attempt.verdict is Verdict.FAIL:
             ghost = nearest_passing(attempt, tracks, view, candidates)
         yield Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost)
+
+
+def _miss(content: RunPage, name: str) -> str:
+    """What the trigger lacked: as was found when the run was judged, or by looking now."""
+    run = content.run
+    if name in run.report.misses or not run.samples:
+        return run.report.misses.get(name, "")
+    absent = {health.name for health in run.report.health if health.kind is HealthKind.ABSENT}
+    names = frozenset({*content.spec.signals, *content.spec.events} - absent)
+    requirement, end = content.spec.requirements[name], run.report.end
+    if end is None:
+        return ""
+    return nearest_miss(content.spec, requirement, run.samples, end, names)
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:

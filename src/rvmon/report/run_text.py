@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from rvmon.report.forecast import forecast_sentence
+from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -43,6 +45,8 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     console.print(Text.assemble((report.trace or spec.name, "bold"), f"{end}  by {spec.name}"))
     console.print(_verdict_table(report, spec))
     for name, requirement in spec.requirements.items():
+        if name in report.misses:
+            console.print(_miss_text(name, report.misses[name]))
         for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             attempts = [
                 attempt
@@ -75,6 +79,15 @@ def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
     return table
 
 
+def _miss_text(name: str, miss: str) -> Text:
+    from rich.text import Text
+
+    from rvmon.report.style import verdict_text
+
+    mark = verdict_text(Verdict.NOT_TRIGGERED)
+    return Text.assemble((f"{name} ", "bold"), mark, f"  never triggered\n  {miss}\n")
+
+
 def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
     from rich.text import Text
 
@@ -89,6 +102,8 @@ def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
     )
     if attempt.reason:
         text.append(f"  {attempt.reason}\n")
+    if attempt.forecast is not None:
+        text.append(f"  {forecast_sentence(attempt.forecast)}\n")
     span = requirement.span
     if attempt.blame is not None and span is not None:
         span = type(span)(span.source, attempt.blame.start, attempt.blame.end)
@@ -113,9 +128,15 @@ def _runs_table(reports: Sequence[Report]) -> Table:
 def _health_lines(report: Report) -> Iterator[str]:
     if report.health:
         yield "input health:"
+    ignored = [health for health in report.health if health.kind is HealthKind.IGNORED]
     for health in report.health:
+        if health in ignored:
+            continue
         first = "" if health.first is None else f", first at {format_ticks(health.first)}"
         times = "once" if health.count == 1 else f"{health.count} times"
         readers = f"  ({', '.join(health.requirements)})" if health.requirements else ""
         remark = f": {health.remark}" if health.remark else ""
         yield f"  {health.name}  {health.kind.value} {times}{first}{remark}{readers}"
+    for remark in dict.fromkeys(health.remark for health in ignored):
+        names = ", ".join(health.name for health in ignored if health.remark == remark)
+        yield f"  ignored{f', {remark}' if remark else ''}: {names}"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.explain.anatomy import Anatomy, Strand
 from rvmon.explain.spans import Spans
+from rvmon.report.forecast import forecast_sentence
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.spec.checked import Requirement
 from rvmon.trace.time import format_ticks
@@ -53,6 +54,8 @@ def _sentences(anatomy: Anatomy, requirement: Requirement) -> Iterator[str]:
         yield f"{name} = {value}"
     if attempt.reason:
         yield attempt.reason
+    if attempt.forecast is not None:
+        yield forecast_sentence(attempt.forecast)
 
 
 def _instant(t: int, anatomy: Anatomy) -> str:
@@ -102,10 +105,19 @@ def _cell(strand: Strand, anatomy: Anatomy, column: int) -> str:
         whole = strand.true if true else strand.false
         known = any(a <= low and high <= b for a, b in whole)
         return UNKNOWN if not known and not true else TRUE if true else FALSE
+    if _inside(strand.true, low, high):
+        return PULSE
+    if _inside(strand.false, low, high):
+        return DIP
     begins, ends = _touches(strand.true, low, low), _touches(strand.true, high, high)
     if begins is ends:
         return DIP if begins else PULSE
     return FALLS if begins else RISES
+
+
+def _inside(spans: Spans, low: int, high: int) -> bool:
+    """Whether all that touches a stretch of time lies within it."""
+    return all(low <= a and b <= high for a, b in spans if a <= high and low <= b)
 
 
 def _touches(spans: Spans, low: int, high: int) -> bool:

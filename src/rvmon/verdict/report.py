@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
@@ -23,6 +23,8 @@ class Report:
         trace: name of the recording, or empty.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the trace, ticks; `None` if it has no position.
+        misses: by requirement that was not triggered, what its trigger lacked when it was nearest;
+            where somebody looked.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -32,6 +34,7 @@ class Report:
     trace: str = ""
     origin: int = 0
     end: int | None = None
+    misses: Mapping[str, str] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """The report as JSON text, in the shape that `rvmon run --format json` prints.

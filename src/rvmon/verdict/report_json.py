@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import msgspec
@@ -21,6 +21,7 @@ _ALWAYS = ("number", "triggered", "decided", "verdict", "decision", "reason")
 
 class _AttemptsJson(msgspec.Struct):
     attempts: list[dict[str, Any]]
+    nearest_miss: str = ""
 
 
 class _ReportJson(msgspec.Struct):
@@ -49,6 +50,7 @@ def encode(report: Report) -> str:
                 "verdict": verdict,
                 "attempts": attempts[name],
                 "counts": report.counts[name],
+                **({"nearest_miss": report.misses[name]} if name in report.misses else {}),
             }
             for name, verdict in report.verdicts.items()
         },
@@ -91,7 +93,7 @@ def decode(text: str | bytes) -> Report:
         ]
     except (msgspec.DecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
         raise TraceError(f"this is no report of rvmon: {error}") from None
-    return report_of(
+    report = report_of(
         tuple(document.requirements),
         attempts,
         health=document.health,
@@ -99,6 +101,8 @@ def decode(text: str | bytes) -> Report:
         origin=document.origin,
         end=document.end,
     )
+    found = {name: entry.nearest_miss for name, entry in document.requirements.items()}
+    return replace(report, misses={name: miss for name, miss in found.items() if miss})
 
 
 def _attempt(attempt: Attempt) -> dict[str, object]:

@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from rvmon.cli import main
+from rvmon.verdict.report import Report
 
 SPEC = """
 spec door "A door"
@@ -181,3 +182,40 @@ def test_check_refuses_what_no_engine_can_judge(files, capsys):
         shown = capsys.readouterr().err
         assert "error[RV047 future-below-past]: `once` looks back at what lies ahead" in shown
         assert "mixed.rv:10:8" in shown
+
+
+def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):
+    """Text, JSON and JUnit name the part of the trigger that lacked."""
+    spec, trace, junit = tmp_path / "s.rv", tmp_path / "t.csv", tmp_path / "j.xml"
+    spec.write_text(
+        'spec s\nsignal a, b : bool\nevent e\nrequirement R1 "x"\n'
+        "  upon e and a\n  then within 1 s b\n"
+    )
+    trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n")
+    miss = "`a` never true while `e`, as first at 1 s"
+    assert main(["run", str(spec), str(trace), "--junit", str(junit)]) == 0
+    assert miss in capsys.readouterr().out
+    assert miss in junit.read_text()
+    main(["run", str(spec), str(trace), "--format", "json"])
+    text = capsys.readouterr().out
+    assert json.loads(text)["requirements"]["R1"]["nearest_miss"] == miss
+    assert Report.from_json(text).misses == {"R1": miss}
+
+
+def test_a_forecast_is_shown_beside_the_verdict(tmp_path, capsys):
+    """An open attempt that no continuation can fulfil stays I, and says so."""
+    spec, trace = tmp_path / "s.rv", tmp_path / "t.csv"
+    spec.write_text(
+        'spec s\nsignal a : bool\nrequirement R1 "x"\n  upon start\n'
+        "  then (within 3 s a) and for 5 s not a\n"
+    )
+    trace.write_text("t,a\n0,false\n1,false\n")
+    assert main(["run", str(spec), str(trace)]) == 0
+    shown = capsys.readouterr().out
+    assert "R1   I" in shown
+    assert "forecast F: no continuation can fulfil it" in shown
+    assert main(["why", str(spec), str(trace), "R1"]) == 0
+    assert "forecast F" in capsys.readouterr().out
+    assert main(["run", str(spec), str(trace), "--report", str(tmp_path / "pages")]) == 0
+    pages = [page.read_text() for page in (tmp_path / "pages").rglob("*.html")]
+    assert any("forecast F: no continuation can fulfil it" in page for page in pages)

@@ -88,3 +88,24 @@ def test_wrong_words_are_answered_with_a_mend(door, capsys, words, said):
     (door / "c.csv").write_text("t,closed,knock\n0,1,\n1,1,\n")
     assert main(["why", *words]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_a_requirement_that_was_not_triggered_says_what_lacked(tmp_path, capsys):
+    """There is no attempt to show, but there is a nearest miss."""
+    spec, trace = tmp_path / "s.rv", tmp_path / "t.csv"
+    spec.write_text(
+        'spec s\nsignal a, b : bool\nevent e\nrequirement R1 "x"\n'
+        "  upon e and a\n  then within 1 s b\n"
+    )
+    trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n")
+    assert main(["why", str(spec), str(trace), "R1"]) == 2
+    assert "`a` never true while `e`, as first at 1 s" in capsys.readouterr().err
+
+
+def test_until_is_the_end_that_is_judged(tmp_path, capsys):
+    """What comes behind it is not looked at."""
+    spec, trace = tmp_path / "s.rv", tmp_path / "t.csv"
+    spec.write_text('spec s\nevent e, f\nrequirement R1 "x"\n  upon e\n  then within 5 s f\n')
+    trace.write_text("t,e,f\n0,1,\n3,,1\n")
+    assert main(["why", str(spec), str(trace), "R1", "--until", "2"]) == 0
+    assert "more than 3 s longer would decide it" in " ".join(capsys.readouterr().out.split())

@@ -120,7 +120,7 @@ def test_propositions_are_shown_at_trigger_and_decision():
 def test_an_undecided_attempt_says_what_is_owed_and_till_when():
     """An I names the obligation and its deadline."""
     _, [left] = run("upon go\nthen within 3 s released", [(1, {"go": True})], 2)
-    assert left.reason == "still owed: `within 3 s released` by 4 s, until 4 s"
+    assert left.reason == "still owed: `within 3 s released` by 4 s; more than 2 s longer would decide it"
     assert left.deadline == 4 * 10**9
 
 

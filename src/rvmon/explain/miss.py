@@ -1,0 +1,144 @@
+"""Why a requirement was never triggered: how near its trigger came."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from rvmon.explain.log import Truth, state_truths
+from rvmon.explain.spans import Spans
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import lower
+from rvmon.formula.state import State
+from rvmon.spec.checked import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    CheckedSpec,
+    Constant,
+    EventAtom,
+    Formula,
+    Requirement,
+)
+from rvmon.spec.printer import format_formula
+from rvmon.trace.sample import Sample
+from rvmon.trace.time import format_ticks
+
+
+@dataclass(frozen=True, slots=True)
+class _Miss:
+    """The moment at which most parts of a conjunction were true.
+
+    Attributes:
+        parts: of the conjunction.
+        there: those that were true.
+        at: the first such instant; `None` if no part was ever true.
+    """
+
+    parts: tuple[Formula, ...]
+    there: tuple[Formula, ...]
+    at: int | None
+
+    @property
+    def missing(self) -> tuple[Formula, ...]:
+        """The parts that were not true."""
+        return tuple(part for part in self.parts if part not in self.there)
+
+
+def nearest_miss(
+    spec: CheckedSpec,
+    requirement: Requirement,
+    samples: Sequence[Sample],
+    end: int,
+    names: frozenset[str] | None = None,
+) -> str:
+    """One sentence: what its trigger lacked when it was nearest; empty if there is none to say.
+
+    Args:
+        spec: the specification.
+        requirement: one that was not triggered.
+        samples: the recording, in order.
+        end: its last instant, ticks.
+        names: the signals and events that have a source; `None`: all.
+    """
+    trigger = requirement.trigger
+    if not samples:
+        return "the recording has no sample"
+    if requirement.for_each is not None or trigger == BoundAtom(Bound.END):
+        return ""
+    options = [_flat(part, BinaryOp.AND) for part in _flat(trigger, BinaryOp.OR)]
+    factory = Factory()
+    states = {part: _state(part, requirement, factory, spec) for o in options for part in o}
+    truths = state_truths(spec, list(states.values()), samples, end, None, {}, names)
+    seen = {part: truths[state] for part, state in states.items()}
+    misses = [_miss(parts, seen) for parts in options]
+    best = min(misses, key=lambda miss: len(miss.missing))
+    return _sentence(best, seen, end)
+
+
+def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
+    match formula:
+        case Binary(op=found, left=left, right=right) if found is op:
+            return tuple(dict.fromkeys((*_flat(left, op), *_flat(right, op))))
+        case _:
+            return (formula,)
+
+
+def _state(part: Formula, requirement: Requirement, factory: Factory, spec: CheckedSpec) -> State:
+    alone = replace(requirement, trigger=part, consequent=Constant(True), captures=())
+    state = lower(alone, factory, spec.period).trigger
+    assert state is not None, "`end` stands alone"  # noqa: S101
+    return state
+
+
+def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
+    """The moment at which most parts were true; of equals one with more events, then the first."""
+    best: tuple[tuple[int, int, int], tuple[Formula, ...]] = ((0, 0, 0), ())
+    for at in sorted({low for part in parts for low, _ in seen[part].sure}):
+        there = tuple(part for part in parts if _holds(seen[part].sure, at))
+        events = sum(isinstance(part, EventAtom) for part in there)
+        best = max(best, ((len(there), events, -at), there), key=lambda found: found[0])
+    (_, _, at), there = best
+    return _Miss(parts, there, -at if there else None)
+
+
+def _holds(spans: Spans, t: int) -> bool:
+    place = bisect_right(spans, t, key=lambda span: span[0])
+    return place > 0 and t <= spans[place - 1][1]
+
+
+def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], end: int) -> str:
+    if not miss.missing:
+        when = "" if miss.at is None else f" at {format_ticks(miss.at)}"
+        return f"its trigger came true{when} out of the unknown, which is no edge"
+    if miss.at is None:
+        return "; ".join(_apart(miss.parts, seen, end))
+    at = miss.at
+    rest = miss.there[0]
+    for part in miss.there[1:]:
+        rest = Binary(BinaryOp.AND, rest, part)
+    unknown = any(_holds(seen[part].may, at) for part in miss.missing)
+    lacking = "never known to be true" if unknown else "never true"
+    while_ = f"{lacking} while `{format_formula(rest)}`"
+    return f"{_listed(miss.missing)} {while_}, as first at {format_ticks(at)}"
+
+
+def _apart(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth], end: int) -> Iterator[str]:
+    """What is to be said of parts of which none was ever true."""
+    groups: dict[str, list[Formula]] = {}
+    for part in parts:
+        word = "never true"
+        if seen[part].may[0][0] <= end:
+            word = "never known"
+        elif isinstance(part, EventAtom):
+            word = "never occurred"
+        groups.setdefault(word, []).append(part)
+    for word, own in groups.items():
+        yield f"{_listed(own)} {word}"
+
+
+def _listed(parts: Sequence[Formula]) -> str:
+    texts = [f"`{format_formula(part)}`" for part in parts]
+    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} or {texts[-1]}"

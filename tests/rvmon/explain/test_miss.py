@@ -1,0 +1,68 @@
+"""The nearest miss of a trigger that never came true."""
+
+import pytest
+
+from rvmon import loads
+from rvmon.explain.miss import nearest_miss
+from rvmon.trace.sample import Sample
+
+SPEC = """
+spec s
+signal a, b, c : bool
+event e, f
+requirement R1 "x"
+  upon {}
+  then within 1 s a
+"""
+
+CASES = {
+    "one part lacks at the best moment": (
+        "e and a and b",
+        [(0, {"a": True, "b": False, "c": True}), (5, {"e": True}), (7, {"b": True, "a": False})],
+        "`b` never true while `e and a`, as first at 5 ns",
+    ),
+    "two parts lack": (
+        "e and a and b",
+        [(0, {"a": False, "b": False}), (5, {"e": True})],
+        "`a` or `b` never true while `e`, as first at 5 ns",
+    ),
+    "an event that never occurred": ("e", [(0, {"a": True})], "`e` never occurred"),
+    "a level that was never true": ("a", [(0, {"a": False})], "`a` never true"),
+    "an input that never came": (
+        "e and a",
+        [(0, {"b": True})],
+        "`e` never occurred; `a` never known",
+    ),
+    "an input unknown at the best moment": (
+        "e and a",
+        [(0, {"a": False}), (3, {"a": None}), (5, {"e": True})],
+        "`a` never known to be true while `e`, as first at 5 ns",
+    ),
+    "the nearer of two ways": (
+        "(e and a and b) or (f and c)",
+        [(0, {"a": False, "b": False, "c": True})],
+        "`f` never true while `c`, as first at 0 s",
+    ),
+    "true, but no edge": (
+        "a",
+        [(0, {"a": False}), (1, {"a": None}), (2, {"a": True})],
+        "its trigger came true at 2 ns out of the unknown, which is no edge",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_the_trigger_lacked(name):
+    """The sentence names what was missing while the most of the rest was there."""
+    trigger, rows, expected = CASES[name]
+    spec = loads(SPEC.format(trigger)).checked
+    samples = [Sample(t, values) for t, values in rows]
+    assert nearest_miss(spec, spec.requirements["R1"], samples, samples[-1].t) == expected
+
+
+def test_a_name_without_a_source_is_never_known():
+    """What has no column is unknown throughout, never false."""
+    spec = loads(SPEC.format("a and b")).checked
+    samples = [Sample(0, {"a": True})]
+    found = nearest_miss(spec, spec.requirements["R1"], samples, 9, frozenset({"a"}))
+    assert found == "`b` never known to be true while `a`, as first at 0 s"
