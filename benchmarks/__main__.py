@@ -40,7 +40,9 @@ class Size:
     """How much is measured.
 
     Attributes:
-        rows: of the traces.
+        rows: of the traces that are judged row by row.
+        columns: rows of what is judged in memory or by whole processes.
+        longest: rows of the traces on which deadlines grow.
         bounds: of the Timescales families.
         seconds: of the robot's stream.
         counts: of monitors on one stream.
@@ -50,14 +52,16 @@ class Size:
         pass_seconds: what one pass may take.
     """
 
-    rows: int = 1_000_000
+    rows: int = 50_000
+    columns: int = 1_000_000
+    longest: int = 300_000
     bounds: tuple[int, ...] = (10, 100, 1000)
     seconds: int = 300
     counts: tuple[int, ...] = (10, 100, 1000)
     attempts: tuple[int, ...] = (1, 10, 100, 1_000, 10_000, 100_000)
-    traces: int = 6
-    repeats: int = 7
-    pass_seconds: float = 2.0
+    traces: int = 2
+    repeats: int = 5
+    pass_seconds: float = 0.1
 
     @property
     def plan(self) -> Plan:
@@ -65,7 +69,7 @@ class Size:
         return Plan(self.repeats, self.pass_seconds)
 
 
-QUICK = Size(20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 2, 3, 0.2)
+QUICK = Size(5_000, 100_000, 20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 1, 3, 0.05)
 
 
 def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
@@ -75,11 +79,11 @@ def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
     if "robot" in sections:
         yield from suite.robots(size.seconds)
     if "many" in sections:
-        yield from suite.many(size.rows // 10, size.counts)
+        yield from suite.many(size.rows // 2, size.counts)
     if "bound" in sections:
-        yield from suite.bounds(size.rows)
+        yield from suite.bounds(size.longest)
     if "batch" in sections:
-        yield from suite.batches(size.rows)
+        yield from suite.batches(size.columns)
 
 
 def machine() -> str:
@@ -107,9 +111,9 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
     absent = dict(environment.missing)
     for workload in workloads(size, sections):
         _say(f"{workload.section}: {workload.name}, {workload.form}")
-        results.append(measure(workload, list(contenders(environment, native)), size.plan))
+        results.append(measure(workload, list(contenders(environment, native, workload.section)), size.plan))
         agreements += check(workload, environment, traces=size.traces)
-    for workload in suite.processed(size.rows) if "process" in sections else ():
+    for workload in suite.processed(size.columns) if "process" in sections else ():
         _say(f"process: {workload.name}")
         with tempfile.TemporaryDirectory() as folder:
             results.append(measure_process(workload, size.repeats, native, Path(folder)))

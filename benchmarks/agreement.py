@@ -122,7 +122,7 @@ def _first_failure(question: Question) -> int | None:
         name: [cell for cell in column if cell is not None]
         for name, column in question.columns.items()
     }
-    spec = loads(specification([always_text(question.formula)], columns, "sampled"))
+    spec = loads(specification([always_text(question.formula)], columns))
     monitor = spec.monitor()
     for row in range(question.ticks):
         for attempt in monitor.step_ns(row, {name: c[row] for name, c in columns.items()}):
@@ -155,4 +155,4 @@ def _damaged(workload: Workload, seed: int) -> Question:
             start = dice.randrange(rows)
             length = min(dice.randint(1, rows // 2), rows - start)
             column[start : start + length] = [column[start]] * length
-    return Question(formula, columns, frozenset(), TimeModel.SAMPLED)
+    return Question(formula, columns, frozenset(), TimeModel.HELD)

@@ -99,35 +99,40 @@ class NativeReelay:
         """Nothing is held."""
 
 
-def contenders(environment: Environment, native: Native) -> Iterator[Contender]:
-    """All that there are, ours first."""
+_STEPS = (
+    ("rvmon table", "step", "automaton"),
+    ("rvmon step", "step", "python"),
+    ("rvmon step, changes", "changes", "python"),
+)
+_COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evaluate", "c"))
+
+
+def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
+    """All that take part in a section, ours first: with columns in memory, or row by row."""
     here = Path(sys.executable)
-    for label, kind in (
-        ("rvmon step", "step"),
-        ("rvmon step, changes", "changes"),
-        ("rvmon evaluate", "evaluate"),
-    ):
-        yield Worker(label, Peer(here, OURS), _ours(kind))
+    for label, kind, engine in _COLUMNS if section == "batch" else _STEPS:
+        yield Worker(label, Peer(here, OURS), _ours(kind, engine))
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _past(dialects.REELAY_DISCRETE)),
         ("rtamt", "rtamt", "rtamt", _few(_past(dialects.RTAMT_DISCRETE))),
         ("mstlo", "mstlo-python", "mstlo", _future),
     )
     for label, package, worker, request in peers:
-        if package in environment.versions:
+        if package in environment.versions and (section != "batch" or label == "reelay"):
             yield Worker(label, Peer(environment.python, worker), request)
-    if native.binary is not None:
+    if native.binary is not None and section == "batch":
         yield NativeReelay(native.binary)
 
 
-def _ours(kind: str) -> Request:
+def _ours(kind: str, engine: str) -> Request:
     def request(workload: Workload, rows: int) -> dict[str, Any]:
         texts = [always_text(scaled(f, workload.period)) for f in workload.formulas]
         columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
-        text = specification(texts, columns, "sampled")
+        text = specification(texts, columns)
         return {
             "spec": text,
             "kind": kind,
+            "engine": engine,
             "columns": columns,
             "rows": rows,
             "period": workload.period,

@@ -25,16 +25,18 @@ _CALLED = (UnaryOp.RISE, UnaryOp.FALL, UnaryOp.HELD)
 
 
 def specification(
-    requirements: Sequence[str], columns: Mapping[str, Sequence[bool | float]], time: str
+    requirements: Sequence[str], columns: Mapping[str, Sequence[bool | float]]
 ) -> str:
-    """A specification with one requirement per text.
+    """A specification with one requirement per text, in held time.
+
+    The rows are as many ticks apart as the bounds are scaled by, so that a value held from row to
+    row is what discrete-time tools see at each row.
 
     Args:
         requirements: what stands below `requirement R1`, `R2`, …
         columns: the signals, Boolean or numbers.
-        time: `held` or `sampled`.
     """
-    lines = ["spec benchmark", f"time {time}", ""]
+    lines = ["spec benchmark", "time held", ""]
     for name, column in columns.items():
         lines.append(f"signal {name} : {'bool' if isinstance(column[0], bool) else 'real'}")
     for number, text in enumerate(requirements, start=1):

@@ -39,7 +39,7 @@ def measure_process(workload: Workload, repeats: int, native: Native, folder: Pa
     """Judge a workload's only formula by every program there is, from files in the folder."""
     (formula,) = workload.formulas
     spec = folder / "spec.rv"
-    spec.write_text(specification([always_text(formula)], workload.columns, "sampled"))
+    spec.write_text(specification([always_text(formula)], workload.columns))
     files = _files(folder / "trace", workload.columns)
     pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
     programs = list(_programs(spec, files, native, pattern))
