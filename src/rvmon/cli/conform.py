@@ -7,7 +7,8 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from rvmon.errors import RvmonError, TraceError, UnknownNameError
+from rvmon.cli.numbers import duration
+from rvmon.errors import TraceError, UnknownNameError
 
 if TYPE_CHECKING:
     from rvmon.timed.conformance import Allowed, Conformance
@@ -21,7 +22,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="hold recorded runs against a network of timed automata",
         description="Say whether recordings (.csv, .jsonl) are runs of a network, as far as they "
         "show: their events are the labels of its edges, or its channels. The first sample is the "
-        "network's start. Exit code 0: all conform; 1: some do not.",
+        "network's start. Exit code 0: all conform; 1: some do not; 2: a recording cannot be read, "
+        "or shows nothing of the model.",
         epilog="example: rvmon conform model.ta monday.csv --observe started,stopped "
         "--tolerance 0.1",
     )
@@ -33,9 +35,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="labels that a recording would show (default: those with a column, or that occur)",
     )
     parser.add_argument(
-        "--tolerance", metavar="S", type=float, default=0.0, help="seconds either way (default: 0)"
+        "--tolerance",
+        metavar="S",
+        type=duration,
+        default=0.0,
+        help="seconds either way (default: 0)",
     )
-    parser.add_argument("--until", metavar="T", type=float, help="the runs went on for T seconds")
+    parser.add_argument(
+        "--until",
+        metavar="T",
+        type=duration,
+        help="compare to T seconds after the first sample, be it before or after the last one",
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text")
 
 
@@ -45,8 +56,6 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.timed.recorded import labels_of
     from rvmon.trace.time import ticks_of_seconds
 
-    if not arguments.tolerance >= 0:
-        raise RvmonError(f"--tolerance {arguments.tolerance}: give seconds, at least 0")
     network = load_network(arguments.model)
     labels = labels_of(network)
     chosen = _chosen(arguments.observe, labels)
@@ -93,10 +102,29 @@ def _compare(
     wanted = frozenset(labels) if chosen is None else chosen
     recording = FileRecording(path, Schema({}, {name: {} for name in wanted}))
     actions, length, occurred = actions_in(recording, wanted)
+    shown = occurred if recording.names is None else wanted & recording.names
     if chosen is None:
-        chosen = wanted & (occurred if recording.names is None else recording.names)
+        chosen = _some(shown, path, labels)
+    elif recording.names is not None and (missing := sorted(chosen - shown)):
+        raise TraceError(f"{path}: there is no column `{missing[0]}` to observe")
     end = length if until is None else until
+    actions = [action for action in actions if action.t <= end]
     return conform(network, actions, observed=chosen, end=end, tolerance=tolerance)
+
+
+def _some(shown: frozenset[str], path: str, labels: tuple[str, ...]) -> frozenset[str]:
+    """The labels that a recording shows.
+
+    Raises:
+        TraceError: there are none, so that any model would explain it.
+    """
+    if not shown:
+        known = f"its actions are {', '.join(labels)}" if labels else "no edge of it has a label"
+        raise TraceError(
+            f"{path}: nothing in it is an action of the model: {known}; "
+            "name columns or events after them, or say with --observe which would be seen"
+        )
+    return shown
 
 
 def _print(path: str, answer: Conformance) -> None:

@@ -23,6 +23,21 @@ def positive(text: str) -> int:
     return number
 
 
+def duration(text: str) -> float:
+    """Read a number of seconds, at least 0.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or too long.
+
+    >>> duration("0.1")
+    0.1
+    """
+    seconds = instant(text)
+    if seconds < 0:
+        raise argparse.ArgumentTypeError(f"expected seconds, at least 0, not {text}")
+    return seconds
+
+
 def instant(text: str) -> float:
     """Read an instant in seconds that fits the range of time.
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from rvmon.cli.numbers import duration, positive
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -32,7 +33,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--query", metavar="Q", action="append", help="a query or the id of one (default: all)"
     )
-    parser.add_argument(
+    instead = parser.add_mutually_exclusive_group()
+    instead.add_argument(
         "--spec", metavar="SPEC", help="check a specification's requirements on all runs instead"
     )
     parser.add_argument(
@@ -42,19 +44,25 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         default=[],
         help="what a signal of the specification is in the model",
     )
-    parser.add_argument(
+    instead.add_argument(
         "--suite",
         choices=("locations", "edges", "edge-pairs"),
         help="instead show few runs that go through all of these",
     )
-    parser.add_argument(
+    instead.add_argument(
         "--simulate",
         metavar="N",
-        type=int,
+        type=positive,
         help="instead of deciding, count what N random runs do: figures, not proofs",
     )
+    instead.add_argument(
+        "--export", metavar="FILE", help="instead write the model: .xml for UPPAAL, .dot or .svg"
+    )
     parser.add_argument(
-        "--until", metavar="UNITS", type=int, help="length of simulated runs, for unbounded queries"
+        "--until",
+        metavar="UNITS",
+        type=positive,
+        help="length of simulated runs, for unbounded queries",
     )
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of simulated runs")
     parser.add_argument(
@@ -67,10 +75,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
     )
     parser.add_argument("--format", choices=("text", "json"), default="text")
-    parser.add_argument("--max-states", metavar="N", type=int, help="give up after N states")
-    parser.add_argument("--max-seconds", metavar="S", type=float, help="give up after S seconds")
+    parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")
+    parser.add_argument("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
     parser.add_argument(
-        "--max-memory", metavar="MB", type=int, default=2048, help="give up beyond (default: 2048)"
+        "--max-memory",
+        metavar="MB",
+        type=positive,
+        default=2048,
+        help="give up beyond (default: 2048)",
     )
 
 
@@ -79,6 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.timed.load import load_network
     from rvmon.timed.search import Budget
 
+    _refuse_unused(arguments)
     constants = dict(_constant(text) for text in arguments.const)
     network = load_network(arguments.model, constants=constants)
     _show_warnings(network)
@@ -89,7 +102,24 @@ def run(arguments: argparse.Namespace) -> int:
         return _show_suite(network, arguments, budget)
     if arguments.simulate is not None:
         return _simulate(network, arguments)
+    if arguments.export is not None:
+        from rvmon.export.network_file import write_network
+
+        write_network(network, arguments.export)
+        return 0
     return _decide(network, arguments, budget)
+
+
+def _refuse_unused(arguments: argparse.Namespace) -> None:
+    """Refuse options that would change nothing."""
+    by_query = not (arguments.spec or arguments.suite or arguments.export)
+    for option, value, used, why in (
+        ("--query", arguments.query, by_query, "with --spec, --suite or --export"),
+        ("--bind", arguments.bind, arguments.spec, "without --spec"),
+        ("--until", arguments.until, arguments.simulate, "without --simulate"),
+    ):
+        if value and not used:
+            raise RvmonError(f"{option} does nothing {why}")
 
 
 def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
@@ -114,7 +144,8 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
 
 def _constant(text: str) -> tuple[str, int]:
     name, _, value = text.partition("=")
-    if not name or not value.strip().removeprefix("-").isdecimal():
+    digits = value.strip().removeprefix("-")
+    if not name.strip() or not digits.isdecimal() or len(digits) > 10:
         raise RvmonError(f"--const {text}: expected NAME=NUMBER, such as N=4")
     return name.strip(), int(value)
 
@@ -229,8 +260,6 @@ def _simulate(network: Network, arguments: argparse.Namespace) -> int:
     from rvmon.timed.queries import chosen_queries
     from rvmon.timed.simulate import estimate
 
-    if arguments.simulate < 1:
-        raise RvmonError(f"--simulate {arguments.simulate}: give a number of runs, at least 1")
     answers = []
     for query in chosen_queries(network, arguments.query):
         found = estimate(

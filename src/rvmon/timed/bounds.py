@@ -36,10 +36,13 @@ class ClockBounds:
     lower: tuple[float, ...]
     upper: tuple[float, ...]
 
-    def joined(self, other: ClockBounds) -> ClockBounds:
-        """The larger of both, clock by clock."""
+    def joined(self, others: Sequence[ClockBounds]) -> ClockBounds:
+        """The largest of these and all others, clock by clock."""
+        if not others:
+            return self
         return ClockBounds(
-            tuple(map(max, self.lower, other.lower)), tuple(map(max, self.upper, other.upper))
+            tuple(map(max, self.lower, *(other.lower for other in others))),
+            tuple(map(max, self.upper, *(other.upper for other in others))),
         )
 
     def levelled(self) -> ClockBounds:

@@ -97,6 +97,8 @@ def evaluator(expression: Expression) -> Evaluator:
             return lambda locations, _values: int(locations[automaton] == location)
         case UnaryOperation(op, operand):
             return _unary_evaluator(op, evaluator(operand))
+        case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, _, _):
+            return _chain_evaluator(op, _chain(op, expression))
         case BinaryOperation(op, left, right):
             return _binary_evaluator(op, evaluator(left), evaluator(right))
         case Choice(condition, then, otherwise):
@@ -131,12 +133,43 @@ def _unary_evaluator(op: UnaryOp, operand: Evaluator) -> Evaluator:
             assert_never(op)
 
 
+def _chain(op: BinaryOp, expression: Expression) -> list[Expression]:
+    """What a connective joins, however it is nested."""
+    match expression:
+        case BinaryOperation(found, left, right) if found is op:
+            return [*_chain(op, left), *_chain(op, right)]
+        case _:
+            return [expression]
+
+
+def _chain_evaluator(op: BinaryOp, expressions: Sequence[Expression]) -> Evaluator:
+    """One function for a whole chain of `and` or `or`: queries have long ones."""
+    places = [(e.automaton, e.location) for e in expressions if isinstance(e, InLocation)]
+    if op is BinaryOp.AND and len(places) == len(expressions) == 2:
+        (a, at_a), (b, at_b) = places
+        return lambda ls, _vs: int(ls[a] == at_a and ls[b] == at_b)
+    parts = [evaluator(expression) for expression in expressions]
+    if op is BinaryOp.AND:
+
+        def every(ls: Locations, vs: Values) -> int:
+            for part in parts:
+                if not part(ls, vs):
+                    return 0
+            return 1
+
+        return every
+
+    def some(ls: Locations, vs: Values) -> int:
+        for part in parts:
+            if part(ls, vs):
+                return 1
+        return 0
+
+    return some
+
+
 def _binary_evaluator(op: BinaryOp, left: Evaluator, right: Evaluator) -> Evaluator:
     match op:
-        case BinaryOp.AND:
-            return lambda ls, vs: int(bool(left(ls, vs)) and bool(right(ls, vs)))
-        case BinaryOp.OR:
-            return lambda ls, vs: int(bool(left(ls, vs)) or bool(right(ls, vs)))
         case BinaryOp.IMPLY:
             return lambda ls, vs: int(not left(ls, vs) or bool(right(ls, vs)))
         case _:

@@ -30,7 +30,7 @@ def explore(
     """
     passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
     waiting: deque[Node[SiteT, LinkT]] = deque()
-    covers = _cover_test(problem)
+    dim = problem.dim
     found: tuple[Node[SiteT, LinkT], Piece] | None = None
 
     def meet(node: Node[SiteT, LinkT]) -> bool:
@@ -43,12 +43,15 @@ def explore(
         if nodes is None:
             passed[site] = [node]
         else:
-            for old in nodes:
-                if covers(site, zone, old.zone):
+            uppers, lowers = site.uppers, site.lowers
+            for place, old in enumerate(nodes):
+                if is_simulated(zone, old.zone, dim, uppers, lowers):
                     node.covered = True
+                    if place:  # what covered one will cover the next
+                        nodes[place], nodes[0] = nodes[0], old
                     return True
             for old in nodes:
-                old.covered = covers(site, old.zone, zone)
+                old.covered = is_simulated(old.zone, zone, dim, uppers, lowers)
             nodes[:] = [old for old in nodes if not old.covered]
             nodes.append(node)
         piece = problem.goal(site, zone)
@@ -88,7 +91,7 @@ def explore_best(
         meter: counts the states that are kept.
     """
     passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
-    covers = _cover_test(problem)
+    dim = problem.dim
     order = count()
     heap: list[tuple[float, int, Node[SiteT, LinkT], Piece | None]] = []
     found: tuple[Node[SiteT, LinkT], Piece] | None = None
@@ -101,7 +104,8 @@ def explore_best(
                 found = node, piece
                 break
             nodes = passed.setdefault(node.site, [])
-            if any(covers(node.site, node.zone, old.zone) for old in nodes):
+            uppers, lowers = node.site.uppers, node.site.lowers
+            if any(is_simulated(node.zone, old.zone, dim, uppers, lowers) for old in nodes):
                 continue
             nodes.append(node)
             if not meter.count(len(heap)):
@@ -116,12 +120,3 @@ def explore_best(
     meter.stored += sum(map(len, passed.values()))
     last, piece = found or (None, None)
     return Found(last, piece)
-
-
-def _cover_test(problem: Problem[SiteT, LinkT]) -> Callable[[SiteT, Zone, Zone], bool]:
-    dim = problem.dim
-
-    def covers(site: SiteT, zone: Zone, other: Zone) -> bool:
-        return is_simulated(zone, other, dim, site.uppers, site.lowers)
-
-    return covers

@@ -350,6 +350,8 @@ def _binary(op: BinaryOp, left: Expression, right: Expression, span: Span) -> Ex
             return Constant(1) if value else truth(other)
         case BinaryOp.IMPLY, Constant(value), other:
             return truth(other) if value else Constant(1)
+        case BinaryOp.IMPLY, other, Constant(0):
+            return UnaryOperation(UnaryOp.NOT, other)
         case _:
             return BinaryOperation(op, left, right)
 

@@ -13,7 +13,7 @@ from math import ceil
 from rvmon.timed.discrete import Move, State
 from rvmon.timed.pieces import EVERYWHERE, Piece, PieceMaker
 from rvmon.timed.successors import Space
-from rvmon.timed.symbolic import fire
+from rvmon.timed.symbolic import fire, settle_in
 from rvmon.timed.zones import Zone, cut, delay, normalise
 
 
@@ -97,8 +97,10 @@ class Inside:
     def settle(self, site: StaySite, zone: Zone) -> Zone | None:
         """The part of a zone in a piece, with the delays that stay in it; `None` if empty."""
         dim, state = self.space.dim, site.state
-        invariant = [(0, clock, bound) for clock, bound in state.invariant]
         inside = zone[:]
+        if site.piece == EVERYWHERE:
+            return normalise(inside) if settle_in(state, inside, dim) else None
+        invariant = [(0, clock, bound) for clock, bound in state.invariant]
         if not (cut(inside, dim, site.piece) and cut(inside, dim, invariant)):
             return None
         if state.delays:

@@ -125,9 +125,7 @@ class Space:
         committed = frozenset(i for i, kind in enumerate(kinds) if kind is LocationKind.COMMITTED)
         leaving = [self._edges[i][place] for i, place in enumerate(locations)]
         invariants = [self._invariants[i][place] for i, place in enumerate(locations)]
-        bounds = self._extra
-        for i, place in enumerate(locations):
-            bounds = bounds.joined(self._bounds[i][place])
+        bounds = self._extra.joined([self._bounds[i][place] for i, place in enumerate(locations)])
         if self._bisimilar:
             bounds = bounds.levelled()
         candidates = list(self._candidates(locations, leaving))

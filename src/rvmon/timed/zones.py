@@ -19,6 +19,9 @@ Zone = list[float]
 STRICT = 2.0**-20
 """What a strict bound lacks; sums of hundreds of bounds below `MAX_TIME` stay exact."""
 
+MOST_TIDY = 1 << 16
+"""Tidied bounds that are remembered."""
+
 MAX_TIME = 1 << 24
 """Numbers of units of time must be smaller."""
 
@@ -84,7 +87,8 @@ def delay_within(zone: Zone, dim: int, uppers: Sequence[tuple[int, float]]) -> b
     """Let time pass as long as `clock <= bound` holds for all of `uppers`, in place.
 
     One pass closes the zone: after the delay nothing bounds the clocks from above, so that a
-    tightest path uses exactly one of the new bounds.
+    tightest path uses exactly one of the new bounds. If all bounds hold before the delay, as they
+    mostly do, they cut nothing off and only the bounds from above change.
 
     Returns:
         False if a bound is broken at once; the zone is then undefined.
@@ -92,6 +96,7 @@ def delay_within(zone: Zone, dim: int, uppers: Sequence[tuple[int, float]]) -> b
     if not uppers:
         zone[1:dim] = [inf] * (dim - 1)
         return True
+    holds = all(zone[clock] <= bound for clock, bound in uppers)
     clock, bound = uppers[0]
     top = [bound + step for step in zone[clock * dim : clock * dim + dim]]
     for clock, bound in uppers[1:]:
@@ -99,6 +104,9 @@ def delay_within(zone: Zone, dim: int, uppers: Sequence[tuple[int, float]]) -> b
         top = [
             new if (new := bound + step) < old else old for step, old in zip(row, top, strict=True)
         ]
+    if holds:
+        zone[1:dim] = top[1:]
+        return True
     for y in range(dim):
         if top[y] + zone[y * dim] < 0:
             return False
@@ -115,12 +123,21 @@ def delay_within(zone: Zone, dim: int, uppers: Sequence[tuple[int, float]]) -> b
 
 def normalise(zone: Zone) -> Zone:
     """The zone with each strict bound exactly `STRICT` below its number."""
-    return [value if value == inf else _tidy(value) for value in zone]
+    return list(map(_TIDY.__getitem__, zone))
 
 
-def _tidy(value: float) -> float:
-    whole = ceil(value)
-    return value if value == whole else whole - STRICT
+class _Tidy(dict[float, float]):
+    """Bounds with one `STRICT` at most; each is worked out once, for a search meets few."""
+
+    def __missing__(self, value: float) -> float:
+        if len(self) >= MOST_TIDY:
+            self.clear()
+        whole = value if value == inf else ceil(value)
+        tidy = self[value] = value if value == whole else whole - STRICT
+        return tidy
+
+
+_TIDY = _Tidy()
 
 
 def is_within(zone: Zone, other: Zone) -> bool:
