@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind
 
-_RUNTIME = ("past", "table", "rule", "unit", "alone")
+_RUNTIME = ("past", "table", "rule", "nodes", "unit", "alone")
 
 _HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 and nothing else.
 

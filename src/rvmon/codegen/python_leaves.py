@@ -1,4 +1,4 @@
-"""State formulas as Python expressions over the arrays of a generated monitor."""
+"""Leaves of state formulas as Python expressions over the arrays of a generated monitor."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import assert_never
 
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import events_of
-from rvmon.formula.state import Elapsed, Leaf, StateOp
+from rvmon.formula.state import Elapsed, Leaf
 from rvmon.spec.checked import (
     Arithmetic,
     BoundAtom,
@@ -50,30 +50,8 @@ _OPERATION = {
 }
 
 
-def node_expression(plan: Plan, place: int) -> str:
-    """The value of a node at `t`, in a method of the monitor with `v` and `s` at hand."""
-    state = plan.graph.nodes[place]
-    operands = [f"v[{operand}]" for operand in plan.graph.operands[place]]
-    if state.leaf is not None:
-        return _leaf(plan, place, state.leaf)
-    match state.op:
-        case StateOp.NOT:
-            return f"2 - {operands[0]}"
-        case StateOp.AND:
-            return f"min({', '.join(operands)})"
-        case StateOp.OR:
-            return f"max({', '.join(operands)})"
-        case StateOp.PREVIOUS:
-            return f"self.previous_({place}, t, {operands[0]})"
-        case StateOp.SINCE:
-            return f"self.since_({place}, t, {operands[0]}, {operands[1]})"
-        case StateOp.LEAF:
-            raise ValueError("a leaf reads something")
-        case _:
-            assert_never(state.op)
-
-
-def _leaf(plan: Plan, place: int, leaf: Leaf) -> str:
+def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
+    """The value of a leaf at `t`, in a method of the monitor with `s` at hand."""
     match leaf:
         case Constant(value=value):
             return "2" if value else "0"

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import heapq
 import math
 import operator
 from typing import Any
 
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_source import unit_source
+from rvmon.codegen.runtime.nodes import LIMIT, MISSING
 from rvmon.codegen.runtime.past import compared, finite, number
 from rvmon.codegen.runtime.table import NEVER, Table
-from rvmon.codegen.runtime.unit import LIMIT, MISSING, Unit
+from rvmon.codegen.runtime.unit import Unit
 from rvmon.codegen.tables import tables_of
 
 
@@ -24,7 +26,7 @@ def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]
     operations = ("lt", "le", "eq", "ne", "ge", "gt", "add", "sub", "mul", "truediv", "neg")
     namespace: dict[str, Any] = {name: getattr(operator, name) for name in operations}
     namespace |= {"__name__": "rvmon.generated", "math": math, "NEVER": NEVER, "LIMIT": LIMIT}
-    namespace |= {"MISSING": MISSING, "Unit": Unit}
+    namespace |= {"MISSING": MISSING, "Unit": Unit, "heappush": heapq.heappush}
     namespace |= {"compared": compared, "finite": finite, "number": number}
     source = unit_source(plan, arriving)
     # The source holds names and numbers of the specification as literals only.

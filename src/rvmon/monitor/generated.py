@@ -10,8 +10,9 @@ from rvmon.automaton.machine import INFINITY, Token
 from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.planning import plan_of
 from rvmon.codegen.python_unit import machine_of, unit_class
+from rvmon.codegen.runtime.nodes import LIMIT
 from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import LIMIT, Unit
+from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Inputs
 from rvmon.errors import RvmonError, TraceError, UnknownNameError
@@ -107,6 +108,20 @@ class Forms:
         ]
 
 
+class _Seen(Flow):
+    """What writes the records looks at a flow: this one has the arrays of a unit."""
+
+    def __init__(self, plan: Plan, inputs: Inputs, unit: Unit) -> None:
+        super().__init__(plan.graph, inputs, plan.gap, {})
+        self.values = unit.v
+        self.since = unit.since
+        self._instants = unit.until
+
+    def last_with(self, place: int, value: int, t: int) -> int | None:
+        """See `Flow.last_with`; of the propositions that requirements owe."""
+        return t if self.values[place] == value else self._instants[3 * place + value]
+
+
 class GeneratedLanes(Lanes):
     """Lanes of which one is generated code; the others are for what that cannot judge.
 
@@ -136,11 +151,7 @@ class GeneratedLanes(Lanes):
         self.alone = not forms.others
         self.unit = unit
         unit.restart(self)
-        # What writes the records looks at a flow: it shares the unit's arrays.
-        self._flow_seen = Flow(forms.plan.graph, Inputs(spec, sources), forms.plan.gap, {})
-        self._flow_seen.values = self.unit.v
-        self._flow_seen.since = self.unit.since
-        self._flow_seen._until = self.unit.until
+        self._flow_seen = _Seen(forms.plan, Inputs(spec, sources), unit)
         self._counts = [0] * len(forms.requirements)
         self._seats = [
             Judge(one, one.machine("auto"), self._flow_seen, ledger, {})

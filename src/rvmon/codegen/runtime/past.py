@@ -63,41 +63,98 @@ class Stretches:
         start, end = self.runs[0]
         return start if start > t else min(end + 1, NEVER)
 
+    def copy(self) -> Stretches:
+        """The same, independent from now on."""
+        made = Stretches(self.low, self.high, self.gap)
+        made.left, made.right, made.growing = self.left, self.right, self.growing
+        made.runs = deque([list(one) for one in self.runs])
+        return made
+
+    def same(self, other: Stretches) -> bool:
+        """Whether both will always have the same value from now on."""
+        mine = (self.left, self.right, self.growing)
+        return mine == (other.left, other.right, other.growing) and self.runs == other.runs
+
 
 class Since:
-    """`left S[low, high] right` with Kleene's values: a pessimistic and an optimistic reading."""
+    """`left S[low, high] right` with Kleene's values: a pessimistic and an optimistic reading.
+
+    As long as nothing was unknown, they are one.
+    """
 
     __slots__ = ("optimistic", "pessimistic", "wake")
 
     def __init__(self, low: int, high: int | None, gap: int) -> None:
-        self.pessimistic = Stretches(low, high, gap)
-        self.optimistic = Stretches(low, high, gap)
+        self.pessimistic = self.optimistic = Stretches(low, high, gap)
         self.wake = NEVER
 
     def step(self, t: int, last: int, left: int, right: int) -> int:
         """The value at `t`; `last` is the position before."""
         worse, better = self.pessimistic, self.optimistic
+        if worse is better:
+            if left != UNKNOWN and right != UNKNOWN:
+                holds = worse.step(t, last, left == TRUE, right == TRUE)
+                self.wake = worse.next_change(t)
+                return TRUE if holds else FALSE
+            better = self.optimistic = worse.copy()
         holds = worse.step(t, last, left == TRUE, right == TRUE)
         may_hold = better.step(t, last, left != FALSE, right != FALSE)
         self.wake = min(worse.next_change(t), better.next_change(t))
+        if worse.same(better):
+            self.optimistic = worse
         return TRUE if holds else UNKNOWN if may_hold else FALSE
 
 
-class Previous:
-    """The operand at the position before, false at the first."""
+def within(
+    end: int, t: int, last: int, high: int, left: bool, right: bool
+) -> tuple[int, bool, int]:
+    """One reading of `left S[0, high] right` at `t`.
 
-    __slots__ = ("gap", "seen", "wake")
+    Args:
+        end: the last instant at which it holds as of the position before: `NEVER` if `right` was
+            true there.
+        t: the position.
+        last: the position before.
+        high: the bound.
+        left: the left operand.
+        right: the right operand.
 
-    def __init__(self, gap: int) -> None:
-        self.gap = gap
-        self.seen = FALSE
-        self.wake = NEVER
+    Returns:
+        The new `end`, the value, and the instant at which it changes by time alone.
+    """
+    if end == NEVER:
+        end = last + high
+    if right:
+        return NEVER, True, NEVER
+    if not left:
+        return -NEVER, False, NEVER
+    return end, end >= t, end + 1 if end >= t else NEVER
 
-    def step(self, t: int, operand: int) -> int:
-        """The value at `t`."""
-        value, self.seen = self.seen, operand
-        self.wake = t + self.gap if value != operand else NEVER
-        return value
+
+def beyond(
+    start: int, t: int, last: int, low: int, left: bool, right: bool
+) -> tuple[int, bool, int]:
+    """One reading of `left S[low, inf) right` at `t`, with a `low` above 0.
+
+    Args:
+        start: the first instant at which it holds, `NEVER` if there is none; `-NEVER` if at the
+            position before, `right` was true and `left` was not.
+        t: the position.
+        last: the position before.
+        low: the bound.
+        left: the left operand.
+        right: the right operand.
+
+    Returns:
+        The new `start`, the value, and the instant at which it changes by time alone.
+    """
+    if start == -NEVER:
+        start = last + low
+    if not left:
+        return -NEVER if right else NEVER, False, NEVER
+    if right and start == NEVER:
+        start = t + low
+    return start, start <= t, start if start > t else NEVER
 
 
 class History:

@@ -1,0 +1,313 @@
+"""How samples are taken, as Python source: checked first, then only what changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rvmon.codegen.plan import Plan
+from rvmon.codegen.python_leaves import leaf_expression
+from rvmon.codegen.python_nodes import Roles, bits
+from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
+from rvmon.dataflow.numbers import inputs_of
+from rvmon.formula.state import Leaf
+from rvmon.spec.checked import Compare, SignalAtom
+from rvmon.trace.schema import Kind
+
+_WHOLE = 64
+"""Up to so many names, samples that hold all of them are taken name by name."""
+
+_CLASSES = {
+    Kind.BOOL: "(bool,)",
+    Kind.INT: "(int,)",
+    Kind.REAL: "(float, int)",
+    Kind.LABEL: "(str,)",
+}
+
+
+class IntakeWriter:
+    """Writes the methods that take samples.
+
+    Args:
+        plan: what to judge.
+        roles: of its nodes.
+        visit: writes what follows.
+        arriving: the names that have a source.
+    """
+
+    def __init__(
+        self, plan: Plan, roles: Roles, visit: VisitWriter, arriving: tuple[str, ...]
+    ) -> None:
+        self.plan = plan
+        self.roles = roles
+        self.arriving = arriving
+        self.sparse = visit.sparse()
+        self.span = visit.span()
+        self.whole = 0 < len(arriving) <= _WHOLE
+        self.instant = self._instant_leaves()
+
+    def lines(self) -> Iterator[str]:
+        """All of them, and the tables that they look up."""
+        yield "def step(self, t, values):"
+        yield '    """Take one sample; returns what it decided."""'
+        yield "    if t.__class__ is not int or not self.after < t < LIMIT:"
+        yield "        return self.clerk.other(t, values)"
+        if self.whole:
+            yield from indented(self._whole())
+        else:
+            yield "    return self.some(t, values)"
+        yield ""
+        yield from self._some()
+        yield ""
+        yield from self._take()
+        yield ""
+        names = [*self.plan.signals, *self.plan.events]
+        for number, name in enumerate(names):
+            lines = ["dirty = 0", *self._taken("x", name), "return dirty"]
+            yield f"def take{number}(self, t, x):"
+            yield f"    # {name!a}"
+            yield from indented([*at_hand(lines), *lines])
+            yield ""
+        yield f"TAKE = {{{', '.join(f'{name!r}: take{n}' for n, name in enumerate(names))}}}"
+        yield "TAKERS = {"
+        for number, name in enumerate(names):
+            if name in self.arriving:
+                takes = f"{self._classes(name)}, {self._labels(name)!r}, take{number}"
+                yield f"    {name!r}: ({takes}),"
+        yield "}"
+
+    # A sample that holds all names.
+
+    def _whole(self) -> Iterator[str]:
+        yield f"if len(values) != {len(self.arriving)}:"
+        yield "    return self.some(t, values)"
+        yield "try:"
+        for number, name in enumerate(self.arriving):
+            yield f"    x{number} = values[{name!r}]"
+        yield "except KeyError:"
+        yield "    return self.some(t, values)"
+        yield "changed = 0"
+        lines: list[str] = []
+        for number, name in enumerate(self.arriving):
+            lines += self._noticed(number, name)
+        yield from at_hand(lines)
+        yield from lines
+        always = [line for n, name in enumerate(self.arriving) for line in self._every(n, name)]
+        quiet = self._quiet()
+        if not always:
+            yield f"if not changed and {quiet}:"
+            yield from indented(self._done())
+            yield "    return ()"
+        yield from self._time()
+        yield "dirty = 0"
+        yield from at_hand(always)
+        yield from always
+        yield "if changed:"
+        lines = []
+        for number, name in enumerate(self.arriving):
+            lines.append(f"if changed & {1 << number}:")
+            lines += indented(self._new(f"x{number}", name))
+        yield from indented([*at_hand(lines), *lines])
+        yield from self._after()
+
+    def _noticed(self, number: int, name: str) -> Iterator[str]:
+        """See whether a value is another; refuse what needs a closer look."""
+        x = f"x{number}"
+        last = "False" if name in self.plan.events else f"last[{self.plan.signals.index(name)}]"
+        yield f"if {x} is not {last}:"
+        yield f"    if {self._is_odd(x, name)}:"
+        yield "        return self.clerk.other(t, values)"
+        yield f"    changed |= {1 << number}"
+
+    def _is_odd(self, variable: str, name: str) -> str:
+        """Whether a value needs a closer look: of another class, unknown, or a payload."""
+        if name in self.plan.events:
+            return f"{variable} is not True"
+        type_ = self.plan.spec.signals[name].type
+        match type_.kind:
+            case Kind.BOOL:
+                return f"{variable} is not True and {variable} is not False"
+            case Kind.INT:
+                return f"{variable}.__class__ is not int"
+            case Kind.REAL:
+                return (
+                    f"({variable}.__class__ is not float or {variable} != {variable}) "
+                    f"and {variable}.__class__ is not int"
+                )
+            case Kind.LABEL:
+                return f"{variable}.__class__ is not str or {variable} not in {type_.labels!r}"
+
+    def _every(self, number: int, name: str) -> Iterator[str]:
+        """What an update does though the value is the same."""
+        uses = self.plan.uses.get(name)
+        x = f"x{number}"
+        if name in self.plan.events:
+            if uses is not None and uses.marked:
+                yield from self._marked_event(name)
+            return
+        yield from self._on_every_update(x, name)
+
+    def _new(self, variable: str, name: str) -> Iterator[str]:
+        """Take a valid value that is not the one before."""
+        if name in self.plan.events:
+            yield from self._occurs(variable, name)
+        else:
+            yield from self._changed(variable, name, given=True)
+
+    # A sample of any names.
+
+    def _some(self) -> Iterator[str]:
+        yield "def some(self, t, values):"
+        yield '    """Take a sample of which only the time was checked."""'
+        yield "    takers = self.TAKERS"
+        yield "    taken = []"
+        yield "    for name, x in values.items():"
+        yield "        if name not in takers:"
+        yield "            return self.clerk.other(t, values)"
+        yield "        classes, labels, take = takers[name]"
+        yield "        if x.__class__ not in classes or x != x or (labels and x not in labels):"
+        yield "            return self.clerk.other(t, values)"
+        yield "        taken.append((take, x))"
+        yield from indented(self._time())
+        yield "    dirty = 0"
+        yield "    for take, x in taken:"
+        yield "        dirty |= take(self, t, x)"
+        yield from indented(self._after())
+
+    def _take(self) -> Iterator[str]:
+        yield "def take(self, t, values):"
+        yield '    """Take the updates of a valid sample; time has come to `t` − 1 before."""'
+        yield "    for name, x in values.items():"
+        yield "        self.dirty |= self.TAKE[name](self, t, x)"
+        yield f"    self.{self._go_on}(t)"
+        yield from indented(self._done())
+
+    def _taken(self, variable: str, name: str) -> Iterator[str]:
+        """Take one value, which may be any that is valid."""
+        if name in self.plan.events:
+            uses = self.plan.uses.get(name)
+            if uses is not None and uses.marked:
+                yield from self._marked_event(name)
+            yield f"if {variable} is not False:"
+            yield from indented(self._occurs(variable, name))
+            return
+        signal = self.plan.signals.index(name)
+        yield f"if {variable} != {variable}:"
+        yield f"    {variable} = None"
+        yield from self._on_every_update(variable, name)
+        yield f"if self.first[{signal}] is None:"
+        yield f"    self.first[{signal}] = t"
+        yield f"if {variable} is not s[{signal}]:"
+        yield from indented(self._changed(variable, name, given=False))
+
+    # One value.
+
+    def _changed(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
+        """Take another value; `given`: it is not `None`."""
+        signal = self.plan.signals.index(name)
+        yield f"if s[{signal}] is None and self.first[{signal}] is None:"
+        yield f"    self.first[{signal}] = t"
+        known = variable if given else f"MISSING if {variable} is None else {variable}"
+        yield f"last[{signal}] = {known}"
+        yield f"s[{signal}] = {variable}"
+        others = bits(self.plan.graph.by_name.get(name, ()))
+        for place in self.plan.graph.by_name.get(name, ()):
+            leaf = self.plan.graph.nodes[place].leaf
+            if place in self.instant and leaf is not None:
+                others &= ~(1 << place)
+                yield f"if ({leaf_expression(self.plan, place, leaf)}) != v[{place}]:"
+                yield f"    dirty |= {1 << place}"
+        if others:
+            yield f"dirty |= {others}"
+
+    def _occurs(self, variable: str, name: str) -> Iterator[str]:
+        yield f"self.occur({self.plan.events.index(name)}, {variable})"
+        readers = bits(self.plan.graph.by_name.get(name, ()))
+        if readers:
+            yield f"dirty |= {readers}"
+
+    def _marked_event(self, name: str) -> Iterator[str]:
+        yield f"self.u.add({name!r})"
+        yield "self.gathered = True"
+        yield f"dirty |= {bits(self.plan.graph.by_name[name])}"
+
+    def _on_every_update(self, variable: str, name: str) -> Iterator[str]:
+        signal = self.plan.signals.index(name)
+        uses = self.plan.uses.get(name)
+        if uses is not None and (uses.history or uses.marked):
+            yield f"self.mark(t, {signal}, {variable})"
+            yield f"dirty |= {bits(self.plan.graph.by_name[name])}"
+        stale_after = self.plan.spec.signals[name].stale_after
+        if stale_after is not None:
+            yield f"if self.stale_at[{signal}] < NEVER:"
+            yield f"    self.stale_at[{signal}] = t + {stale_after + 1}"
+            yield "else:"
+            yield f"    self.set_stale({signal}, t + {stale_after + 1})"
+
+    # What all ways share.
+
+    def _quiet(self) -> str:
+        """Whether nothing happens at a sample at which nothing changes."""
+        if self.sparse:
+            return f"t < self.wake and t - self.position <= {self.span}"
+        return "t < self.wake"
+
+    def _time(self) -> Iterator[str]:
+        """Let time come to just before the sample."""
+        if self.plan.gap is None:
+            yield "if self.dues and self.dues[0][0] < t:"
+        else:
+            yield "if t > self.wake:"
+        yield "    self.through(t - 1)"
+
+    def _done(self) -> Iterator[str]:
+        yield "self.after = t"
+        if self.plan.gap is None:
+            yield "self.position = t"
+
+    def _after(self) -> Iterator[str]:
+        """Go on with what changed."""
+        yield f"if dirty or not ({self._quiet()}):"
+        yield "    self.dirty |= dirty"
+        yield f"    self.{self._go_on}(t)"
+        yield from self._done()
+        yield "if self.news:"
+        yield "    return self.clerk.told()"
+        yield "return ()"
+
+    @property
+    def _go_on(self) -> str:
+        return "visit" if self.plan.gap in (None, 1) else "sampled"
+
+    def _classes(self, name: str) -> str:
+        if name in self.plan.events:
+            return "(bool,)"
+        return _CLASSES[self.plan.spec.signals[name].type.kind]
+
+    def _labels(self, name: str) -> tuple[str, ...]:
+        signal = self.plan.spec.signals.get(name)
+        if signal is None or signal.type.kind is not Kind.LABEL:
+            return ()
+        return tuple(signal.type.labels)
+
+    def _instant_leaves(self) -> frozenset[int]:
+        """The leaves that depend on the present value of one signal and nothing else."""
+        graph = self.plan.graph
+        return frozenset(
+            place
+            for place, state in enumerate(graph.nodes)
+            if state.leaf is not None and self._is_instant(state.leaf)
+        )
+
+    def _is_instant(self, leaf: Leaf) -> bool:
+        match leaf:
+            case SignalAtom():
+                return True
+            case Compare(left=left, right=right):
+                names = inputs_of(left, right)
+                if len(names) != 1:
+                    return False
+                name = next(iter(names))
+                uses = self.plan.uses[name]
+                return name in self.plan.signals and not uses.history
+            case _:
+                return False

@@ -1,0 +1,216 @@
+"""State formulas as Python statements over the arrays of a generated monitor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import assert_never
+
+from rvmon.codegen.plan import Plan
+from rvmon.codegen.python_leaves import leaf_expression
+from rvmon.formula.state import Elapsed, State, StateOp
+from rvmon.spec.checked import Constant
+
+NEVER = 1 << 63
+
+_DEEPEST = 12
+"""So many operators at most stand in one expression."""
+
+
+@dataclass(frozen=True, slots=True)
+class Roles:
+    """What the nodes of a plan are for.
+
+    Attributes:
+        letters: per node, a bit for each requirement whose letter it is part of.
+        triggers: per node, a bit for each requirement that it triggers.
+        kept: a bit for each node that has a value of its own; the others are parts of one other.
+        parents: per node, a bit for each kept node whose value depends on it directly.
+    """
+
+    letters: tuple[int, ...]
+    triggers: tuple[int, ...]
+    kept: int
+    parents: tuple[int, ...]
+
+
+def bits(places: tuple[int, ...]) -> int:
+    """A set of places as a number."""
+    return sum(1 << place for place in places)
+
+
+def roles_of(plan: Plan) -> Roles:
+    """See which nodes are read by requirements, and which need no value of their own."""
+    graph = plan.graph
+    letters = [0 for _ in graph.nodes]
+    triggers = [0 for _ in graph.nodes]
+    for index, rule in enumerate(plan.rules):
+        for state in rule.alphabet.propositions:
+            letters[graph.index[state]] |= 1 << index
+        if rule.trigger is not None:
+            triggers[graph.index[rule.trigger]] |= 1 << index
+    kept = 0
+    depths = [0 for _ in graph.nodes]
+    for place, state in enumerate(graph.nodes):
+        depth = 1 + max((depths[operand] for operand in graph.operands[place]), default=0)
+        combines = state.op in (StateOp.NOT, StateOp.AND, StateOp.OR)
+        read = letters[place] or triggers[place] or len(graph.parents[place]) != 1
+        if combines and not read and depth < _DEEPEST:
+            depths[place] = depth
+        else:
+            kept |= 1 << place
+    parents = [0 for _ in graph.nodes]
+    for place in reversed(range(len(graph.nodes))):
+        for parent in graph.parents[place]:
+            parents[place] |= 1 << parent if kept >> parent & 1 else parents[parent]
+    return Roles(tuple(letters), tuple(triggers), kept, tuple(parents))
+
+
+def value_before(state: State) -> int:
+    """The value of a node before the first position: unknown, but for what looks at it there."""
+    return 0 if _is_latch(state) else 1
+
+
+def memory_before(state: State) -> int:
+    """What a node remembers before the first position."""
+    if state.op is not StateOp.SINCE:
+        return 0
+    return NEVER if state.high is None else -NEVER
+
+
+def keeps_stretches(state: State) -> bool:
+    """Whether a node needs all the stretches of time in which it holds."""
+    return state.op is StateOp.SINCE and state.low > 0 and state.high is not None
+
+
+def _is_latch(state: State) -> bool:
+    return state.op is StateOp.SINCE and state.low == 0 and state.high is None
+
+
+class NodeWriter:
+    """Writes what gives the nodes of a plan their values.
+
+    Args:
+        plan: has the nodes.
+        roles: of the nodes.
+    """
+
+    def __init__(self, plan: Plan, roles: Roles) -> None:
+        self.plan = plan
+        self.roles = roles
+
+    def statements(self, place: int) -> Iterator[str]:
+        """Put the value of a node at `t` into `n`; the other names are those of `ARRAYS`."""
+        state = self.plan.graph.nodes[place]
+        match state.op:
+            case StateOp.LEAF | StateOp.NOT | StateOp.AND | StateOp.OR:
+                yield f"n = {self._formula(place)}"
+            case StateOp.PREVIOUS:
+                (operand,) = self.plan.graph.operands[place]
+                yield f"n = w[{place}]"
+                yield f"m = w[{place}] = {self.value(operand)}"
+                yield "if m != n:"
+                yield from self._wake(place, f"t + {self.plan.gap or 1}", "    ")
+                yield "else:"
+                yield f"    wakes[{place}] = {NEVER}"
+            case StateOp.SINCE:
+                yield from self._since(place, state)
+            case _:
+                assert_never(state.op)
+
+    def value(self, place: int) -> str:
+        """A node as an operand."""
+        state = self.plan.graph.nodes[place]
+        if isinstance(state.leaf, Constant):
+            return leaf_expression(self.plan, place, state.leaf)
+        return f"v[{place}]" if self.roles.kept >> place & 1 else f"({self._formula(place)})"
+
+    def _formula(self, place: int) -> str:
+        state = self.plan.graph.nodes[place]
+        if state.leaf is not None:
+            return leaf_expression(self.plan, place, state.leaf)
+        operands = self.plan.graph.operands[place]
+        if state.op is StateOp.NOT:
+            return f"2 - {self.value(operands[0])}"
+        sign = "<" if state.op is StateOp.AND else ">"
+        made = self.value(operands[0])
+        for number, operand in enumerate(operands[1:]):
+            first, second = f"a{place}_{number}", f"b{place}_{number}"
+            made = (
+                f"({first} if ({first} := {made}) {sign} ({second} := {self.value(operand)}) "
+                f"else {second})"
+            )
+        return made
+
+    def _since(self, place: int, state: State) -> Iterator[str]:
+        operands = self.plan.graph.operands[place]
+        left, right = (self.value(operand) for operand in operands)
+        low, high = state.low, state.high
+        if _is_latch(state):
+            yield f"n = v[{place}]"
+            if left != "2":
+                yield f"m = {left}"
+                yield "if m < n:"
+                yield "    n = m"
+            yield f"m = {right}"
+            yield "if m > n:"
+            yield "    n = m"
+            return
+        yield f"l = {left}"
+        yield f"r = {right}"
+        if keeps_stretches(state):
+            yield f"n = self.since_({place}, t, l, r)"
+            return
+        yield f"e = w[{place}]"
+        slow = "beyond_" if high is None else "within_"
+        yield f"if l == 1 or r == 1 or b[{place}] != e:"
+        yield f"    n = self.{slow}({place}, t, l, r, {low if high is None else high})"
+        yield "else:"
+        yield from self._beyond(place, low) if high is None else self._within(place, high)
+        yield f"    w[{place}] = b[{place}] = e"
+
+    def _within(self, place: int, high: int) -> Iterator[str]:
+        """As `rvmon.codegen.runtime.past.within`, both readings at once."""
+        yield "    n = 0"
+        yield f"    if e == {NEVER}:"
+        yield f"        e = before + {high}"
+        yield "    if r:"
+        yield f"        e = {NEVER}"
+        yield "        n = 2"
+        yield f"        wakes[{place}] = {NEVER}"
+        yield "    elif not l:"
+        yield f"        e = -{NEVER}"
+        yield f"        wakes[{place}] = {NEVER}"
+        yield "    elif e >= t:"
+        yield "        n = 2"
+        yield from self._wake(place, "e + 1", "        ")
+
+    def _beyond(self, place: int, low: int) -> Iterator[str]:
+        """As `rvmon.codegen.runtime.past.beyond`, both readings at once."""
+        yield "    n = 0"
+        yield f"    if e == -{NEVER}:"
+        yield f"        e = before + {low}"
+        yield "    if not l:"
+        yield f"        e = -{NEVER} if r else {NEVER}"
+        yield f"        wakes[{place}] = {NEVER}"
+        yield "    else:"
+        yield f"        if r and e == {NEVER}:"
+        yield f"            e = t + {low}"
+        yield "        if e <= t:"
+        yield "            n = 2"
+        yield f"        elif e < {NEVER}:"
+        yield from self._wake(place, "e", "            ")
+
+    def _wake(self, place: int, instant: str, indent: str) -> Iterator[str]:
+        yield f"{indent}m = {instant}"
+        yield f"{indent}wakes[{place}] = m"
+        yield f"{indent}if m < queued[{place}]:"
+        yield f"{indent}    queued[{place}] = m"
+        yield f"{indent}    heappush(timers, (m, {place}))"
+
+    def is_timed(self, place: int) -> bool:
+        """Whether a node can change by time alone."""
+        state = self.plan.graph.nodes[place]
+        if state.op is StateOp.SINCE:
+            return not _is_latch(state)
+        return state.op is StateOp.PREVIOUS or isinstance(state.leaf, Elapsed)
