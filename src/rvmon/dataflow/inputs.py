@@ -21,7 +21,8 @@ class Slot:
     Attributes:
         value: as seen now; `None` if unknown, also because it is stale.
         updates: how often it was updated, counted to two.
-        first_at: the instant of the first update; `None` before it.
+        first_at: the instant of the first update, which may belong to a position still to come;
+            `None` before it.
         last: the value of the last update; `None` if that was unknown.
         at: the instant of the last update.
         before: the value of the update before; `None` if it was unknown or there was none.
@@ -71,7 +72,6 @@ class Slot:
         if self.stale_after is not None:
             self.stale_at = t + self.stale_after + 1
         if first:
-            self.first_at = t
             return FALSE
         if value is None or self.before is None:
             return UNKNOWN
@@ -104,6 +104,13 @@ class Inputs:
         self._perishable = [
             (name, slot) for name, slot in self.slots.items() if slot.stale_after is not None
         ]
+
+    def hear(self, t: int, values: Mapping[str, Reported]) -> None:
+        """Note which signals had their first update at `t`."""
+        for name in values:
+            slot = self.slots.get(name)
+            if slot is not None and slot.first_at is None:
+                slot.first_at = t
 
     def apply(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take the updates of one sample; `values` are valid and their names have a source."""

@@ -117,6 +117,7 @@ class Lane:
     def sample(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take a sample; time has come to `t − 1` before."""
         gap = self.flow.gap or 1
+        self.flow.inputs.hear(t, values)
         self.waiting.append((t, values))
         self._awaited = -(-t // gap) * gap
         if self._awaited == t:

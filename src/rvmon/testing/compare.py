@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
@@ -18,11 +20,13 @@ class Outcome:
     decided: int | None
     verdict: Verdict
     decision: Decision
+    captured: Mapping[str, Scalar]
 
     def __str__(self) -> str:
         when = "" if self.decided is None else f" at {format_ticks(self.decided)}"
         trigger = format_ticks(self.triggered)
-        return f"triggered at {trigger}, {self.verdict.value}{when} ({self.decision.value})"
+        with_ = f" with {self.captured}" if self.captured else ""
+        return f"triggered at {trigger}{with_}, {self.verdict.value}{when} ({self.decision.value})"
 
 
 Key = tuple[str, int]
@@ -35,14 +39,20 @@ def outcomes(report: Report) -> dict[Key, Outcome]:
 
 
 def _outcome(attempt: Attempt) -> Outcome:
-    return Outcome(attempt.triggered, attempt.decided, attempt.verdict, attempt.decision)
+    return Outcome(
+        attempt.triggered,
+        attempt.decided,
+        attempt.verdict,
+        attempt.decision,
+        dict(attempt.captured),
+    )
 
 
 def differences(expected: Report, actual: Report) -> list[str]:
     """One line per disagreement; none if the two agree.
 
     Compared are the verdicts of requirements, and of each attempt requirement, number, trigger
-    and decision instants, verdict, what settled it, and the order of the report.
+    and decision instants, verdict, what settled it, captured values, and the order of the report.
 
     Args:
         expected: mostly the oracle's.
@@ -68,3 +78,15 @@ def differences(expected: Report, actual: Report) -> list[str]:
 def _show(report: Report, name: str) -> str:
     verdict = report.verdicts.get(name)
     return "none" if verdict is None else verdict.value
+
+
+def frame_differences(expected: Report, actual: Report) -> list[str]:
+    """One line per disagreement on where the trace begins and ends."""
+    return [
+        f"{what} of the trace: {wanted}, got {got}"
+        for what, wanted, got in (
+            ("origin", expected.origin, actual.origin),
+            ("end", expected.end, actual.end),
+        )
+        if wanted != got
+    ]

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from rvmon.errors import RvmonError
+from rvmon.monitor import Monitor
 from rvmon.spec.checked import CheckedSpec
-from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences, outcomes
+from rvmon.testing.compare import differences, frame_differences
 from rvmon.testing.drive import Monitored, drive
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
-from rvmon.testing.oracle import evaluate
+from rvmon.testing.health import health_differences
+from rvmon.testing.law import judge, word
+from rvmon.testing.online import online_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
 from rvmon.testing.walk import intervals
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
 
 MakeMonitor = Callable[[Case], Monitored | None]
 """A fresh monitor for the spec and the sources of a case; `None`: it judges no such specs."""
@@ -66,19 +67,14 @@ def case_of(seed: object, profile: Profile, traces: TraceProfile) -> Case:
     return random_trace(dice, random_spec(dice, profile), traces)
 
 
-def judge(case: Case) -> Report:
-    """The oracle's report on a case."""
-    return evaluate(case.spec, case.samples, end=case.end, advances=case.advances, names=case.names)
-
-
 def disagreements(case: Case, make: MakeMonitor, *, online: bool = False) -> list[str]:
     """How a monitor departs from the oracle on a case; empty if it does not.
 
     Args:
         case: what to judge.
         make: gives a fresh monitor.
-        online: whether to check as well that each call returned what could be decided by then,
-            no sooner and no later; costs one run of the oracle per action.
+        online: whether to check as well what it says at each action; costs one run of the oracle
+            per action.
     """
     return _found(case, make, online) or []
 
@@ -90,36 +86,17 @@ def _found(case: Case, make: MakeMonitor, online: bool) -> list[str] | None:
         monitor = make(case)
         if monitor is None:
             return None
-        actual, returned = drive(monitor, case)
+        actual, _ = drive(monitor, case)
+        found = differences(expected, actual)
+        if isinstance(monitor, Monitor):
+            found += frame_differences(expected, actual)
+            found += health_differences(case, word(case), actual.health)
+        again = make(case) if online and not found else None
+        if again is not None:
+            found = online_differences(case, again)
     except Exception as error:  # noqa: BLE001 - whatever an engine raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
-    found = differences(expected, actual)
-    if online and not found:
-        found = _late_or_early(case, returned)
     return found
-
-
-def _late_or_early(case: Case, returned: Sequence[Sequence[Attempt]]) -> list[str]:
-    told: set[tuple[str, int]] = set()
-    for count, attempts in enumerate(returned, start=1):
-        prefix = Case(case.spec, case.actions[:count], None, case.names)
-        report = judge(prefix)
-        at_end = {a.id for a in case.spec.requirements.values() if is_upon_end(a)}
-        due = {
-            (a.requirement, a.number)
-            for a in report.attempts
-            if a.decision is Decision.PREFIX and a.requirement not in at_end
-        }
-        now = {(a.requirement, a.number) for a in attempts}
-        if now != due - told:
-            return [f"action {count} decides {sorted(due - told)}, returned {sorted(now)}"]
-        told |= now
-        wanted = outcomes(report)
-        for attempt in attempts:
-            key = (attempt.requirement, attempt.number)
-            if (attempt.decided, attempt.verdict) != (wanted[key].decided, wanted[key].verdict):
-                return [f"action {count} returned {attempt}, expected {wanted[key]}"]
-    return []
 
 
 def campaign(

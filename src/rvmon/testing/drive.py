@@ -34,10 +34,12 @@ def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt
     Returns:
         The report, and what each action returned.
     """
-    returned = []
-    for action in case.actions:
-        if isinstance(action, Sample):
-            returned.append(monitor.step_ns(action.t, action.values))
-        else:
-            returned.append(monitor.advance_ns(action))
+    returned = [tell(monitor, action) for action in case.actions]
     return monitor.finish_ns(case.end), returned
+
+
+def tell(monitor: Monitored, action: Sample | int) -> Sequence[Attempt]:
+    """Tell a monitor one action; returns what it decided."""
+    if isinstance(action, Sample):
+        return monitor.step_ns(action.t, action.values)
+    return monitor.advance_ns(action)

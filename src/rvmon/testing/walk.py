@@ -29,14 +29,15 @@ def intervals(formula: Formula) -> Iterator[Interval]:
 
 def numerics(formula: Formula) -> Iterator[Numeric]:
     """All numeric expressions and their parts."""
-
-    def parts(expression: Numeric) -> Iterator[Numeric]:
-        yield expression
-        if isinstance(expression, Arithmetic):
-            for arg in expression.args:
-                yield from parts(arg)
-
     for part in subformulas(formula):
         if isinstance(part, Compare):
-            yield from parts(part.left)
-            yield from parts(part.right)
+            yield from parts_of(part.left)
+            yield from parts_of(part.right)
+
+
+def parts_of(expression: Numeric) -> Iterator[Numeric]:
+    """The expression and all below it, from the top."""
+    yield expression
+    if isinstance(expression, Arithmetic):
+        for arg in expression.args:
+            yield from parts_of(arg)

@@ -10,9 +10,9 @@ import pytest
 from rvmon.session import Spec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences
-from rvmon.testing.differential import judge as oracle
 from rvmon.testing.drive import drive
 from rvmon.testing.generate_spec import Profile
+from rvmon.testing.law import judge as oracle
 from rvmon.verdict.report import Report
 
 

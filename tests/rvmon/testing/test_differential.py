@@ -7,14 +7,17 @@ from dataclasses import replace
 
 import pytest
 
+from rvmon.errors import TimeOrderError, TraceError
 from rvmon.spec.checked import UnaryOp
-from rvmon.testing.build import always, e, eventually, p, requirement, spec_of, timeline
+from rvmon.testing.build import always, e, eventually, p, probe, requirement, spec_of, timeline
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences
-from rvmon.testing.differential import campaign, decided_on_bound, disagreements, judge
+from rvmon.testing.compare import differences, frame_differences
+from rvmon.testing.differential import campaign, decided_on_bound, disagreements
 from rvmon.testing.drive import drive
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.health import expected_health, health_differences
+from rvmon.testing.law import judge, word
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
 from rvmon.testing.walk import subformulas
@@ -31,11 +34,18 @@ class Echo:
     def __init__(self, case: Case) -> None:
         self.case = Case(case.spec, (), None, case.names)
         self.told: set[tuple[str, int]] = set()
+        self.floor = -100
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        if t_ns < self.floor:
+            raise TimeOrderError("too late")
+        if "nothing of that name" in values or isinstance(values.get("p"), str):
+            raise TraceError("no such value")
+        self.floor = t_ns + 1
         return self._do(Sample(t_ns, values))
 
     def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
+        self.floor = max(self.floor, t_ns)
         return self._do(t_ns)
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
@@ -96,6 +106,20 @@ class Broken(Echo):
         raise ZeroDivisionError(f"no {action}")
 
 
+class Gullible(Echo):
+    """Takes samples that come too late."""
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        return [] if t_ns < self.floor and not values else super().step_ns(t_ns, values)
+
+
+class Forgetful(Echo):
+    """Knows nothing of what is open, and expects nothing."""
+
+    open: Sequence[Attempt] = ()
+    next_due = None
+
+
 def run(make: type[Echo], pairs: int = 60) -> list[str]:
     tally = campaign(make, range(pairs), Profile(), TraceProfile(), online_every=2, shrunk=1)
     return tally.disagreements
@@ -125,6 +149,60 @@ def test_silence_is_found() -> None:
     case = Case(spec_of(requirement(p)), timeline(p="1"))
     assert disagreements(case, Silent) == []
     assert disagreements(case, Silent, online=True) == ["action 1 decides [('R', 1)], returned []"]
+
+
+def test_late_samples_have_to_be_refused() -> None:
+    """A sample that comes too late must not be taken."""
+    case = Case(spec_of(requirement(p)), timeline(p="1"))
+    [found] = disagreements(case, Gullible, online=True)
+    assert found == "action 1 was followed by a sample at 0 with {}, and it was taken"
+
+
+def test_open_attempts_and_their_dues_are_looked_at() -> None:
+    """What is open is compared, and what time alone decided had to be due."""
+    case = Case(spec_of(requirement(eventually(p, 0, 3))), (*timeline(p="0"), 4), 4)
+    [found] = disagreements(case, Forgetful, online=True)
+    assert found == "action 1 leaves open [('R', 1, 0)], shown are []"
+
+    class Unexpecting(Echo):
+        next_due = None
+
+        @property
+        def open(self) -> Sequence[Attempt]:
+            return [a for a in judge(self.case).attempts if a.decided is None]
+
+    [found] = disagreements(case, Unexpecting, online=True)
+    assert "but due was None" in found
+
+
+def test_input_health_is_compared() -> None:
+    """Unknown, missing and stale values are counted, with the requirements that read them."""
+    spec = spec_of(requirement(probe("known", "x"), upon=e), stale={"x": 2})
+    case = Case(spec, (Sample(0, {}), Sample(1, {"x": None}), Sample(2, {"x": 1.0}), 9))
+    found = expected_health(case, word(case))
+    assert [(one.kind, one.name, one.count, one.first) for one in found] == [
+        ("missing", "x", 1, 0),
+        ("none", "x", 1, 1),
+        ("stale", "x", 1, 5),
+    ]
+    assert all(one.requirements == ("R",) for one in found)
+    assert not health_differences(case, word(case), found)
+    for changed_ in (
+        found[1:],
+        found[::-1],
+        [replace(found[0], requirements=()), *found[1:]],
+        [*found[:2], replace(found[2], count=2)],
+        [*found, replace(found[0], name="y")],
+    ):
+        assert health_differences(case, word(case), changed_)
+
+
+def test_begin_and_end_are_compared() -> None:
+    """Where the trace begins and ends is part of a report."""
+    report = judge(Case(spec_of(requirement(p)), timeline(p="1"), 7))
+    assert frame_differences(report, report) == []
+    assert frame_differences(report, replace(report, end=8))
+    assert frame_differences(report, replace(report, origin=8))
 
 
 def test_exceptions_are_findings() -> None:

@@ -23,10 +23,11 @@ from rvmon.spec.checked import (
 )
 from rvmon.testing.build import compared, eventually, requirement, spec_of, x
 from rvmon.testing.case import Case
-from rvmon.testing.differential import Tally, case_of, count, judge
+from rvmon.testing.differential import Tally, case_of, count
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile, random_trace
+from rvmon.testing.law import judge
 from rvmon.testing.pulse import is_pulse
 from rvmon.testing.strategies import cases
 from rvmon.testing.walk import intervals, subformulas

@@ -5,9 +5,10 @@ from __future__ import annotations
 import rvmon
 from rvmon.spec.checked import Requirement
 from rvmon.testing.compare import differences
-from rvmon.testing.differential import case_of, judge
+from rvmon.testing.differential import case_of
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.law import judge
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec
 
