@@ -94,6 +94,17 @@ def choices_of(
     return Choices(names, tuple(found.values()), remembered, complete)
 
 
+def values_of(spec: CheckedSpec, leaves: Sequence[Leaf], name: str) -> list[Value | Silence]:
+    """What one name can say that some leaf tells apart; of an event `False` if it does not occur.
+
+    Args:
+        spec: declares the name.
+        leaves: those that read it.
+        name: of a signal or event.
+    """
+    return _Options(spec, leaves, (), frozenset()).of(name)
+
+
 def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
     """Names of which it matters when they were updated."""
     yield from (name for name, one in spec.signals.items() if one.stale_after is not None)
@@ -142,7 +153,7 @@ class _Options:
         for chosen in _calm_first(values):
             payload: Payload = dict(zip(fields, chosen, strict=True))
             made.append(payload or True)
-            if len(made) == MOST_PAYLOADS:
+            if len(made) == MOST_PAYLOADS and len(fields) > 1:
                 break
         return made
 
