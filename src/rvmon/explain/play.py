@@ -10,9 +10,11 @@ from rvmon.automaton.machine import INFINITY, Machine, Token
 from rvmon.automaton.stretch import next_cut
 from rvmon.explain.example import Example
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.judge import Judge
 from rvmon.monitor.lane import Lane
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.trace.sample import Sample
 from rvmon.verdict.assemble import report_of
 
@@ -73,8 +75,11 @@ def _cuts(lanes: Lanes, end: int) -> Iterator[int]:
         yield lane.flow.next_change
     for judge in lanes.judges:
         for attempt in judge.attempts:
-            for token in _tokens(attempt.token, attempt.better):
-                yield next_cut(judge.machine, token, end)
+            if isinstance(judge, Judge):
+                for token in _tokens(attempt.token, attempt.better):
+                    yield next_cut(judge.machine, token, end)
+        if isinstance(judge, NetworkJudge):
+            yield from judge.cuts(end)
 
 
 def _tokens(*tokens: Token | None) -> Iterator[Token]:
@@ -86,17 +91,24 @@ def _situation(lanes: Lanes, end: int, remembered: frozenset[str]) -> Iterator[o
         yield from _lane(lane, end)
     for judge in lanes.judges:
         yield tuple(judge.captured.items()) if judge.attempts else ()
-        yield frozenset(
-            (
-                _relative(judge.machine, attempt.token, end),
-                attempt.better and _relative(judge.machine, attempt.better, end),
-            )
-            for attempt in judge.attempts
-        )
+        if isinstance(judge, NetworkJudge):
+            yield judge.situation(end)
+        elif isinstance(judge, Judge):
+            yield _standings(judge, end)
     slots = lanes.main.flow.inputs.slots
     for name in sorted(remembered):
         slot = slots[name]
         yield (slot.value, slot.updates and slot.at - end, slot.before, slot.before_at - slot.at)
+
+
+def _standings(judge: Judge, end: int) -> object:
+    return frozenset(
+        (
+            _relative(judge.machine, attempt.token, end),
+            attempt.better and _relative(judge.machine, attempt.better, end),
+        )
+        for attempt in judge.attempts
+    )
 
 
 def _lane(lane: Lane, end: int) -> Iterator[object]:

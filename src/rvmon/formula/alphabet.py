@@ -7,7 +7,19 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import assert_never
 
-from rvmon.formula.core import And, Constant, Core, Literal, Next, Or, Release, Sense, Until
+from rvmon.formula.core import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Sense,
+    Since,
+    Until,
+)
 from rvmon.formula.state import State
 
 
@@ -126,9 +138,13 @@ def literals(formula: Core) -> Iterator[Literal]:
                 yield node
             case And(args=args) | Or(args=args):
                 stack.extend(args)
-            case Next(operand=operand):
+            case Next(operand=operand) | Previous(operand=operand):
                 stack.append(operand)
-            case Until(left=left, right=right) | Release(left=left, right=right):
+            case (
+                Until(left=left, right=right)
+                | Release(left=left, right=right)
+                | Since(left=left, right=right)
+            ):
                 stack += [left, right]
             case _:
                 assert_never(node)

@@ -1,4 +1,8 @@
-"""Core formulas: negation normal form over propositions, with the future operators X, U and R."""
+"""Core formulas: negation normal form over propositions.
+
+The future operators are X, U and R. Those of the past occur only where something of the future
+stands below them: else they are part of a proposition.
+"""
 
 from __future__ import annotations
 
@@ -82,5 +86,27 @@ class Release:
     opened: Release | None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Since:
+    """`left S[low, high] right`; if `dual`, `!(!left S[low, high] !right)`."""
+
+    id: int
+    left: Core
+    right: Core
+    low: int
+    high: int | None
+    dual: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Previous:
+    """The operand at the position before; at the first one `first`."""
+
+    id: int
+    operand: Core
+    first: bool
+
+
 Temporal = Next | Until | Release
-Core = Constant | Literal | And | Or | Next | Until | Release
+Backward = Since | Previous
+Core = Constant | Literal | And | Or | Next | Until | Release | Since | Previous

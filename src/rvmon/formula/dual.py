@@ -4,7 +4,19 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.formula.core import And, Constant, Core, Literal, Next, Or, Release, Sense, Until
+from rvmon.formula.core import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Sense,
+    Since,
+    Until,
+)
 from rvmon.formula.factory import Factory
 from rvmon.formula.residual import FAILS, HOLDS, Atom, Residual, both, either
 from rvmon.formula.state import State, StateOp
@@ -73,6 +85,8 @@ class Duals:
             ):
                 make = factory.until if isinstance(node, Until) is positive else factory.release
                 return make(self.of(left, positive), self.of(right, positive), low, high)
+            case Since() | Previous():
+                raise AssertionError("a residual holds nothing of the past")
             case _:
                 assert_never(node)
 

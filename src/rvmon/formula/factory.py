@@ -17,8 +17,10 @@ from rvmon.formula.core import (
     Literal,
     Next,
     Or,
+    Previous,
     Release,
     Sense,
+    Since,
     Until,
 )
 from rvmon.formula.state import Leaf, State, StateOp
@@ -159,6 +161,16 @@ class Factory:
             return right
         opened = self._core(Release, left, right, 0, high, None) if low else None
         return cast(Core, self._core(Release, left, right, low, high, opened))
+
+    def core_since(
+        self, left: Core, right: Core, low: int, high: int | None, *, dual: bool
+    ) -> Core:
+        """`left S[low, high] right`, or its dual, over operands that speak of the future."""
+        return cast(Core, self._core(Since, left, right, low, high, dual))
+
+    def core_previous(self, operand: Core, *, first: bool) -> Core:
+        """`operand`, which speaks of the future, at the position before; `first` at the first."""
+        return cast(Core, self._core(Previous, operand, first))
 
 
 def _id(node: State | Core) -> int:

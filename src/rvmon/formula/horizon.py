@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.formula.core import And, Constant, Core, Literal, Next, Or, Release, Until
+from rvmon.formula.core import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Since,
+    Until,
+)
 
 
 def horizon(formula: Core) -> int | None:
@@ -21,6 +32,10 @@ def horizon(formula: Core) -> int | None:
             return None
         case Until(left=left, right=right, high=high) | Release(left=left, right=right, high=high):
             return _greatest((left, right), high)
+        case Since(left=left, right=right):
+            return _greatest((left, right), 0)
+        case Previous(operand=operand):
+            return horizon(operand)
         case _:
             assert_never(formula)
 

@@ -87,7 +87,7 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
 
     Raises:
-        UnmonitorableError: a future operator stands below a past one.
+        UnmonitorableError: the trigger speaks of the future.
     """
     lowering = _Lowering(factory, period)
     match requirement.trigger:
@@ -119,11 +119,11 @@ class _Lowering:
         match formula:
             case Unary(op=op, operand=operand, interval=interval):
                 if op in _FUTURE:
-                    raise UnmonitorableError("a future operator below a past one")
+                    raise UnmonitorableError("its trigger speaks of the future")
                 return self._state_unary(op, self.state(operand), interval)
             case Binary(op=op, left=left, right=right, interval=interval):
                 if op in _FUTURE:
-                    raise UnmonitorableError("a future operator below a past one")
+                    raise UnmonitorableError("its trigger speaks of the future")
                 return self._state_binary(op, self.state(left), self.state(right), interval)
             case Constant(value=value):
                 return factory.state_true if value else factory.state_false
@@ -214,10 +214,43 @@ class _Lowering:
             case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=interval):
                 ends = (self.factory.constant(not positive), self.core(operand, positive))
                 return self._until(*ends, interval, not positive)
+            case Unary(op=op, operand=operand, interval=interval):
+                return self._core_past(op, operand, interval, positive)
             case Binary(op=op, left=left, right=right, interval=interval):
                 return self._core_binary(op, left, right, interval, positive)
             case _:
-                raise UnmonitorableError("a future operator below a past one")
+                raise AssertionError("only operators have something of the future below them")
+
+    def _core_past(
+        self, op: UnaryOp, operand: Formula, interval: Interval | None, positive: bool
+    ) -> Core:
+        """An operator of the past over something of the future."""
+        factory = self.factory
+        match op:
+            case UnaryOp.PREVIOUS:
+                return factory.core_previous(self.core(operand, positive), first=not positive)
+            case UnaryOp.ONCE | UnaryOp.HISTORICALLY:
+                dual = positive is (op is UnaryOp.HISTORICALLY)
+                ends = (factory.constant(not dual), self.core(operand, positive))
+                return self._core_since(*ends, interval, dual)
+            case UnaryOp.HELD:
+                whole = self._core_past(UnaryOp.HISTORICALLY, operand, interval, positive)
+                elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
+                literal = factory.literal(elapsed, Sense.TRUE if positive else Sense.FALSE)
+                return (factory.all_of if positive else factory.any_of)([whole, literal])
+            case UnaryOp.RISE | UnaryOp.FALL:
+                rising = op is UnaryOp.RISE
+                now = self.core(operand, positive is rising)
+                then = self.core(operand, positive is not rising)
+                # Nothing is before the first position: `previous φ` is false there.
+                before = factory.core_previous(then, first=positive is rising)
+                return (factory.all_of if positive else factory.any_of)([now, before])
+            case _:
+                raise AssertionError("other operators were sorted out")
+
+    def _core_since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
+        low, high = (interval.low, interval.high) if interval else (0, None)
+        return self.factory.core_since(left, right, low, high, dual=dual)
 
     def _core_binary(
         self, op: BinaryOp, left: Formula, right: Formula, interval: Interval | None, positive: bool
@@ -244,8 +277,11 @@ class _Lowering:
             case BinaryOp.STRONG_RELEASE:  # ψ U (φ and ψ)
                 both = self._both(left, positive, right, positive, positive)
                 return self._until(self.core(right, positive), both, interval, positive)
+            case BinaryOp.SINCE:
+                ends = (self.core(left, positive), self.core(right, positive))
+                return self._core_since(*ends, interval, not positive)
             case _:
-                raise UnmonitorableError("a future operator below a past one")
+                assert_never(op)
 
     def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)

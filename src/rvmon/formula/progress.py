@@ -9,7 +9,18 @@ from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import assert_never
 
-from rvmon.formula.core import And, Constant, Core, Literal, Next, Or, Release, Until
+from rvmon.formula.core import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Since,
+    Until,
+)
 from rvmon.formula.residual import (
     FAILS,
     HOLDS,
@@ -122,6 +133,8 @@ class _Step:
                 return frozenset([frozenset([(node, NO_CLOCK)])])
             case Until() | Release():
                 return self.window(node, len(self.ages), phase(node, 0))
+            case Since() | Previous():
+                raise AssertionError("what lies ahead of the past is judged by the network")
             case _:
                 assert_never(node)
 

@@ -48,7 +48,7 @@ def build_monitor(
         if wanted is None or name in wanted
     ]
     for requirement in chosen:
-        requirement.machine(engine)
+        requirement.engine(engine)
     given = None if sources is None else frozenset(sources)
     if engine not in _GENERATED or not any(can_generate(one) for one in chosen):
         return Monitor(compiled, chosen, engine, settle, given)

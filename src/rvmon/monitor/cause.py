@@ -7,7 +7,18 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from rvmon.formula.alphabet import Cell, holds
-from rvmon.formula.core import And, Constant, Core, Literal, Next, Or, Release, Until
+from rvmon.formula.core import (
+    And,
+    Constant,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Since,
+    Until,
+)
 from rvmon.formula.progress import Phase, after, instance, phase, step
 from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
 from rvmon.formula.state import State
@@ -112,5 +123,7 @@ class CauseFinder:
                 return next((cause for cause in causes if cause is not None), None)
             case Literal() | Next() | Until() | Release():
                 return self._of_atom(node, self.t)
+            case Since() | Previous():
+                raise AssertionError("a residual holds nothing of the past")
             case _:
                 assert_never(node)

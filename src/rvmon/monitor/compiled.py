@@ -11,9 +11,12 @@ from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.forecast import Forecaster
 from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
+from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.dataflow.graph import Graph, graph_of, leaf_texts
+from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.numbers import events_of, inputs_of
+from rvmon.dataflow.plan import plan_of
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
@@ -21,9 +24,9 @@ from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import Obligation, UnmonitorableError, lower
 from rvmon.formula.state import State
 from rvmon.monitor.wording import Words
-from rvmon.spec.checked import CheckedSpec, Compare, Requirement
+from rvmon.spec.checked import CheckedSpec, Compare, Requirement, TimeModel
 
-ENGINES = ("auto", "python", "automaton", "progression")
+ENGINES = ("auto", "python", "automaton", "progression", "network")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +34,7 @@ class CompileReport:
     """What became of a requirement.
 
     Attributes:
-        engine: `automaton`, or `progression` where that does not close.
+        engine: `automaton`, or `network` where that does not close.
         why: why it has no automaton; empty if it has one.
         letters: what its propositions can be, as its formula tells them apart.
         horizon: ticks from the trigger within which an attempt is decided; `None` if unbounded.
@@ -59,12 +62,19 @@ class CompiledRequirement:
         requirement: as checked.
         obligation: its formulas.
         alphabet: of what it owes.
+        gap: ticks between two positions; `None` if only samples are positions.
     """
 
     def __init__(
-        self, rank: int, requirement: Requirement, obligation: Obligation, factory: Factory
+        self,
+        rank: int,
+        requirement: Requirement,
+        obligation: Obligation,
+        factory: Factory,
+        gap: int | None,
     ) -> None:
         self.rank = rank
+        self.gap = gap
         self.requirement = requirement
         self.obligation = obligation
         self.alphabet: Alphabet = alphabet_of(obligation.owed)
@@ -72,8 +82,10 @@ class CompiledRequirement:
 
     @cached_property
     def _built(self) -> Automaton | DoesNotCloseError:
+        if self.network_plan.looks_back:
+            return DoesNotCloseError("something of the future below an operator of the past")
         try:
-            return construct(self._owed, self.alphabet, Budget())
+            return reduce(construct(self._owed, self.alphabet, Budget()), self.words.told)
         except DoesNotCloseError as error:
             return error
 
@@ -81,6 +93,11 @@ class CompiledRequirement:
     def automaton(self) -> Automaton | None:
         """Its automaton; `None` if that does not close."""
         return self._built if isinstance(self._built, Automaton) else None
+
+    @cached_property
+    def slim(self) -> Automaton | None:
+        """Its automaton for those who are told verdicts only: what is owed may be merged."""
+        return None if self.automaton is None else reduce(self.automaton)
 
     @property
     def refusal(self) -> str:
@@ -93,7 +110,7 @@ class CompiledRequirement:
         reach, letters = horizon(self.obligation.owed), self.alphabet.size
         automaton = self.automaton
         if automaton is None:
-            return CompileReport("progression", self.refusal, letters, reach)
+            return CompileReport("network", self.refusal, letters, reach)
         return CompileReport(
             "automaton",
             "",
@@ -113,26 +130,52 @@ class CompiledRequirement:
     def _progression(self) -> Progression:
         return Progression(self._owed, self.alphabet, self.requirement.id)
 
-    def machine(self, engine: str) -> Machine:
-        """The machine that judges its attempts.
+    @cached_property
+    def network_plan(self) -> Plan:
+        """The nodes of its delay network."""
+        return plan_of(self.obligation.owed, self.gap)
+
+    def engine(self, name: str) -> str:
+        """Which of `automaton`, `network` and `progression` judges it.
 
         Args:
-            engine: `auto` takes the automaton where there is one.
+            name: what was asked for; `auto` takes the automaton where there is one.
 
         Raises:
             UnknownNameError: there is no such engine.
             RvmonError: the engine was asked for by name and cannot judge this requirement.
         """
-        if engine not in ENGINES:
-            raise UnknownNameError(f"no engine `{engine}`: there are {', '.join(ENGINES)}")
-        if engine == "progression":
-            return self._progression
-        if self._table is not None:
-            return self._table
-        if engine == "automaton":
+        if name not in ENGINES:
+            raise UnknownNameError(f"no engine `{name}`: there are {', '.join(ENGINES)}")
+        if name == "network":
+            return name
+        if name == "progression":
+            if self.network_plan.looks_back:
+                raise RvmonError(
+                    f"{self.requirement.id} looks back at what lies ahead, which progression "
+                    "cannot judge: use the engine `auto` or `network`"
+                )
+            return name
+        if self.automaton is not None:
+            return "automaton"
+        if name == "automaton":
             raise RvmonError(
                 f"{self.requirement.id} has no automaton ({self.refusal}): use the engine `auto`"
             )
+        return "network"
+
+    def machine(self, engine: str) -> Machine:
+        """The machine that judges its attempts, if it is none of `network`.
+
+        Args:
+            engine: as `engine` takes it.
+
+        Raises:
+            UnknownNameError: there is no such engine.
+            RvmonError: the engine was asked for by name and cannot judge this requirement.
+        """
+        if self.engine(engine) == "automaton" and self._table is not None:
+            return self._table
         return self._progression
 
     @cached_property
@@ -210,14 +253,14 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     factory = Factory()
     made = {}
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
+        gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(checked.time, checked.period)
         try:
             obligation = lower(requirement, factory, checked.period)
         except UnmonitorableError as error:
             span = requirement.span
             place = "" if span is None else f"{span.source.name}:{span.line}: "
             raise RvmonError(
-                f"{place}{name} cannot be monitored: {error}. "
-                "Say it with past operators in the trigger and future ones in what is owed"
+                f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
             ) from None
-        made[name] = CompiledRequirement(rank, requirement, obligation, factory)
+        made[name] = CompiledRequirement(rank, requirement, obligation, factory, gap)
     return CompiledSpec(checked, made)

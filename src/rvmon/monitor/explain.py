@@ -9,8 +9,9 @@ from rvmon.automaton.machine import Token
 from rvmon.automaton.stretch import run
 from rvmon.formula.progress import after, value
 from rvmon.formula.state import UNKNOWN
+from rvmon.monitor.bench import Open
 from rvmon.monitor.cause import CauseFinder
-from rvmon.monitor.judge import Judge, Open
+from rvmon.monitor.judge import Judge
 from rvmon.monitor.wording import deadline
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
@@ -29,7 +30,7 @@ class Explanation:
 def explain_decision(
     judge: Judge, attempt: Open, verdict: bool, t: int, before: Token
 ) -> Explanation:
-    """Why an attempt was decided at `t`; see `rvmon.monitor.judge.Clerk.decided`."""
+    """Why an attempt was decided at `t`; see `rvmon.monitor.bench.Clerk.decided`."""
     words = judge.compiled.words
     letter = judge.letters[0 if verdict else 1]
     location, anchors = _just_before(judge, before, letter, t)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
-from rvmon.monitor.judge import Judge, Open
+from rvmon.monitor.bench import Open
+from rvmon.monitor.judge import Judge
 from rvmon.verdict.verdict import Verdict
 
 

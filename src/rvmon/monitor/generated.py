@@ -16,8 +16,9 @@ from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Inputs
 from rvmon.errors import RvmonError, TraceError, UnknownNameError
+from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.judge import Judge, Open
+from rvmon.monitor.judge import Judge
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
@@ -30,15 +31,32 @@ Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 
 def can_generate(requirement: CompiledRequirement) -> bool:
     """Whether a requirement can be judged by generated code in this process."""
-    return not requirement.requirement.captures and requirement.requirement.for_each is None
+    own = not requirement.requirement.captures and requirement.requirement.for_each is None
+    return own and requirement.automaton is not None
 
 
-def plan_requirements(compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]) -> Plan:
-    """The plan of some requirements of a specification."""
+def plan_requirements(
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    *,
+    explained: bool = True,
+) -> Plan:
+    """The plan of some requirements of a specification.
+
+    Args:
+        compiled: the specification.
+        requirements: chosen from it.
+        explained: whether somebody will ask what is owed: the tables are smaller if not.
+    """
     return plan_of(
         compiled.checked,
         [
-            PlannedRule(one.requirement, one.obligation.trigger, one.alphabet, one.automaton)
+            PlannedRule(
+                one.requirement,
+                one.obligation.trigger,
+                one.alphabet,
+                one.automaton if explained else one.slim,
+            )
             for one in requirements
         ],
     )
@@ -73,7 +91,7 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
                 f"{one.requirement.id} {reason}; generated code cannot judge it: "
                 "leave it out with --only, or use `rvmon run`"
             )
-    return plan_requirements(compiled, chosen)
+    return plan_requirements(compiled, chosen, explained=False)
 
 
 class Forms:
@@ -172,7 +190,7 @@ class GeneratedLanes(Lanes):
         attempt.doubt = self._seat_of(rule)._doubt()
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
-        """Hear of a decision; see `rvmon.monitor.judge.Clerk`."""
+        """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
         self.unit.news = True
         self.ledger.decided(self._seat_of(rule), attempt, verdict, t, before)
 
@@ -194,7 +212,7 @@ class GeneratedLanes(Lanes):
     # What the monitor calls.
 
     @property
-    def judges(self) -> Sequence[Judge]:
+    def judges(self) -> Sequence[Bench]:
         """The judges of all lanes."""
         return [*(self._seat_of(rule) for rule in self.unit.rules), *super().judges]
 

@@ -1,71 +1,28 @@
-"""The open attempts of one requirement, driven through positions and time."""
+"""Open attempts as tokens of a machine, driven through positions and time."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Protocol
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import INFINITY, Machine, Token
 from rvmon.automaton.stretch import next_cut, run, settle
 from rvmon.dataflow.flow import Flow
-from rvmon.formula.state import UNKNOWN
+from rvmon.formula.progress import after, holds_at_end
+from rvmon.monitor.bench import Bench, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.trace.sample import Scalar
-from rvmon.trace.time import TIME_LIMIT, format_ticks
 
 Drive = Callable[[Token, int], tuple[Token, int]]
 """Takes a token on under a letter; gives it with the instant of its decision, or when it is due."""
 
 
-class Open:
-    """One undecided attempt.
+class Judge(Bench):
+    """Judges by the tokens of a machine.
 
     Attributes:
-        number: of the attempt; 0 until it is numbered.
-        triggered: the instant of its trigger.
-        token: of the run that takes the unknown for the worse.
-        better: of the run that takes it for the better; `None` as long as both are the same.
-        seen: the values of the judge's leaves at the trigger.
-        doubt: when and why the two runs parted; empty if they did not.
-    """
-
-    __slots__ = ("better", "doubt", "number", "seen", "token", "triggered")
-
-    def __init__(self, triggered: int, token: Token, seen: tuple[int, ...]) -> None:
-        self.number = 0
-        self.triggered = triggered
-        self.token = token
-        self.better: Token | None = None
-        self.seen = seen
-        self.doubt = ""
-
-
-class Clerk(Protocol):
-    """Keeps the records."""
-
-    def decided(self, judge: Judge, attempt: Open, verdict: bool, t: int, before: Token) -> None:
-        """Take a decision at `t`; `before` is the token of the run that brought it, before that.
-
-        Between the position of `before` and `t` the letters were as the judge has them.
-        """
-
-
-class Judge:
-    """The open attempts that share their letters.
-
-    Attributes:
-        compiled: the requirement.
-        machine: judges it.
-        flow: gives the truth of the propositions.
-        clerk: hears of decisions.
-        captured: values of `let` and `for each`.
-        places: of the propositions in the flow.
-        leaves: place and text of what is read of the input.
+        machine: judges the attempts.
         letters: of the position read last, the unknown taken for the worse and for the better.
-        attempts: the undecided ones, oldest first; also those that only the end can settle.
-        due: an instant before which, the letters staying, no attempt can be decided.
-        restless: whether attempts may move at the next position though the letters stay.
     """
 
     def __init__(
@@ -76,22 +33,12 @@ class Judge:
         clerk: Clerk,
         captured: Mapping[str, Scalar],
     ) -> None:
+        super().__init__(compiled, flow, clerk, captured)
         alphabet = compiled.alphabet
-        self.compiled = compiled
         self.machine = machine
-        self.flow = flow
-        self.clerk = clerk
-        self.captured = captured
-        self.places = tuple(flow.graph.index[state] for state in alphabet.propositions)
-        index = flow.graph.index
-        self.leaves = tuple((index[leaf], text) for leaf, text in compiled.leaves if leaf in index)
         self._worse = tuple(zip(self.places, alphabet.pessimistic, strict=True))
         self._better = tuple(zip(self.places, alphabet.optimistic, strict=True))
         self.letters = (0, 0)
-        self.attempts: list[Open] = []
-        self.due = INFINITY
-        self.restless = False
-        self.position = -TIME_LIMIT
 
     def read(self) -> None:
         """Take the letters of the position that the flow is at."""
@@ -111,12 +58,6 @@ class Judge:
             self.attempts.append(attempt)
             self.due = min(self.due, due)
         return attempt
-
-    @property
-    def seen(self) -> tuple[int, ...]:
-        """The values of the leaves now."""
-        values = self.flow.values
-        return tuple([values[place] for place, _ in self.leaves])
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, which the flow is at."""
@@ -225,9 +166,8 @@ class Judge:
         attempt.better = None if moved == moved_better else moved_better
         return due
 
-    def _doubt(self) -> str:
-        values = self.flow.values
-        unknown = [text for place, text in self.leaves if values[place] == UNKNOWN]
-        return (
-            f"{', '.join(f'`{text}`' for text in unknown)} unknown at {format_ticks(self.position)}"
-        )
+    def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
+        """Whether the rule for the end of a trace makes an undecided attempt true."""
+        location, anchors = attempt.token
+        residual = after(self.machine.residual(location), [reached - a for a in anchors])
+        return holds_at_end(residual, [end - a for a in anchors])

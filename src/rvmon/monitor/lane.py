@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Reported
-from rvmon.monitor.judge import Judge, Open
+from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.trigger import Trigger
 
 
@@ -44,20 +44,20 @@ class Lane:
 
     def __init__(self, flow: Flow) -> None:
         self.flow = flow
-        self.judges: list[Judge] = []
+        self.judges: list[Bench] = []
         self.starters: list[Starter] = []
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
         nodes = flow.graph.nodes
-        self._judges_at: list[list[Judge]] = [[] for _ in nodes]
+        self._judges_at: list[list[Bench]] = [[] for _ in nodes]
         self._starters_at: list[list[Starter]] = [[] for _ in nodes]
-        self._restless: dict[Judge, None] = {}
+        self._restless: dict[Bench, None] = {}
         self._repeating: dict[Starter, None] = {}
         self._soonest = INFINITY
         """No judge is due before."""
         self._awaited = INFINITY
         """The next position at which samples that were taken will show."""
 
-    def add_judge(self, judge: Judge) -> None:
+    def add_judge(self, judge: Bench) -> None:
         """Have a requirement's attempts driven."""
         self.judges.append(judge)
         for place in judge.places:
@@ -108,7 +108,7 @@ class Lane:
         for judge in self.judges:
             self._note(judge)
 
-    def _note(self, judge: Judge) -> None:
+    def _note(self, judge: Bench) -> None:
         """Remember when a judge has to be seen to, after something was done to it."""
         self._soonest = min(self._soonest, judge.due)
         if judge.restless:
@@ -143,13 +143,13 @@ class Lane:
         for starter in asked:
             self._ask(starter, t)
 
-    def begin(self, judge: Judge, t: int, triggered: int) -> Open:
+    def begin(self, judge: Bench, t: int, triggered: int) -> Open:
         """Start an attempt of one of the judges at the position `t`, which the flow is at."""
         attempt = judge.begin(t, triggered)
         self._note(judge)
         return attempt
 
-    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[Judge]:
+    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[Bench]:
         """The judges that have to visit the position at `t`."""
         concerned = self._restless
         self._restless = {}

@@ -9,11 +9,13 @@ from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.dataflow.numbers import reader
+from rvmon.monitor.bench import Bench
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.instances import Instance, seen_by, values_in
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.lane import Lane, Starter
 from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.trigger import Trigger
 from rvmon.spec.checked import CheckedSpec, ForEach, Mode, Numeric, TimeModel
 from rvmon.trace.sample import Payload, Scalar, Value
@@ -70,7 +72,7 @@ class Lanes:
         return [lane for lane, _ in self._lanes]
 
     @property
-    def judges(self) -> Sequence[Judge]:
+    def judges(self) -> Sequence[Bench]:
         """The judges of all lanes."""
         return [judge for lane in self.all for judge in lane.judges]
 
@@ -123,11 +125,15 @@ class Lanes:
     def _flow(self, graph: Graph, captured: Captured) -> Flow:
         return Flow(graph, Inputs(self.spec, self.sources), self.gap, captured)
 
-    def _judge(self, compiled: CompiledRequirement, lane: Lane, captured: Captured) -> Judge:
-        machine = compiled.machine(self.engine)
-        judge = Judge(compiled, machine, lane.flow, self.ledger, captured)
+    def _judge(self, compiled: CompiledRequirement, lane: Lane, captured: Captured) -> Bench:
+        judge = self._new_judge(compiled, lane.flow, captured)
         lane.add_judge(judge)
         return judge
+
+    def _new_judge(self, compiled: CompiledRequirement, flow: Flow, captured: Captured) -> Bench:
+        if compiled.engine(self.engine) == "network":
+            return NetworkJudge(compiled, compiled.network_plan, flow, self.ledger, captured)
+        return Judge(compiled, compiled.machine(self.engine), flow, self.ledger, captured)
 
     def _seat(
         self,
@@ -168,19 +174,21 @@ class Lanes:
         captured: Captured,
         instance: Instance | None,
         t: int,
-    ) -> tuple[Lane, Judge]:
+    ) -> tuple[Lane, Bench]:
         """A lane for one attempt, triggered at `t`, in which its captured values are constants."""
         own = dict(captured)
         for capture in compiled.requirement.captures:
             own[capture.name] = _capture(capture.value, parent.flow, own)
         graph = compiled.consequent_graph
-        if graph.stateful:
+        if _looks_back(compiled):
             lane = Lane(self._flow(graph, own))
+            judge = self._judge(compiled, lane, own)
             self._replay(lane, instance)
             lane.through(t)
         else:
             lane = Lane(parent.flow.fork(graph, own, occurring=True))
-        return lane, self._judge(compiled, lane, own)
+            judge = self._judge(compiled, lane, own)
+        return lane, judge
 
     def _replay(self, lane: Lane, instance: Instance | None) -> None:
         """Let a new lane see the samples so far."""
@@ -235,10 +243,19 @@ def _capture(value: Numeric, flow: Flow, captured: Captured) -> Scalar:
 def _needs_history(compiled: CompiledRequirement) -> bool:
     """Whether an instance or a captured attempt has to look at what was before it."""
     requirement = compiled.requirement
-    if requirement.captures and compiled.consequent_graph.stateful:
+    if requirement.captures and _looks_back(compiled):
         return True
-    remembers = bool(compiled.shared_graph.stateful) or not requirement.pulse
+    remembers = (
+        bool(compiled.shared_graph.stateful)
+        or not requirement.pulse
+        or compiled.network_plan.looks_back
+    )
     return requirement.for_each is not None and remembers
+
+
+def _looks_back(compiled: CompiledRequirement) -> bool:
+    """Whether what is owed depends on what was before the trigger."""
+    return bool(compiled.consequent_graph.stateful) or compiled.network_plan.looks_back
 
 
 def _never(t: int, triggered: int) -> None:

@@ -7,11 +7,10 @@ from dataclasses import replace
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
-from rvmon.formula.progress import after, holds_at_end
 from rvmon.formula.state import TRUE, UNKNOWN
-from rvmon.monitor.explain import Explanation, explain_decision, explain_open
-from rvmon.monitor.forecast import forecast_of
-from rvmon.monitor.judge import Judge, Open
+from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.explain import Explanation
+from rvmon.monitor.tell import outlook, why_decided, why_open
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.end import settle_at_end
@@ -33,17 +32,17 @@ class Ledger:
     def __init__(self) -> None:
         self.attempts: list[Attempt] = []
         self._counts: dict[str, int] = {}
-        self._started: list[tuple[int, int, Judge, Open]] = []
-        self._decided: list[tuple[Judge, Open, Attempt]] = []
+        self._started: list[tuple[int, int, Bench, Open]] = []
+        self._decided: list[tuple[Bench, Open, Attempt]] = []
 
-    def started(self, instance: int, judge: Judge, attempt: Open) -> None:
+    def started(self, instance: int, judge: Bench, attempt: Open) -> None:
         """Take a new attempt, to be numbered by its trigger and the rank of its instance."""
         self._started.append((attempt.triggered, instance, judge, attempt))
 
-    def decided(self, judge: Judge, attempt: Open, verdict: bool, t: int, before: Token) -> None:
-        """See `rvmon.monitor.judge.Clerk`."""
+    def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
+        """See `rvmon.monitor.bench.Clerk`."""
         upon_end = judge.compiled.obligation.trigger is None
-        why = explain_decision(judge, attempt, verdict, t, before)
+        why = why_decided(judge, attempt, verdict, t, before)
         record = _record(
             judge,
             attempt,
@@ -54,32 +53,30 @@ class Ledger:
         )
         self._decided.append((judge, attempt, record))
 
-    def ended(self, judge: Judge, attempt: Open, end: int, reached: int) -> None:
+    def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
         requirement = judge.compiled.requirement
-        location, anchors = attempt.token
-        residual = after(judge.machine.residual(location), [reached - a for a in anchors])
         verdict, decision = settle_at_end(
             requirement.at_end,
-            held=holds_at_end(residual, [end - a for a in anchors]),
-            cannot_pass=location == FAILED,
+            held=judge.held_at_end(attempt, end, reached),
+            cannot_pass=attempt.token[0] == FAILED,
             cannot_fail=attempt.better is not None and attempt.better[0] == PASSED,
         )
-        why = explain_open(judge, attempt)
+        why = why_open(judge, attempt, end)
         if decision is not Decision.OPEN:
             reason = _SETTLED[decision].format(policy=requirement.at_end)
             why = replace(why, reason=reason)
         decided = None if decision is Decision.OPEN else end
         record = _record(judge, attempt, decided, verdict, decision, why)
         if decided is None:
-            record = replace(record, forecast=forecast_of(judge, attempt))
+            record = replace(record, forecast=outlook(judge, attempt))
         self._decided.append((judge, attempt, record))
 
-    def open_record(self, judge: Judge, attempt: Open) -> Attempt:
+    def open_record(self, judge: Bench, attempt: Open) -> Attempt:
         """The record of an attempt that is still running."""
-        why = explain_open(judge, attempt)
+        why = why_open(judge, attempt)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
-        return replace(record, forecast=forecast_of(judge, attempt))
+        return replace(record, forecast=outlook(judge, attempt))
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
@@ -103,7 +100,7 @@ class Ledger:
 
 
 def _record(
-    judge: Judge,
+    judge: Bench,
     attempt: Open,
     decided: int | None,
     verdict: Verdict,
@@ -127,7 +124,7 @@ def _record(
     )
 
 
-def _values(judge: Judge, seen: tuple[int, ...]) -> dict[str, Scalar]:
+def _values(judge: Bench, seen: tuple[int, ...]) -> dict[str, Scalar]:
     """The propositions concerned by their text; `None` is unknown."""
     pairs = zip(judge.leaves, seen, strict=True)
     return {text: None if truth == UNKNOWN else truth == TRUE for (_, text), truth in pairs}

@@ -26,7 +26,7 @@ from rvmon.spec.effort import Cost, Effort
 from rvmon.spec.findings import Findings
 from rvmon.spec.functions import applied
 from rvmon.spec.items import ConstItem, DefineItem
-from rvmon.spec.kinds import formula_of, looking_back, number_of
+from rvmon.spec.kinds import formula_of, number_of
 from rvmon.spec.quantities import arithmetic
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
@@ -294,8 +294,7 @@ class Checker:
         interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
         if operand is None:
             raise Reported
-        formula = formula_of(operand, prefix.operand.span)
-        return looking_back(Unary(prefix.op, formula, interval, prefix.span), prefix.op_span)
+        return Unary(prefix.op, formula_of(operand, prefix.operand.span), interval, prefix.span)
 
     def _interval_of(
         self, op: UnaryOp, window: Window | None, span: Span, scope: Scope
@@ -322,7 +321,7 @@ class Checker:
         if left is None or right is None:
             raise Reported
         sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
-        return looking_back(Binary(infix.op, *sides, interval, infix.span), infix.op_span)
+        return Binary(infix.op, *sides, interval, infix.span)
 
     def interval(self, window: Window | None, scope: Scope) -> Interval:
         """The window in ticks; none is from 0 on.

@@ -17,7 +17,6 @@ from rvmon.spec.checked import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.spec.kinds import looking_back
 from rvmon.spec.quantities import arithmetic
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import types as rules
@@ -65,13 +64,11 @@ def applied(checker: Checker, call: Call, scope: Scope) -> Value:
     _check_count(call)
     match name:
         case "rise" | "fall":
-            formula = Unary(UnaryOp(name), checker.formula(call.args[0], scope), None, call.span)
-            return looking_back(formula, call.function.span)
+            return Unary(UnaryOp(name), checker.formula(call.args[0], scope), None, call.span)
         case "held":
             operand = checker.formula(call.args[0], scope)
             ticks = checker.duration(call.args[1], scope)
-            formula = Unary(UnaryOp.HELD, operand, Interval(0, ticks), call.span)
-            return looking_back(formula, call.function.span)
+            return Unary(UnaryOp.HELD, operand, Interval(0, ticks), call.span)
         case "known" | "changed":
             signal, _ = _named(checker, call, scope, events=False)
             return ProbeAtom(Probe(name), signal, call.span)

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked import (
-    Binary,
     Compare,
     CompareOp,
     Formula,
     Literal,
     SignalAtom,
     SignalValue,
-    Unary,
 )
-from rvmon.spec.rules import triggers as trigger_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
-from rvmon.spec.tense import PAST, future_part
 from rvmon.spec.values import Age, Quantity, Value
 
 
@@ -54,17 +50,3 @@ def number_of(value: Value, span: Span) -> Quantity:
             raise Refusal(rules.age_alone(span))
         case _:
             raise Refusal(rules.needs_number(span))
-
-
-def looking_back(formula: Unary | Binary, operator: Span) -> Formula:
-    """The formula itself, which must not be an operator of the past around one of the future.
-
-    Raises:
-        Refusal: it is.
-    """
-    if formula.op in PAST:
-        sides = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
-        for side in sides:
-            if ahead := future_part(side):
-                raise Refusal(trigger_rules.future_below_past(operator, ahead.span))
-    return formula

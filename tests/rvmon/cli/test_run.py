@@ -172,18 +172,6 @@ def test_an_absent_column_is_told(files, capsys):
     assert "knock  absent" in shown
 
 
-def test_check_refuses_what_no_engine_can_judge(files, capsys):
-    """What is well formed but beyond all engines is told by `check` and `run` alike."""
-    (files / "mixed.rv").write_text(
-        SPEC + "requirement D2\n  upon knock\n  then once (eventually closed)\n"
-    )
-    for words in (["check", "mixed.rv"], ["run", "mixed.rv", "P.csv"]):
-        assert main(words) == 2
-        shown = capsys.readouterr().err
-        assert "error[RV047 future-below-past]: `once` looks back at what lies ahead" in shown
-        assert "mixed.rv:10:8" in shown
-
-
 def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):
     """Text, JSON and JUnit name the part of the trigger that lacked."""
     spec, trace, junit = tmp_path / "s.rv", tmp_path / "t.csv", tmp_path / "j.xml"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rvmon.formula.core import Literal, Release, Sense, Until
+from rvmon.formula.core import Literal, Release, Sense, Since, Until
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import UnmonitorableError, lower
@@ -95,7 +95,8 @@ def test_horizon(formula, ticks):
     assert horizon(owed(formula)) == ticks
 
 
-def test_a_future_operator_below_a_past_one_is_refused():
-    """Nothing is known at once of what lies ahead."""
+def test_a_trigger_that_speaks_of_the_future_is_refused():
+    """Nothing is known at once of what lies ahead; in what is owed it may stand anywhere."""
     with pytest.raises(UnmonitorableError):
-        owed(once(eventually(p, 0, 2), 0, 3), upon=e)
+        owed(p, upon=once(eventually(p, 0, 2), 0, 3))
+    assert isinstance(owed(once(eventually(p, 0, 2), 0, 3), upon=e), Since)

@@ -216,5 +216,5 @@ def test_the_compile_report_says_what_became_of_a_requirement():
     [report] = [
         one.report for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
     ]
-    assert report.engine == "progression"
+    assert report.engine == "network"
     assert "more than" in report.why

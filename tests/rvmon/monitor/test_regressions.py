@@ -61,11 +61,11 @@ def test_forms_agree_with_the_law(name, form):
 
 
 def test_what_cannot_be_judged_within_bounds_says_so():
-    """A window above 0 that is started at every tick ends in a message, not in a hang."""
+    """Progression ends in a message, not in a hang, where the network goes on."""
     spec = rvmon.loads(
         "spec s\nsignal a : bool\nevent b\nrequirement R1\n  always (a -> F[2 s, 5 s] b)\n"
     )
-    monitor = spec.monitor()
+    monitor = spec.monitor(engine="progression")
     monitor.step(0, {"a": True})
     with pytest.raises(rvmon.RvmonError, match="an attempt of R1 owes more than 256 obligations"):
         monitor.step(1, {"a": False})

@@ -174,31 +174,6 @@ requirement R1
 """,
 )
 
-FUTURE_BELOW_PAST = Rule(
-    "RV047",
-    "future-below-past",
-    Severity.ERROR,
-    "An operator of the past stands around one of the future, which no monitor can judge.",
-    "A monitor remembers what it needs of the past, which must be settled when it is asked for; "
-    "what lies ahead is not. Operators of the past may stand anywhere below those of the future.",
-    """spec demo
-event asked, released
-signal ready : bool
-
-requirement R1
-  whenever ready
-  then immediately once (asked and within 3 s released)
-""",
-    """spec demo
-event asked, released
-signal ready : bool
-
-requirement R1
-  upon asked and ready
-  then within 3 s released
-""",
-)
-
 RULES = (
     FUTURE_TRIGGER,
     END_NOT_ALONE,
@@ -207,7 +182,6 @@ RULES = (
     DOUBLE_CLAUSE,
     UNKNOWN_POLICY,
     NEVER_READ,
-    FUTURE_BELOW_PAST,
 )
 
 
@@ -238,17 +212,6 @@ def end_in_scope(span: Span) -> Diagnostic:
         "`upon end` takes no scope: the end of the run may lie outside of it",
         span,
         mend="say in the consequent what has to hold at the end",
-    )
-
-
-def future_below_past(operator: Span, ahead: Span | None) -> Diagnostic:
-    """An operator of the past around one of the future."""
-    places = [operator] if ahead is None else [operator, Label(ahead, "this lies ahead")]
-    return finding(
-        FUTURE_BELOW_PAST,
-        f"`{short(operator.text)}` looks back at what lies ahead, which no monitor can judge",
-        *places,
-        mend="put what has happened behind `upon`, and what is to come behind `then`",
     )
 
 

@@ -1,0 +1,130 @@
+"""Which integers are positions, and what operators that count positions make of the others."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+
+from rvmon.dataflow.pieces import FAR, PAST, Piece, Pieces, append, clip, filled
+
+
+class Positions:
+    """The positions of a word.
+
+    In held time and under a clock they are consecutive: ticks, or ticks of the clock. In sampled
+    time they are the instants of samples, and what lies between is none.
+
+    Args:
+        gap: ticks between two positions; `None` if only samples are positions.
+
+    Attributes:
+        gap: ticks between two integers, 1 in sampled time.
+        slope: what a stamp grows by from one integer to the next.
+        first: the first position; `FAR` before there is one.
+        last: the last position; `FAR` while it is taken that they go on.
+    """
+
+    def __init__(self, gap: int | None) -> None:
+        self.gap = gap or 1
+        self.slope = 2 * self.gap
+        self.first = FAR
+        self.last = FAR if gap else -FAR
+        self._stamps: list[int] | None = None if gap else []
+
+    @property
+    def sparse(self) -> bool:
+        """Whether there are integers between positions."""
+        return self._stamps is not None
+
+    def copy(self) -> Positions:
+        """The same, independent from now on."""
+        made = Positions.__new__(Positions)
+        made.gap, made.slope = self.gap, self.slope
+        made.first, made.last = self.first, self.last
+        made._stamps = None if self._stamps is None else list(self._stamps)
+        return made
+
+    def visit(self, position: int) -> int:
+        """Come to a position; returns the integer behind the position before it.
+
+        For the first one that is the position itself.
+        """
+        if self.first == FAR:
+            self.first = position
+        if self._stamps is None:
+            return position
+        behind = self.last + 1 if self.last > -FAR else position
+        if self.last < position:
+            self._stamps.append(position)
+            self.last = position
+        return behind
+
+    def end(self, last: int) -> None:
+        """Learn that there is no position behind `last`."""
+        self.last = min(self.last, last)
+
+    def forget(self, before: int) -> None:
+        """Drop the positions before `before`, of which nothing will be asked."""
+        if self._stamps:
+            del self._stamps[: bisect_left(self._stamps, before)]
+
+    def following(self, integer: int) -> int:
+        """The first position at or behind an integer, or the integer itself if there is none."""
+        if self._stamps is None:
+            return max(integer, self.first) if self.first < FAR else integer
+        index = bisect_left(self._stamps, integer)
+        return self._stamps[index] if index < len(self._stamps) else max(integer, self.last + 1)
+
+    def within(self, left: int, right: int) -> list[int]:
+        """The positions from `left` to `right` where they are sparse."""
+        stamps = self._stamps or []
+        return stamps[bisect_left(stamps, left) : bisect_right(stamps, right)]
+
+    def only(self, pieces: Pieces) -> Pieces:
+        """Known at positions alone: for what has to be met at one of them."""
+        if self._stamps is None:
+            return clip(pieces, self.first, self.last)
+        made: list[Piece] = []
+        for left, right, at, slope in pieces:
+            for position in self.within(left, right):
+                append(made, position, position, at + slope * position, 0)
+        return made
+
+    def besides(self, pieces: Pieces) -> Pieces:
+        """Known at all integers that are no positions as well: for what has to hold at each."""
+        if self._stamps is None:
+            return filled_outside(pieces, self.first, self.last)
+        points: list[Piece] = []
+        behind = -FAR
+        made: list[Piece] = []
+        for left, right, at, slope in pieces:
+            self._fill(made, behind, left - 1)
+            if at == PAST:
+                append(made, left, right, PAST, 0)
+            else:
+                points.clear()
+                for position in self.within(left, right):
+                    append(points, position, position, at + slope * position, 0)
+                for piece in clip(filled(points), left, right):
+                    append(made, *piece)
+            behind = right + 1
+        self._fill(made, behind, FAR)
+        return made
+
+    def _fill(self, made: list[Piece], left: int, right: int) -> None:
+        """Append the integers from `left` to `right` that are no positions."""
+        for position in self.within(left, right):
+            append(made, left, position - 1, PAST, 0)
+            left = position + 1
+        append(made, left, right, PAST, 0)
+
+
+def filled_outside(pieces: Pieces, first: int, last: int) -> Pieces:
+    """Known as given from `first` to `last`, and everywhere else."""
+    if first <= -FAR and last >= FAR:
+        return pieces
+    made: list[Piece] = []
+    append(made, -FAR, first - 1, PAST, 0)
+    for piece in clip(pieces, first, last):
+        append(made, *piece)
+    append(made, last + 1, FAR, PAST, 0)
+    return made

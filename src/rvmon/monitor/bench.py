@@ -1,0 +1,127 @@
+"""What all judges of open attempts have in common."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Protocol
+
+from rvmon.automaton.machine import INFINITY, Token
+from rvmon.dataflow.flow import Flow
+from rvmon.formula.state import UNKNOWN
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.trace.sample import Scalar
+from rvmon.trace.time import TIME_LIMIT, format_ticks
+
+
+class Open:
+    """One undecided attempt.
+
+    Attributes:
+        number: of the attempt; 0 until it is numbered.
+        triggered: the instant of its trigger.
+        token: of the run that takes the unknown for the worse.
+        better: of the run that takes it for the better; `None` as long as both are the same.
+        seen: the values of the judge's leaves at the trigger.
+        doubt: when and why the two runs parted; empty if they did not.
+    """
+
+    __slots__ = ("better", "doubt", "number", "seen", "token", "triggered")
+
+    def __init__(self, triggered: int, token: Token, seen: tuple[int, ...]) -> None:
+        self.number = 0
+        self.triggered = triggered
+        self.token = token
+        self.better: Token | None = None
+        self.seen = seen
+        self.doubt = ""
+
+
+class Clerk(Protocol):
+    """Keeps the records."""
+
+    def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
+        """Take a decision at `t`; `before` is the token of the run that brought it, before that.
+
+        Between the position of `before` and `t` the letters were as the judge has them.
+        """
+
+
+class Bench(ABC):
+    """The open attempts of one requirement, driven through positions and time.
+
+    Attributes:
+        compiled: the requirement.
+        flow: gives the truth of the propositions.
+        clerk: hears of decisions.
+        captured: values of `let` and `for each`.
+        places: of the propositions in the flow.
+        leaves: place and text of what is read of the input.
+        attempts: the undecided ones, oldest first; also those that only the end can settle.
+        due: an instant before which, the letters staying, no attempt can be decided.
+        restless: whether attempts may move at the next position though the letters stay.
+        position: the one visited last.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledRequirement,
+        flow: Flow,
+        clerk: Clerk,
+        captured: Mapping[str, Scalar],
+    ) -> None:
+        self.compiled = compiled
+        self.flow = flow
+        self.clerk = clerk
+        self.captured = captured
+        index = flow.graph.index
+        self.places = tuple(index[state] for state in compiled.alphabet.propositions)
+        self.leaves = tuple((index[leaf], text) for leaf, text in compiled.leaves if leaf in index)
+        self.attempts: list[Open] = []
+        self.due = INFINITY
+        self.restless = False
+        self.position = -TIME_LIMIT
+
+    @abstractmethod
+    def begin(self, t: int, triggered: int) -> Open:
+        """Start an attempt at the position `t`, which the flow is at."""
+
+    @abstractmethod
+    def visit(self, t: int) -> None:
+        """Take all attempts to the position `t`, which the flow is at."""
+
+    @abstractmethod
+    def pass_to(self, t: int) -> None:
+        """Let time come to `t` with the letters as they are; positions up to there are stepped."""
+
+    @abstractmethod
+    def reach(self, t: int) -> None:
+        """Let time come to `t`, of which the letter is not known, from the instant before."""
+
+    @property
+    @abstractmethod
+    def next_due(self) -> int:
+        """The next instant at which time alone can decide an attempt, as far as is known now."""
+
+    @abstractmethod
+    def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
+        """Whether the rule for the end of a trace makes an undecided attempt true.
+
+        Args:
+            attempt: one of these.
+            end: the last instant of the trace.
+            reached: the instant that time has come to.
+        """
+
+    @property
+    def seen(self) -> tuple[int, ...]:
+        """The values of the leaves now."""
+        values = self.flow.values
+        return tuple([values[place] for place, _ in self.leaves])
+
+    def _doubt(self) -> str:
+        values = self.flow.values
+        unknown = [text for place, text in self.leaves if values[place] == UNKNOWN]
+        return (
+            f"{', '.join(f'`{text}`' for text in unknown)} unknown at {format_ticks(self.position)}"
+        )

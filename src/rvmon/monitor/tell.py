@@ -1,0 +1,39 @@
+"""What is told of an attempt, by the kind of its judge."""
+
+from __future__ import annotations
+
+from rvmon.automaton.machine import Token
+from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.explain import Explanation, explain_decision, explain_open
+from rvmon.monitor.explain_network import network_decision, network_open
+from rvmon.monitor.forecast import forecast_of
+from rvmon.monitor.judge import Judge
+from rvmon.monitor.network_judge import NetworkJudge
+from rvmon.verdict.verdict import Verdict
+
+
+def why_decided(judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> Explanation:
+    """Why an attempt was decided at `t`; see `rvmon.monitor.bench.Clerk.decided`."""
+    match judge:
+        case NetworkJudge():
+            return network_decision(judge, attempt, verdict, t)
+        case Judge():
+            return explain_decision(judge, attempt, verdict, t, before)
+        case _:
+            raise TypeError(f"no explanation for {type(judge).__name__}")
+
+
+def why_open(judge: Bench, attempt: Open, end: int | None = None) -> Explanation:
+    """What an undecided attempt waits for; `end` is that of the trace, if it has ended."""
+    match judge:
+        case NetworkJudge():
+            return network_open(judge, attempt, end)
+        case Judge():
+            return explain_open(judge, attempt, end)
+        case _:
+            raise TypeError(f"no explanation for {type(judge).__name__}")
+
+
+def outlook(judge: Bench, attempt: Open) -> Verdict | None:
+    """What every continuation brings an open attempt to, where that can be said."""
+    return forecast_of(judge, attempt) if isinstance(judge, Judge) else None
