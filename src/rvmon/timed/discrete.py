@@ -11,7 +11,7 @@ from rvmon.timed.evaluate import Evaluator
 from rvmon.timed.zones import Atom
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)  # not frozen, as all that a search makes many of
 class Candidate:
     """Edges that move together if the variables allow: one alone, or a sender and a receiver.
 
@@ -84,7 +84,7 @@ class State:
     moves: list[Move] | None = field(default=None, repr=False)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class Move:
     """A step between two states.
 

@@ -78,6 +78,7 @@ class Staying:
         self._meter = meter
         self._proper_only = proper_only
         self._done: set[_Key] = set()
+        self._keys: dict[_Key, _Key] = {}
 
     def find(self, start: Stand) -> Escape | None:
         """Search depth first from a stand for a way that counts."""
@@ -102,11 +103,10 @@ class Staying:
         way: list[_Frame],
         depth: dict[_Key, int],
     ) -> Escape | None:
-        zone = blurred(stand.site.state, stand.zone, self._dim)
-        key = (stand.site, tuple(zone))
+        key = self._key(stand)
         if key in self._done:
             return None
-        here = Stand(stand.site, zone)
+        here = Stand(stand.site, list(key[1]))
         frame = _Frame(link, here, key, self._inside.strides(here))
         if key in depth:
             return self._loop([*way, frame], depth[key])
@@ -115,6 +115,15 @@ class Staying:
         depth[key] = len(way)
         way.append(frame)
         return self._end(way)
+
+    def _key(self, stand: Stand) -> _Key:
+        """The symbolic state coarsened; many ways lead to equal ones."""
+        met = (stand.site, tuple(stand.zone))
+        key = self._keys.get(met)
+        if key is None:
+            zone = blurred(stand.site.state, stand.zone, self._dim)
+            key = self._keys[met] = (stand.site, tuple(zone))
+        return key
 
     def _loop(self, way: list[_Frame], first: int) -> Escape | None:
         """The loop whose first and last symbolic states are equal."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 from rvmon.timed.pieces import Piece
-from rvmon.timed.zones import Zone
+from rvmon.timed.zones import CoverTest, Zone
 
 
 class Site(Protocol):
@@ -64,9 +64,10 @@ class Node(Generic[SiteT, LinkT]):
     Attributes:
         parent, link: the node before and the step from it; `None` at the start.
         covered: whether another node makes this one needless.
+        test: what zones must pass that do so; `None` until it was asked for.
     """
 
-    __slots__ = ("covered", "link", "parent", "site", "zone")
+    __slots__ = ("covered", "link", "parent", "site", "test", "zone")
 
     def __init__(
         self, site: SiteT, zone: Zone, parent: Node[SiteT, LinkT] | None, link: LinkT | None
@@ -76,6 +77,7 @@ class Node(Generic[SiteT, LinkT]):
         self.parent = parent
         self.link = link
         self.covered = False
+        self.test: CoverTest | None = None
 
     def path(self) -> list[Node[SiteT, LinkT]]:
         """The nodes from the start to this one."""

@@ -42,7 +42,7 @@ class Crossing:
     target: StaySite
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class Stride:
     """Some crossings, and then a move."""
 
@@ -50,7 +50,7 @@ class Stride:
     move: Move
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class Stand:
     """Where a run can be without a further move: a site, its zone, the crossings that led there."""
 
