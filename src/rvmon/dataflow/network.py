@@ -32,6 +32,7 @@ from rvmon.dataflow.pieces import (
 )
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.sweep import Carried, Known, since, until
+from rvmon.formula.core import Core
 
 NOTHING: Known = ((), ())
 
@@ -115,6 +116,34 @@ class Network:
         if (found := stamp(false, position)) is not None:
             return False, found
         return None
+
+    def known_of(self, core: Core) -> Known:
+        """What is known of a part of the formula."""
+        return self.known[self.plan.places[core]]
+
+    def value_at(self, core: Core, position: int, limit: int) -> bool | None:
+        """What is known of a part of the formula at a stamp."""
+        for pieces, value in zip(self.known_of(core), (True, False), strict=True):
+            at = stamp(pieces, position)
+            if at is not None and at <= limit:
+                return value
+        return None
+
+    def first_unknown(self, core: Core, first: int, limit: int) -> int | None:
+        """The first position from `first` on of which a part of the formula is not known.
+
+        Args:
+            core: the part.
+            first: where to begin.
+            limit: the stamp as of which; later positions do not count.
+        """
+        true, false = (known_by(pieces, limit) for pieces in self.known_of(core))
+        while True:
+            first = self.positions.following(first)
+            end = max(_end_of_run(true, first), _end_of_run(false, first))
+            if end < first:
+                return first if self.positions.slope * first < limit else None
+            first = end + 1
 
     def held_at_end(self, end: int, reached: int) -> Pieces:
         """The positions at which the rule for the end of a trace makes the formula true.

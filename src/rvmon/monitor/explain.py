@@ -72,10 +72,10 @@ def explain_open(judge: Judge, attempt: Open, end: int | None = None) -> Explana
     owed = judge.compiled.words.owed(residual, anchors)
     last = deadline(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    return Explanation(f"still owed: {owed}{_longest(last, end)}{doubt}", owed, last)
+    return Explanation(f"still owed: {owed}{longer(last, end)}{doubt}", owed, last)
 
 
-def _longest(last: int | None, end: int | None) -> str:
+def longer(last: int | None, end: int | None) -> str:
     """How much longer it may take to decide what can be met up to `last`."""
     if end is None:
         return ""

@@ -13,10 +13,13 @@ event released, held_it output
 """
 
 
-def run(requirement, samples, end=None):
+ENGINES = ("auto", "progression", "network")
+
+
+def run(requirement, samples, end=None, *, engine="auto"):
     """The attempts on a trace whose times are seconds."""
     spec = rvmon.loads(f"{HEAD}requirement R\n{requirement}\n")
-    monitor = spec.monitor()
+    monitor = spec.monitor(engine=engine)
     for t, values in samples:
         monitor.step(t, values)
     return spec, monitor.finish(end).attempts
@@ -90,11 +93,12 @@ CASES = {
 }
 
 
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", CASES)
-def test_a_failure_names_obligation_window_and_place(name):
+def test_a_failure_names_obligation_window_and_place(name, engine):
     """The reason is one sentence, and the blame points into the text of the spec."""
     requirement, samples, end, reason, blamed, window = CASES[name]
-    spec, attempts = run(requirement, samples, end)
+    spec, attempts = run(requirement, samples, end, engine=engine)
     [failed] = [a for a in attempts if a.verdict == "F"]
     assert failed.reason == reason
     assert failed.blame.window == window
@@ -102,11 +106,11 @@ def test_a_failure_names_obligation_window_and_place(name):
     assert text == failed.blame.subformula == blamed
 
 
-def test_the_blamed_sample_is_the_one_that_changed_the_value():
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_blamed_sample_is_the_one_that_changed_the_value(engine):
     """A value that has been wrong for long is blamed on the sample that made it so."""
-    _, [failed] = run(
-        "upon go\nthen for 2 s not near", [(1, {"near": True}), (5, {"go": True})], None
-    )
+    samples = [(1, {"near": True}), (5, {"go": True})]
+    _, [failed] = run("upon go\nthen for 2 s not near", samples, engine=engine)
     assert failed.blame.at == (10**9,)
 
 
@@ -117,18 +121,23 @@ def test_propositions_are_shown_at_trigger_and_decision():
     assert failed.at_decision == {"go": False, "released": False, "near": None}
 
 
-def test_an_undecided_attempt_says_what_is_owed_and_till_when():
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_undecided_attempt_says_what_is_owed_and_till_when(engine):
     """An I names the obligation and its deadline."""
-    _, [left] = run("upon go\nthen within 3 s released", [(1, {"go": True})], 2)
-    assert left.reason == "still owed: `within 3 s released` by 4 s; more than 2 s longer would decide it"
+    samples = [(1, {"go": True})]
+    _, [left] = run("upon go\nthen within 3 s released", samples, 2, engine=engine)
+    assert (
+        left.reason
+        == "still owed: `within 3 s released` by 4 s; more than 2 s longer would decide it"
+    )
     assert left.deadline == 4 * 10**9
 
 
-def test_an_attempt_that_the_input_left_open_says_which_input():
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_attempt_that_the_input_left_open_says_which_input(engine):
     """An I that is due to unknown input names it and the instant."""
-    _, [left] = run(
-        "upon go\nthen immediately distance > 5 cm", [(0, {"distance": 1.0}), (2, {"go": True})]
-    )
+    samples = [(0, {"distance": 1.0}), (2, {"go": True})]
+    _, [left] = run("upon go\nthen immediately distance > 5 cm", samples, engine=engine)
     assert "`distance > 0.05 m` unknown at 2 s" in left.reason
 
 
