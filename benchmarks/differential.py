@@ -11,7 +11,8 @@ import argparse
 import contextlib
 import sys
 import time
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -19,6 +20,7 @@ from typing import Any
 
 from rvmon.spec.checked import TimeModel
 from rvmon.testing.differential import Tally, campaign
+from rvmon.testing.features import Feature, possible
 from rvmon.testing.forms import FORMS, Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
@@ -54,6 +56,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
+    parser.add_argument("--features", action="store_true", help="count what was generated")
     parser.add_argument("--fail-fast", action="store_true", help="stop soon, shrink nothing")
     return parser.parse_args(argv)
 
@@ -100,9 +103,42 @@ def show(total: Tally, options: argparse.Namespace, seconds: float) -> None:
     print("settled by", ", ".join(f"{name} {n}" for name, n in total.decisions.most_common()))
     on_bound = 100 * total.on_bound / max(decided, 1)
     print(f"on a bound {total.on_bound} of {decided} decided ({on_bound:.1f} %)")
+    if options.features:
+        print("\n".join(feature_table(total.features)))
     print(f"disagreements {len(total.disagreements)}")
     for text in total.disagreements[: options.show]:
         print("\n" + "=" * 72 + "\n" + text)
+
+
+def feature_table(found: Counter[Feature]) -> Iterator[str]:
+    """How often each operator met each window; with that, each time model, trigger, end, extra."""
+    everything = [*possible()]
+    columns = [
+        (field, value)
+        for field in ("time", "trigger", "policy", "extra")
+        for value in dict.fromkeys(getattr(one, field) for one in everything)
+    ]
+    legal = {(one.operator, value) for one in everything for _, value in _values(one, columns)}
+    heads = (str(value).replace(" ", "-") for _, value in columns)
+    yield " ".join(["operator window  all", *heads])
+    never = 0
+    for operator, window in dict.fromkeys((one.operator, one.window) for one in everything):
+        met: Counter[object] = Counter()
+        for one, n in found.items():
+            if (one.operator, one.window) == (operator, window):
+                met.update({value: n for _, value in _values(one, columns)} | {"all": n})
+        line = f"{operator:8} {window:6} {met['all']:5}"
+        for _, value in columns:
+            none = "0" if (operator, value) in legal else "-"
+            never += none == "0" and not met[value]
+            line += f" {met[value] or none:>{len(str(value))}}"
+        yield line
+    whole = sum(one in found for one in everything)
+    yield f"never met {never}; of all {len(everything)} combinations {whole}"
+
+
+def _values(one: Feature, columns: Iterable[tuple[str, object]]) -> Iterator[tuple[str, object]]:
+    return (entry for entry in columns if getattr(one, entry[0]) == entry[1])
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
 from rvmon.testing.drive import Monitored, drive
+from rvmon.testing.features import Feature, features
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.health import health_differences
@@ -37,6 +38,7 @@ class Tally:
         attempts: by verdict.
         decisions: by what settled them.
         on_bound: attempts that the prefix decided at a window's last instant, or a tick later.
+        features: of the specifications: operators with what they met.
         disagreements: one text each, with seed, differences and the shrunk case.
     """
 
@@ -45,6 +47,7 @@ class Tally:
     attempts: Counter[str] = field(default_factory=Counter)
     decisions: Counter[str] = field(default_factory=Counter)
     on_bound: int = 0
+    features: Counter[Feature] = field(default_factory=Counter)
     disagreements: list[str] = field(default_factory=list)
 
     def add(self, other: Tally) -> None:
@@ -54,6 +57,7 @@ class Tally:
         self.attempts += other.attempts
         self.decisions += other.decisions
         self.on_bound += other.on_bound
+        self.features += other.features
         self.disagreements += other.disagreements
 
 
@@ -150,6 +154,7 @@ def _shrunk(case: Case, make: MakeMonitor, online: bool) -> str:
 def count(tally: Tally, case: Case) -> None:
     """Add the oracle's figures for a case."""
     tally.pairs += 1
+    tally.features.update(features(case.spec))
     for attempt in judge(case).attempts:
         tally.attempts[attempt.verdict.value] += 1
         tally.decisions[attempt.decision.value] += 1

@@ -62,7 +62,7 @@ def interval(dice: Dice, shape: Shape, *, from_zero: bool = False) -> Interval:
     low = 0 if from_zero or chance(dice, 55) else dice.randint(1, shape.longest // 2)
     if chance(dice, 25):
         return Interval(low, None)
-    if chance(dice, 15):
+    if chance(dice, 20):
         return Interval(low, low)
     return Interval(low, dice.randint(max(low, 1), shape.longest))
 
@@ -105,25 +105,33 @@ def comparison(dice: Dice, shape: Shape) -> Formula:
     if chance(dice, 30):
         left = FieldValue(CARRIER, FIELD)
     elif chance(dice, 40):
-        left = _arithmetic(dice)
+        left = arithmetic(dice, shape)
     right: Numeric = Literal(dice.randint(-1, 2))
     if shape.captured and chance(dice, 60):
         right = Captured(pick(dice, shape.captured))
     elif chance(dice, 15):
         right = SignalValue(pick(dice, NUMBERS))
-    return Compare(op, left, right)
+    return Compare(op, right, left) if chance(dice, 10) else Compare(op, left, right)
 
 
-def _arithmetic(dice: Dice) -> Numeric:
+def arithmetic(dice: Dice, shape: Shape) -> Numeric:
+    """A random expression: of the last two updates, or an operation on a few numbers."""
     if chance(dice, 40):
         return UpdateValue(pick(dice, tuple(UpdateFunction)), pick(dice, NUMBERS))
     op = pick(dice, tuple(NumericOp))
-    count = 1 if op in (NumericOp.NEG, NumericOp.ABS, NumericOp.SQRT) else 2
-    args: list[Numeric] = [
-        SignalValue(pick(dice, NUMBERS)) if chance(dice, 70) else Literal(dice.randint(0, 2))
-        for _ in range(count)
-    ]
-    return Arithmetic(op, tuple(args))
+    first = _input(dice, shape)
+    if op in (NumericOp.NEG, NumericOp.ABS, NumericOp.SQRT):
+        return Arithmetic(op, (first,))
+    second = Literal(dice.randint(0, 2)) if chance(dice, 40) else _input(dice, shape)
+    return Arithmetic(op, (second, first) if chance(dice, 40) else (first, second))
+
+
+def _input(dice: Dice, shape: Shape) -> Numeric:
+    if chance(dice, 10):
+        return FieldValue(CARRIER, FIELD)
+    if shape.captured and chance(dice, 20):
+        return Captured(pick(dice, shape.captured))
+    return SignalValue(pick(dice, NUMBERS))
 
 
 def _probe(dice: Dice) -> Formula:
@@ -144,7 +152,7 @@ _FUTURE_BINARY = (
     (4, BinaryOp.UNTIL),
     (2, BinaryOp.RELEASE),
     (2, BinaryOp.WEAK_UNTIL),
-    (1, BinaryOp.STRONG_RELEASE),
+    (2, BinaryOp.STRONG_RELEASE),
 )
 _PAST_UNARY = (
     (3, UnaryOp.ONCE),
@@ -175,7 +183,7 @@ def formula(dice: Dice, shape: Shape, depth: int) -> Formula:
             (24 if shape.future else 0, "future unary"),
             (18 if shape.future else 0, "future binary"),
             (8 if shape.future and shape.step else 0, "next"),
-            (14 if shape.past else 0, "past unary"),
+            (17 if shape.past else 0, "past unary"),
             (6 if shape.past else 0, "since"),
             (4 if shape.past and shape.step else 0, "previous"),
         ),

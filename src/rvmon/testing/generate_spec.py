@@ -29,6 +29,7 @@ from rvmon.spec.checked import (
 from rvmon.testing.dice import Dice, chance, pick, weighted
 from rvmon.testing.generate_formula import (
     Shape,
+    arithmetic,
     comparison,
     consequent,
     formula,
@@ -98,7 +99,7 @@ def _stale(dice: Dice, profile: Profile) -> dict[str, int]:
 def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Requirement:
     captures = _captures(dice) if profile.captures and chance(dice, 12) else ()
     for_each = None
-    if profile.for_each and chance(dice, 9):
+    if profile.for_each and chance(dice, 12):
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
     instance = (for_each.name,) if for_each else ()
     shape = Shape(
@@ -123,8 +124,8 @@ def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Re
         op = pick(dice, (BinaryOp.AND, BinaryOp.OR))
         owed = Binary(op, owed, comparison(dice, shape))
     policy = EndPolicy.DEFAULT
-    if profile.policies and chance(dice, 25):
-        policy = pick(dice, tuple(EndPolicy))
+    if profile.policies and chance(dice, 35):
+        policy = pick(dice, tuple(EndPolicy)[1:])
     return Requirement(
         name,
         mode,
@@ -138,8 +139,13 @@ def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Re
 
 
 def _captures(dice: Dice) -> tuple[Capture, ...]:
-    values: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
-    return (Capture("v", pick(dice, values)),)
+    found: list[Capture] = []
+    for name in ("v", "w")[: 2 if chance(dice, 25) else 1]:
+        earlier = Shape(captured=tuple(capture.name for capture in found))
+        simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
+        value = arithmetic(dice, earlier) if chance(dice, 25) else pick(dice, simple)
+        found.append(Capture(name, value))
+    return tuple(found)
 
 
 def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
@@ -160,10 +166,10 @@ def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
             (28, "event"),
             (16, "event and"),
             (12, "level"),
-            (12, "start"),
+            (14, "start"),
             (18, "any"),
             (10 if shape.past else 0, "since when"),
-            (4, "end"),
+            (6, "end"),
         ),
     )
     match kind:

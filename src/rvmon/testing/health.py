@@ -81,11 +81,11 @@ def _agree(expected: Health, actual: Health, simple: set[str]) -> bool:
 def may_be_simplified(requirement: Requirement, time: TimeModel) -> bool:
     """Whether it has a constant in it, or a window that may hold no tick of a clock."""
     return any(
-        isinstance(part, Constant | BoundAtom)
+        isinstance(part, Constant)
+        or (isinstance(part, BoundAtom) and part is not requirement.trigger)
         or (time is TimeModel.CLOCKED and getattr(part, "interval", None) is not None)
         for formula in (requirement.trigger, requirement.consequent)
         for part in subformulas(formula)
-        if formula is requirement.consequent or part is not formula
     )
 
 

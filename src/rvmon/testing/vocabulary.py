@@ -9,6 +9,7 @@ from rvmon.trace.schema import Kind
 
 BOOLS = ("p", "q", "r")
 NUMBERS = ("x", "y")
+"""A real number and a whole one."""
 LABEL = "mode"
 LABELS = ("red", "green", "blue")
 EVENTS = ("e", "f")
@@ -21,7 +22,7 @@ def signals(stale: Mapping[str, int] | None = None) -> dict[str, Signal]:
     """The signals; `stale` gives those that are `stale after` so many ticks."""
     kinds = {
         **dict.fromkeys(BOOLS, Type(Kind.BOOL)),
-        **dict.fromkeys(NUMBERS, Type(Kind.REAL)),
+        **dict(zip(NUMBERS, (Type(Kind.REAL), Type(Kind.INT)), strict=True)),
         LABEL: Type(Kind.LABEL, labels=LABELS),
     }
     after = stale or {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -24,8 +25,9 @@ from rvmon.spec.checked import (
 from rvmon.testing.build import compared, eventually, requirement, spec_of, x
 from rvmon.testing.case import Case
 from rvmon.testing.differential import Tally, case_of, count
+from rvmon.testing.features import Feature, features, possible
 from rvmon.testing.generate_formula import Shape, formula
-from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.law import judge
 from rvmon.testing.pulse import is_pulse
@@ -76,6 +78,20 @@ def test_everything_occurs() -> None:
     wanted += ["each", "later", "unbounded", "point", "zero", "none", "stale", "absent"]
     wanted += ["advance", "finish"]
     assert {thing: seen[thing] for thing in wanted if seen[thing] < 10} == {}
+
+
+def test_operators_meet_everything() -> None:
+    """Each operator with each kind of window meets every time, trigger, end, `let`, `for each`."""
+    found: Counter[Feature] = Counter()
+    for seed in range(9_000):
+        found.update(features(random_spec(random.Random(f"met/{seed}"), Profile())))
+    assert not set(found) - set(possible())
+
+    def pairs(all_: Iterable[Feature]) -> set[tuple[object, ...]]:
+        others = ("time", "trigger", "policy", "extra")
+        return {(one.operator, one.window, getattr(one, name)) for one in all_ for name in others}
+
+    assert pairs(possible()) - pairs(found) == set()
 
 
 def depth(formula: Formula) -> int:
