@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.diagram import Diagrams, Node, TooManyClassesError
+from rvmon.automaton.layout import layout_of
 from rvmon.automaton.location import NOW, Location, location_of, normalise
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.core import Literal, Temporal
@@ -139,7 +140,7 @@ class _Construction:
         return self.diagrams.of(opened, leaf)
 
     def tables(self, initial: int) -> Automaton:
-        bases, strides, total = _layout(self.locations)
+        bases, strides, total = layout_of(self.locations)
         roots = list(self.rows.values())
         try:
             class_of, classes, leaves = self.diagrams.classes(roots, self.budget.table)
@@ -173,23 +174,6 @@ class _Construction:
             bytes(time_values),
             bytes(end_values),
         )
-
-
-def _layout(
-    locations: Sequence[Location],
-) -> tuple[tuple[int, ...], tuple[tuple[int, ...], ...], int]:
-    """First row and strides of each location, number of rows; the last clock runs fastest."""
-    bases, strides, total = [], [], 0
-    for location in locations:
-        bases.append(total)
-        own: list[int] = []
-        size = 1
-        for cuts in reversed(location.cuts):
-            own.append(size)
-            size *= len(cuts) + 1
-        strides.append(tuple(reversed(own)))
-        total += size
-    return tuple(bases), tuple(strides), total
 
 
 def _region_starts(cuts: tuple[tuple[int, ...], ...]) -> Iterator[tuple[int, ...]]:

@@ -15,6 +15,9 @@ from rvmon.spec.printer import format_duration, format_formula
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
+_APART = 50
+"""Instants that are so many binary digits apart are told from each other."""
+
 
 class Words:
     """Names the parts of one requirement as its text does.
@@ -139,6 +142,12 @@ class Words:
             ]
             clauses.append(" and ".join(dict.fromkeys(parts)))
         return ", or ".join(dict.fromkeys(clauses))
+
+    def told(self, residual: Residual) -> tuple[str, int | None]:
+        """All that people are told of a residual, for clocks that were started at any time."""
+        clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
+        anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
+        return self.owed(residual, anchors), deadline(residual, anchors)
 
     def _with_deadline(self, node: Core, anchors: Sequence[int], clock: int) -> str:
         text = f"`{self.text(node)}`"
