@@ -176,8 +176,28 @@ def time_passes(head: Stand, strides: Sequence[tuple[Stride, StaySite]], dim: in
         dim: of the zones.
     """
     once = [step.timed for step in stride_path(head.site, strides)]
+    sure = _surely_passes(once)
+    if sure is not None:
+        return sure
     rounds = dim + 1
     return _longest(head, once * rounds) < _longest(head, once * (2 * rounds))
+
+
+def _surely_passes(loop: Sequence[TimedStep]) -> bool | None:
+    """Whether time passes without bound on a loop, where its bounds alone say so.
+
+    Source: Tripakis, Verifying Progress in Timed Systems, 1999 (strong non-Zenoness).
+    """
+    highest: dict[int, float] = {}
+    for step in loop:
+        for clock, value in step.resets:
+            highest[clock] = max(value, highest.get(clock, 0.0))
+    bounds = [bound for step in loop for bound in (*step.leave, *step.enter)]
+    if any(x == 0 and y not in highest for x, y, _ in bounds):
+        return False  # a clock that is never set stays below a number
+    if any(y == 0 and x in highest and -bound >= highest[x] + 1 for x, y, bound in bounds):
+        return True  # between being set and the bound each round takes a unit of time
+    return None
 
 
 def _longest(head: Stand, steps: Sequence[TimedStep]) -> float:
