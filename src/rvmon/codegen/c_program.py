@@ -35,12 +35,23 @@ def program_source(plan: Plan) -> str:
     names = Names(plan)
     places = {
         "ENTRIES": "\n".join(_entries(plan, names)),
+        "STEADY": str(int(_is_steady(plan))),
         "SPEC": comment(plan.spec.name),
         "HEADER": f"{names.prefix}.h",
         "PREFIX": names.prefix.upper(),
         "prefix": names.prefix,
     }
     return filled("\n".join(template(part) for part in _PARTS), places)
+
+
+def _is_steady(plan: Plan) -> bool:
+    """Whether a sample that says again what signals are changes nothing."""
+    signals = plan.spec.signals.values()
+    return (
+        plan.gap is not None
+        and not any(use.history or use.marked for use in plan.uses.values())
+        and all(signal.stale_after is None for signal in signals)
+    )
 
 
 def _entries(plan: Plan, names: Names) -> Iterator[str]:

@@ -41,8 +41,12 @@ def rows(seed: int):
     """Random rows: decimal time, and text by column."""
     dice = random.Random(seed)
     t = dice.choice([0, 1_700_000_000 * 10**9, -5 * 10**9])
+    row = None
     for _ in range(400):
         t += dice.choice([0, 1, 50_000_000, 123_456_789, 900_000_000])
+        if row is not None and dice.random() < 0.4:
+            yield t, row
+            continue
         row = dict.fromkeys(COLUMNS, "")
         for name, values in [
             ("open_door", ("true", "0", "1")),
@@ -116,12 +120,17 @@ def json_text(seed: int) -> str:
     return "\n".join(lines) + "\n"
 
 
-@pytest.fixture(scope="module")
-def program(tmp_path_factory):
+def without_stale(text: str) -> str:
+    """The specification for which samples that say nothing new change nothing."""
+    return text.replace("stale after 700 ms", "")
+
+
+@pytest.fixture(scope="module", params=[str, without_stale], ids=["stale", "steady"])
+def program(request, tmp_path_factory):
     """The spec and the program made of it, compiled without a warning."""
     folder = tmp_path_factory.mktemp("build")
     spec = folder / "watch.rv"
-    spec.write_text(SPEC.replace('"at work"', "working"))
+    spec.write_text(request.param(SPEC.replace('"at work"', "working")))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
         flags = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsanitize=undefined")
