@@ -53,6 +53,8 @@ class _Writer:
         yield from indented(self.intake.lines())
         yield ""
         yield from indented(self.visit.lines())
+        yield ""
+        yield from indented(self.visit.cones())
 
     def _leaves(self) -> Iterator[str]:
         """What the numbers of the nodes that are read off the input stand for."""

@@ -17,6 +17,9 @@ _CONCERNS = ("self.gathered", "self.restless", "self.repeating", "self.dues")
 _STRAIGHT = 40
 """Up to so many nodes stand one after the other; more are looked up by what changed."""
 
+_CONES = 1500
+"""So many nodes at most stand in what is written for changes of one leaf."""
+
 
 def at_hand(lines: list[str], *given: str) -> Iterator[str]:
     """Statements that fetch the arrays which these lines use, but for those given."""
@@ -45,6 +48,7 @@ class VisitWriter:
         self.roles = roles
         self.nodes = nodes
         self.kept = [place for place in range(len(plan.graph.nodes)) if roles.kept >> place & 1]
+        self.straight = len(self.kept) <= _STRAIGHT
 
     def functions(self) -> Iterator[str]:
         """One function per node, for the first position and for many nodes."""
@@ -75,7 +79,7 @@ class VisitWriter:
 
     def lines(self) -> Iterator[str]:
         """The method `visit`."""
-        nodes = list(self._nodes() if len(self.kept) <= _STRAIGHT else self._many())
+        nodes = list(self._nodes() if self.straight else self._many())
         before = "self.position" if self.plan.gap is None else f"t - {self.plan.gap}"
         yield "def visit(self, t):"
         yield '    """Move to the position at `t`."""'
@@ -92,8 +96,6 @@ class VisitWriter:
         yield "        dirty |= self.ring(t)"
         yield "    fading = letters = triggers = 0"
         yield "    if dirty:"
-        if any("momentary" in line for line in nodes):
-            yield "        momentary = self.momentary"
         yield from indented(at_hand(nodes, "before", "timers"), 2)
         yield from indented(nodes, 2)
         yield "        self.dirty = 0"
@@ -108,16 +110,23 @@ class VisitWriter:
         yield "    else:"
         yield f"        self.wake = timers[0][0] if timers else {NEVER}"
 
-    def _nodes(self) -> Iterator[str]:
+    def _nodes(self, places: list[int] | None = None) -> Iterator[str]:
+        """Nodes one after the other, by the bits of `dirty`: the n-th bit is the n-th of them."""
+        chosen = self.kept if places is None else places
+        number = {place: index for index, place in enumerate(chosen)}
+        if places is None:
+            number = {place: place for place in chosen}
         momentary = bits(
             tuple(place for place, reads in self.plan.graph.reads.items() if reads.momentary)
         )
-        for place in self.kept:
+        for place in chosen:
             bit = 1 << place
-            yield f"if dirty & {bit}:"
+            parents = self.roles.parents[place]
+            dirty = bits(tuple(number[other] for other in chosen if parents >> other & 1))
+            yield f"if dirty & {1 << number[place]}:"
             yield from indented(self.nodes.statements(place))
             if momentary & bit:
-                yield f"    if n and momentary & {bit}:"
+                yield f"    if n and self.momentary & {bit}:"
                 yield f"        fading |= {bit}"
             yield f"    if n != v[{place}]:"
             if self.roles.letters[place]:
@@ -126,9 +135,42 @@ class VisitWriter:
                 yield f"        letters |= {self.roles.letters[place]}"
             if self.roles.triggers[place]:
                 yield f"        triggers |= {self.roles.triggers[place]}"
-            if self.roles.parents[place]:
-                yield f"        dirty |= {self.roles.parents[place]}"
+            if dirty:
+                yield f"        dirty |= {dirty}"
             yield f"        v[{place}] = n"
 
     def _many(self) -> Iterator[str]:
-        yield "letters, triggers, fading = self.evaluate(t, dirty)"
+        yield "cone = self.CONES.get(dirty)"
+        yield "if cone is None:"
+        yield "    letters, triggers, fading = self.evaluate(t, dirty)"
+        yield "else:"
+        yield "    letters, triggers, fading = cone(self, t)"
+
+    def cones(self) -> Iterator[str]:
+        """For each leaf a function that evaluates it and what depends on it; few have too many."""
+        if self.straight:
+            return
+        found = []
+        for place, state in enumerate(self.plan.graph.nodes):
+            if state.leaf is not None:
+                found.append(self._above(place))
+        if sum(map(len, found)) > _CONES:
+            found = []
+        for places in found:
+            lines = list(self._nodes(places))
+            yield f"def cone{places[0]}(self, t):"
+            yield "    letters = triggers = fading = 0"
+            yield "    dirty = 1"
+            yield from indented([*at_hand(lines), *lines])
+            yield "    return letters, triggers, fading"
+            yield ""
+        cones = ", ".join(f"{1 << places[0]}: cone{places[0]}" for places in found)
+        yield f"CONES = {{{cones}}}"
+
+    def _above(self, place: int) -> list[int]:
+        """A node and those whose value depends on it, in order."""
+        found = 1 << place
+        for other in self.kept:
+            if other >= place and found >> other & 1:
+                found |= self.roles.parents[other]
+        return [other for other in self.kept if found >> other & 1]

@@ -13,15 +13,13 @@ from rvmon.codegen.python_unit import machine_of, unit_class
 from rvmon.codegen.runtime.nodes import LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
-from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.inputs import Inputs
 from rvmon.errors import RvmonError, TraceError, UnknownNameError
 from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.judge import Judge
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.seat import Seat
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -126,20 +124,6 @@ class Forms:
         ]
 
 
-class _Seen(Flow):
-    """What writes the records looks at a flow: this one has the arrays of a unit."""
-
-    def __init__(self, plan: Plan, inputs: Inputs, unit: Unit) -> None:
-        super().__init__(plan.graph, inputs, plan.gap, {})
-        self.values = unit.v
-        self.since = unit.since
-        self._instants = unit.until
-
-    def last_with(self, place: int, value: int, t: int) -> int | None:
-        """See `Flow.last_with`; of the propositions that requirements owe."""
-        return t if self.values[place] == value else self._instants[3 * place + value]
-
-
 class GeneratedLanes(Lanes):
     """Lanes of which one is generated code; the others are for what that cannot judge.
 
@@ -169,52 +153,45 @@ class GeneratedLanes(Lanes):
         self.alone = not forms.others
         self.unit = unit
         unit.restart(self)
-        self._flow_seen = _Seen(forms.plan, Inputs(spec, sources), unit)
         self._counts = [0] * len(forms.requirements)
-        self._seats = [
-            Judge(one, one.machine("auto"), self._flow_seen, ledger, {})
-            for one in forms.requirements
-        ]
+        self._seats = [Seat(one, forms.plan, unit, ledger) for one in forms.requirements]
 
     # What the unit calls.
 
     def opened(self, rule: Rule, triggered: int, token: Token) -> Open:
         """A new attempt."""
         self._counts[rule.index] += 1
-        attempt = Open(triggered, token, self._seats[rule.index].seen)
+        attempt = Open(triggered, token, self._seats[rule.index].seen(self.unit.v))
         attempt.number = self._counts[rule.index]
         return attempt
 
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
-        attempt.doubt = self._seat_of(rule)._doubt()
+        attempt.doubt = self._seats[rule.index].judge_now(rule)._doubt()
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
         self.unit.news = True
-        self.ledger.decided(self._seat_of(rule), attempt, verdict, t, before)
+        seat = self._seats[rule.index]
+        self.ledger.told(seat.compiled.rank, seat.decided(rule, attempt, verdict, t, before))
 
     def told(self) -> Sequence[Attempt]:
         """The records of what was decided since the last call."""
         self.unit.news = False
         return self.ledger.flush()
 
-    def _seat_of(self, rule: Rule) -> Judge:
-        """The judge of a requirement, as it would stand now if it had judged."""
-        judge = self._seats[rule.index]
-        judge.letters = (rule.letter, rule.other)
-        judge.position = rule.position
-        judge.attempts = rule.attempts
-        self._flow_seen.origin = self.unit.origin
-        self._flow_seen.position = self.unit.position
-        return judge
-
     # What the monitor calls.
 
     @property
     def judges(self) -> Sequence[Bench]:
         """The judges of all lanes."""
-        return [*(self._seat_of(rule) for rule in self.unit.rules), *super().judges]
+        return [
+            *(
+                seat.judge_now(rule)
+                for seat, rule in zip(self._seats, self.unit.rules, strict=True)
+            ),
+            *super().judges,
+        ]
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`."""
@@ -235,8 +212,8 @@ class GeneratedLanes(Lanes):
     def finish(self, end: int, reached: int) -> None:
         """Settle what is undecided; time has come to `end` before."""
         self.unit.close(end, reached)
-        for rule in self.unit.rules:
-            judge = self._seat_of(rule)
+        for seat, rule in zip(self._seats, self.unit.rules, strict=True):
+            judge = seat.judge_now(rule)
             for attempt in rule.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts = judge.attempts = []

@@ -34,6 +34,7 @@ class Ledger:
         self._counts: dict[str, int] = {}
         self._started: list[tuple[int, int, Bench, Open]] = []
         self._decided: list[tuple[Bench, Open, Attempt]] = []
+        self._told: list[tuple[int, Attempt]] = []
 
     def started(self, instance: int, judge: Bench, attempt: Open) -> None:
         """Take a new attempt, to be numbered by its trigger and the rank of its instance."""
@@ -52,6 +53,10 @@ class Ledger:
             why,
         )
         self._decided.append((judge, attempt, record))
+
+    def told(self, rank: int, record: Attempt) -> None:
+        """Take a decision with its record, of a requirement by its place in the file."""
+        self._told.append((rank, record))
 
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
@@ -86,14 +91,16 @@ class Ledger:
                 name = judge.compiled.requirement.id
                 attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
             self._started.clear()
-        if not self._decided:
+        if not self._decided and not self._told:
             return ()
-        made = [
+        made, self._told = self._told, []
+        made += [
             (judge.compiled.rank, replace(record, number=attempt.number))
             for judge, attempt, record in self._decided
         ]
         self._decided.clear()
-        made.sort(key=lambda entry: _order(*entry))
+        if len(made) > 1:
+            made.sort(key=lambda entry: _order(*entry))
         records = [record for _, record in made]
         self.attempts += records
         return records
@@ -116,15 +123,15 @@ def _record(
         decision,
         why.reason,
         why.deadline,
-        _values(judge, attempt.seen),
-        {} if decided is None else _values(judge, judge.seen),
+        values_shown(judge, attempt.seen),
+        {} if decided is None else values_shown(judge, judge.seen),
         why.owed,
         judge.captured,
         why.blame,
     )
 
 
-def _values(judge: Bench, seen: tuple[int, ...]) -> dict[str, Scalar]:
+def values_shown(judge: Bench, seen: tuple[int, ...]) -> dict[str, Scalar]:
     """The propositions concerned by their text; `None` is unknown."""
     pairs = zip(judge.leaves, seen, strict=True)
     return {text: None if truth == UNKNOWN else truth == TRUE for (_, text), truth in pairs}

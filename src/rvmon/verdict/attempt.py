@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
+from typing import Any
 
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.verdict import Verdict
@@ -45,8 +46,25 @@ class Blame:
     at: tuple[int, ...] = ()
 
 
+class _Later:
+    """Fields that are filled in when someone first looks at one of them."""
+
+    __slots__ = ("_details",)
+
+    _details: Callable[[], Mapping[str, Any]]
+
+    def __getattr__(self, name: str) -> Any:
+        """Called for a field that was never set."""
+        if name == "_details" or not hasattr(self, "_details"):
+            raise AttributeError(f"an attempt has no `{name}`")
+        for field_name, value in self._details().items():
+            object.__setattr__(self, field_name, value)
+        object.__delattr__(self, "_details")
+        return getattr(self, name)
+
+
 @dataclass(frozen=True, slots=True)
-class Attempt:
+class Attempt(_Later):
     """One obligation that a trigger started.
 
     Attributes:
@@ -83,3 +101,57 @@ class Attempt:
     blame: Blame | None = None
     forecast: Verdict | None = None
     robustness: float | None = None
+
+
+class _Draft(_Later):
+    """An attempt in the making: without the price of a frozen class."""
+
+    __slots__ = tuple(one.name for one in fields(Attempt))
+
+    def __init__(
+        self,
+        requirement: str,
+        number: int,
+        triggered: int,
+        decided: int | None,
+        verdict: Verdict,
+        details: Callable[[], Mapping[str, Any]],
+    ) -> None:
+        self.requirement = requirement
+        self.number = number
+        self.triggered = triggered
+        self.decided = decided
+        self.verdict = verdict
+        self.decision = _PREFIX
+        self._details = details
+
+
+_PREFIX = Decision.PREFIX
+
+
+def decided_attempt(
+    requirement: str,
+    number: int,
+    triggered: int,
+    decided: int,
+    verdict: Verdict,
+    details: Callable[[], Mapping[str, Any]],
+) -> Attempt:
+    """An attempt that the prefix decided; the rest is worked out when someone asks for it.
+
+    Args:
+        requirement: as in `Attempt`; so are the next four.
+        number: from 1.
+        triggered: ticks.
+        decided: ticks.
+        verdict: `P` or `F`.
+        details: gives all the other fields by name.
+
+    >>> made = decided_attempt("R1", 1, 0, 5, Verdict.PASS, lambda: {"reason": "met"})
+    >>> made.verdict.value, made.reason
+    ('P', 'met')
+    """
+    made: Any = _Draft(requirement, number, triggered, decided, verdict, details)
+    made.__class__ = Attempt
+    attempt: Attempt = made
+    return attempt

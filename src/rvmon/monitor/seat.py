@@ -1,0 +1,143 @@
+"""What is told of the attempts of one requirement that generated code judges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from operator import itemgetter
+from typing import Any
+
+from rvmon.automaton.machine import Token
+from rvmon.codegen.plan import Plan
+from rvmon.codegen.runtime.rule import Rule
+from rvmon.codegen.runtime.unit import Unit
+from rvmon.dataflow.flow import Flow
+from rvmon.monitor.bench import Clerk, Open
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.explain import explain_decision
+from rvmon.monitor.judge import Judge
+from rvmon.monitor.ledger import values_shown
+from rvmon.verdict.attempt import Attempt, decided_attempt
+from rvmon.verdict.verdict import Verdict
+
+_PASS, _FAIL = Verdict.PASS, Verdict.FAIL
+
+Pick = Callable[[list[Any]], tuple[Any, ...]]
+
+
+class Seat:
+    """Stands where the judge of a requirement would, and writes the records of its decisions.
+
+    A record costs little until someone asks for its reason: what that needs is noted.
+
+    Args:
+        compiled: the requirement.
+        plan: that it is part of.
+        unit: judges it.
+        clerk: whom a judge would tell.
+    """
+
+    def __init__(self, compiled: CompiledRequirement, plan: Plan, unit: Unit, clerk: Clerk) -> None:
+        self.compiled = compiled
+        self._unit = unit
+        self._clerk = clerk
+        graph = plan.graph
+        places = tuple(graph.index[state] for state in compiled.alphabet.propositions)
+        leaves = tuple(graph.index[leaf] for leaf, _ in compiled.leaves if leaf in graph.index)
+        self.seen = _picking(leaves)
+        """Gives the values of what it reads, from those of all nodes."""
+        self._leaves = leaves
+        self._places = places
+        self._values_of = _picking(places)
+        self._since_of = _picking(places)
+        self._until_of = _picking(tuple(3 * place + truth for place in places for truth in (0, 2)))
+        self._plan = plan
+
+    def judge_now(self, rule: Rule) -> Judge:
+        """The judge of the requirement, as it would stand now if it had judged."""
+        unit = self._unit
+        flow = _Stood(self._plan, unit.v, unit.since, unit.until)
+        flow.origin, flow.position = unit.origin, unit.position
+        return self._judge(flow, (rule.letter, rule.other), rule.position, rule.attempts)
+
+    def _judge(
+        self, flow: Flow, letters: tuple[int, int], position: int, attempts: list[Open]
+    ) -> Judge:
+        judge = Judge(self.compiled, self.compiled.machine("auto"), flow, self._clerk, {})
+        judge.letters = letters
+        judge.position = position
+        judge.attempts = attempts
+        return judge
+
+    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> Attempt:
+        """The record of a decision; see `rvmon.monitor.bench.Clerk`."""
+        unit = self._unit
+        noted = (
+            attempt,
+            verdict,
+            t,
+            before,
+            (rule.letter, rule.other),
+            rule.position,
+            self.seen(unit.v),
+            self._values_of(unit.v),
+            self._since_of(unit.since),
+            self._until_of(unit.until),
+        )
+        return decided_attempt(
+            self.compiled.requirement.id,
+            attempt.number,
+            attempt.triggered,
+            attempt.triggered if self.compiled.obligation.trigger is None else t,
+            _PASS if verdict else _FAIL,
+            partial(self._details, noted),
+        )
+
+    def _details(self, noted: tuple[Any, ...]) -> Mapping[str, Any]:
+        """All that a record says beside the verdict, from what was noted at the decision."""
+        attempt, verdict, t, before, letters, position, seen, values, since, until = noted
+        nodes: dict[int, int] = dict(zip(self._leaves, seen, strict=True))
+        nodes |= zip(self._places, values, strict=True)
+        instants = {}
+        for index, place in enumerate(self._places):
+            instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
+        flow = _Stood(self._plan, nodes, dict(zip(self._places, since, strict=True)), instants)
+        judge = self._judge(flow, letters, position, [])
+        why = explain_decision(judge, attempt, verdict, t, before)
+        return {
+            "reason": why.reason,
+            "deadline": why.deadline,
+            "at_trigger": values_shown(judge, attempt.seen),
+            "at_decision": values_shown(judge, seen),
+            "owed": why.owed,
+            "captured": {},
+            "blame": why.blame,
+            "forecast": None,
+            "robustness": None,
+        }
+
+
+class _Stood(Flow):
+    """A flow as it stood: it tells, and does not go on."""
+
+    def __init__(self, plan: Plan, values: Any, since: Any, until: Any) -> None:
+        self.graph = plan.graph
+        self.gap = plan.gap
+        self.values = values
+        self.since = since
+        self._instants = until
+
+    def last_with(self, place: int, value: int, t: int) -> int | None:
+        """See `Flow.last_with`; of the propositions that the requirement owes."""
+        found: int | None = t if self.values[place] == value else self._instants[3 * place + value]
+        return found
+
+
+def _picking(places: tuple[int, ...]) -> Pick:
+    """A function that takes the entries at these places out of a list."""
+    if not places:
+        return lambda _: ()
+    if len(places) == 1:
+        (place,) = places
+        return lambda values: (values[place],)
+    return itemgetter(*places)
