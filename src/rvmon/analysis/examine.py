@@ -9,7 +9,7 @@ from itertools import combinations
 
 from rvmon.analysis.possible import Possible, possible
 from rvmon.analysis.subject import Conflict, Implication, Subject
-from rvmon.analysis.together import Aim, can_reach
+from rvmon.analysis.together import Aim, Together
 from rvmon.spec.checked import CheckedSpec
 
 MOST_OFFSETS = 12
@@ -90,7 +90,7 @@ class _Pairing:
         harmless: frozenset[str],
         deadline: float,
     ) -> None:
-        self.spec = spec
+        self.together = Together(spec)
         self.subjects = subjects
         self.deadline = deadline
         self.conflicts: list[Conflict] = []
@@ -130,11 +130,11 @@ class _Pairing:
     def _conflict(self, group: tuple[Subject, ...], offsets: tuple[int, ...]) -> bool | None:
         """Whether each can be met when all are triggered, but not all; found ones are kept."""
         places = range(len(group))
-        together = can_reach(self.spec, group, offsets, Aim(frozenset(places)))
+        together = self.together.can_reach(group, offsets, Aim(frozenset(places)))
         if together is not False:
             return None if together is None else False
         for place in places:
-            if not can_reach(self.spec, group, offsets, Aim(frozenset([place]))):
+            if not self.together.can_reach(group, offsets, Aim(frozenset([place]))):
                 return False
         self.conflicts.append(Conflict(tuple(subject.id for subject in group), offsets))
         return True
@@ -147,7 +147,7 @@ class _Pairing:
         for by, implied in ((first, second), (second, first)):
             if implied.id in self.harmless:
                 continue
-            if can_reach(self.spec, (by, implied), (0, 0), aim) is False:
+            if self.together.can_reach((by, implied), (0, 0), aim) is False:
                 self.implications.append(Implication(implied.id, by.id))
                 return True
         return False

@@ -26,8 +26,7 @@ MOST_COMBINATIONS = 1 << 12
 
 T = TypeVar("T", bound=Hashable)
 Truths = tuple[bool, ...]
-_Source = str | State
-_Shown = Mapping[State, bool]
+Source = str | State
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,145 +53,179 @@ def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> Combinations 
     Returns:
         The combinations; `None` if there are too many to look at.
     """
-    found = joint(spec, [states], [lambda truths: truths])
+    letters = Letters(spec)
+    found = letters.joint([letters.table(states, lambda truths: truths)])
     return None if found is None else Combinations(frozenset(truths for (truths,) in found))
 
 
-def joint(
-    spec: CheckedSpec,
-    groups: Sequence[Sequence[State]],
-    views: Sequence[Callable[[Truths], T]],
-) -> frozenset[tuple[T, ...]] | None:
-    """What several groups of state formulas can be together.
+@dataclass(frozen=True, slots=True)
+class Table(Generic[T]):
+    """What a group of formulas can be, by what its sources show.
+
+    Attributes:
+        sources: that the formulas depend on.
+        leaves: of each source, those that are read here; a part that remembers is its own.
+        rows: what is shown of each source, and what the formulas are then.
+    """
+
+    sources: tuple[Source, ...]
+    leaves: tuple[tuple[State, ...], ...]
+    rows: Mapping[tuple[Truths, ...], T]
+
+
+class Letters:
+    """What groups of formulas of one specification can be, alone and together.
 
     Args:
         spec: declares the names.
-        groups: of formulas.
-        views: for each group what matters of the truths of its formulas.
-
-    Returns:
-        Each with a view per group; `None` if there are too many to look at.
     """
-    nodes = [_nodes(states) for states in groups]
-    plain = {n for own in nodes for n in own if n.leaf is not None and _is_plain(n.leaf, spec)}
-    options = _options(spec, plain)
-    relation: dict[tuple[int, ...], set[tuple[T, ...]]] = {(): {()}}
-    live: tuple[_Source, ...] = ()
-    for number, (states, view) in enumerate(zip(groups, views, strict=True)):
-        table = _table(states, nodes[number], plain, options, view)
-        if table is None:
+
+    def __init__(self, spec: CheckedSpec) -> None:
+        self.spec = spec
+        self._inputs = Inputs(spec, None)
+        self._seen: dict[tuple[Source, tuple[State, ...]], tuple[Truths, ...]] = {}
+
+    def table(self, states: Sequence[State], view: Callable[[Truths], T]) -> Table[T] | None:
+        """What some formulas can be; `None` if there is too much to look at.
+
+        Args:
+            states: the formulas.
+            view: what matters of their truths.
+        """
+        nodes = _nodes(states)
+        leaves = _leaves_by_source(nodes, self.spec)
+        shown = [self._shown(source, own) for source, own in leaves.items()]
+        size = 1
+        for own in shown:
+            size *= len(own)
+        if size > MOST_COMBINATIONS:
             return None
-        later = {s for own in nodes[number + 1 :] for s in _sources(own, plain)}
-        live, relation = _join(live, relation, table, later)
-        if sum(map(len, relation.values())) > MOST_COMBINATIONS:
+        read = [leaf for own in leaves.values() for leaf in own]
+        steady = {n: n.leaf.value for n in nodes if isinstance(n.leaf, Constant)}
+        derived = [node for node in nodes if not _is_free(node)]
+        rows = {}
+        for chosen in product(*shown):
+            values = dict(steady)
+            values.update(zip(read, (truth for own in chosen for truth in own), strict=True))
+            for node in derived:
+                values[node] = _value(node, values)
+            rows[chosen] = view(tuple(values[state] for state in states))
+        return Table(tuple(leaves), tuple(leaves.values()), rows)
+
+    def joint(self, tables: Sequence[Table[T] | None]) -> frozenset[tuple[T, ...]] | None:
+        """What several groups can be together; `None` if there is too much to look at.
+
+        Args:
+            tables: of the groups.
+        """
+        known = [table for table in tables if table is not None]
+        if len(known) < len(tables):
             return None
-    return frozenset(together for found in relation.values() for together in found)
+        shared = self._shared(known)
+        relation: dict[tuple[int, ...], set[tuple[T, ...]]] = {(): {()}}
+        live: tuple[Source, ...] = ()
+        for number, table in enumerate(known):
+            later = {source for other in known[number + 1 :] for source in other.sources}
+            live, relation = _join(live, relation, _Part.of(table, shared), later)
+            if sum(map(len, relation.values())) > MOST_COMBINATIONS:
+                return None
+        return frozenset(together for found in relation.values() for together in found)
+
+    def _shared(self, tables: Sequence[Table[T]]) -> dict[Source, dict[State, Truths]]:
+        """Of each source that several tables read, what each leaf is in every case of it."""
+        readers: dict[Source, list[tuple[State, ...]]] = defaultdict(list)
+        for table in tables:
+            for source, own in zip(table.sources, table.leaves, strict=True):
+                readers[source].append(own)
+        found = {}
+        for source, groups in readers.items():
+            if len(groups) > 1:
+                leaves = tuple(dict.fromkeys(leaf for own in groups for leaf in own))
+                columns = zip(*self._shown(source, leaves), strict=True)
+                found[source] = dict(zip(leaves, columns, strict=True))
+        return found
+
+    def _shown(self, source: Source, leaves: tuple[State, ...]) -> tuple[Truths, ...]:
+        """The truths that some leaves of a source can have."""
+        if not isinstance(source, str):
+            return ((False,), (True,))
+        if (source, leaves) not in self._seen:
+            own = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
+            read = [evaluator(leaf, self._inputs, {}, lambda: 0) for leaf in own]
+            found: dict[Truths, None] = {}
+            for value in values_of(self.spec, own, source):
+                self._inputs.forget_occurrences()
+                if not isinstance(value, Silence):
+                    self._inputs.apply(0, {source: value})
+                found[tuple(evaluate(0) == TRUE for evaluate in read)] = None
+            self._seen[source, leaves] = tuple(found)
+        return self._seen[source, leaves]
 
 
 @dataclass(frozen=True, slots=True)
-class _Table(Generic[T]):
-    """What one group can be, by what its sources show."""
+class _Part(Generic[T]):
+    """A table as others see it: by the cases of the sources that it shares with them."""
 
-    sources: tuple[_Source, ...]
-    rows: Mapping[tuple[int, ...], T]
+    sources: tuple[Source, ...]
+    rows: Mapping[tuple[int, ...], set[T]]
 
-
-def _table(
-    states: Sequence[State],
-    nodes: Sequence[State],
-    plain: set[State],
-    options: Mapping[str, Sequence[_Shown]],
-    view: Callable[[Truths], T],
-) -> _Table[T] | None:
-    sources = _sources(nodes, plain)
-    shown = [_shown(source, options) for source in sources]
-    size = 1
-    for own in shown:
-        size *= len(own)
-    if size > MOST_COMBINATIONS:
-        return None
-    derived = [node for node in nodes if node not in plain and not _is_free(node)]
-    rows = {}
-    for chosen in product(*(range(len(own)) for own in shown)):
-        values: dict[State, bool] = {}
-        for own, index in zip(shown, chosen, strict=True):
-            values.update(own[index])
-        for node in nodes:
-            if isinstance(node.leaf, Constant):
-                values[node] = node.leaf.value
-        for node in derived:
-            values[node] = _value(node, values)
-        rows[chosen] = view(tuple(values[state] for state in states))
-    return _Table(sources, rows)
+    @classmethod
+    def of(cls, table: Table[T], shared: Mapping[Source, Mapping[State, Truths]]) -> _Part[T]:
+        """The table without what it does not share."""
+        places = [place for place, source in enumerate(table.sources) if source in shared]
+        cases: list[dict[Truths, list[int]]] = []
+        for place in places:
+            columns = [shared[table.sources[place]][leaf] for leaf in table.leaves[place]]
+            own: dict[Truths, list[int]] = defaultdict(list)
+            for case, truths in enumerate(zip(*columns, strict=True)):
+                own[truths].append(case)
+            cases.append(own)
+        views: dict[tuple[Truths, ...], set[T]] = defaultdict(set)
+        for chosen, view in table.rows.items():
+            views[tuple(chosen[place] for place in places)].add(view)
+        rows: dict[tuple[int, ...], set[T]] = {}
+        for shown, found in views.items():
+            for key in product(*(own[part] for own, part in zip(cases, shown, strict=True))):
+                rows[key] = found
+        return cls(tuple(table.sources[place] for place in places), rows)
 
 
 def _join(
-    live: tuple[_Source, ...],
+    live: tuple[Source, ...],
     relation: Mapping[tuple[int, ...], set[tuple[T, ...]]],
-    table: _Table[T],
-    later: set[_Source],
-) -> tuple[tuple[_Source, ...], dict[tuple[int, ...], set[tuple[T, ...]]]]:
+    part: _Part[T],
+    later: set[Source],
+) -> tuple[tuple[Source, ...], dict[tuple[int, ...], set[tuple[T, ...]]]]:
     """One group more, joined on the sources it shares; only those used later are kept."""
-    common = [source for source in table.sources if source in live]
-    ours = [live.index(source) for source in common]
-    theirs = [table.sources.index(source) for source in common]
-    fresh = [
-        place
-        for place, source in enumerate(table.sources)
-        if source in later and source not in live
-    ]
+    ours = [place for place, source in enumerate(live) if source in part.sources]
+    theirs = [part.sources.index(live[place]) for place in ours]
     kept = [place for place, source in enumerate(live) if source in later]
-    by_common: dict[tuple[int, ...], dict[tuple[int, ...], set[T]]] = defaultdict(
-        lambda: defaultdict(set)
-    )
-    for chosen, seen in table.rows.items():
-        key = tuple(chosen[place] for place in theirs)
-        by_common[key][tuple(chosen[place] for place in fresh)].add(seen)
+    fresh = [
+        place for place, source in enumerate(part.sources) if source in later and source not in live
+    ]
+    matches: dict[tuple[int, ...], dict[tuple[int, ...], set[T]]] = {}
+    for chosen, views in part.rows.items():
+        rests = matches.setdefault(tuple(chosen[place] for place in theirs), {})
+        rests.setdefault(tuple(chosen[place] for place in fresh), set()).update(views)
     joined: dict[tuple[int, ...], set[tuple[T, ...]]] = defaultdict(set)
     for chosen, found in relation.items():
         head = tuple(chosen[place] for place in kept)
-        for tail, views in by_common[tuple(chosen[place] for place in ours)].items():
-            joined[head + tail] |= {(*one, view) for one in found for view in views}
-    sources = (*(live[place] for place in kept), *(table.sources[place] for place in fresh))
+        for rest, views in matches.get(tuple(chosen[place] for place in ours), {}).items():
+            joined[head + rest] |= {(*one, view) for one in found for view in views}
+    sources = (*(live[place] for place in kept), *(part.sources[place] for place in fresh))
     return sources, dict(joined)
 
 
-def _options(spec: CheckedSpec, plain: Iterable[State]) -> dict[str, list[_Shown]]:
-    """By name what it can show of the leaves that read it, each once."""
-    readers: dict[str, list[State]] = defaultdict(list)
-    for node in sorted(plain, key=lambda node: node.id):
-        for name in [] if node.leaf is None else reads(node.leaf).names:
-            readers[name].append(node)
-    return {name: _seen(spec, name, own) for name, own in readers.items()}
-
-
-def _seen(spec: CheckedSpec, name: str, nodes: Sequence[State]) -> list[_Shown]:
-    inputs = Inputs(spec, None)
-    leaves = [node.leaf for node in nodes if node.leaf is not None]
-    read = [evaluator(leaf, inputs, {}, lambda: 0) for leaf in leaves]
-    found = {}
-    for value in values_of(spec, leaves, name):
-        inputs.forget_occurrences()
-        if not isinstance(value, Silence):
-            inputs.apply(0, {name: value})
-        truths = tuple(evaluate(0) == TRUE for evaluate in read)
-        found[truths] = dict(zip(nodes, truths, strict=True))
-    return list(found.values())
-
-
-def _shown(source: _Source, options: Mapping[str, Sequence[_Shown]]) -> Sequence[_Shown]:
-    return options[source] if isinstance(source, str) else [{source: False}, {source: True}]
-
-
-def _sources(nodes: Iterable[State], plain: set[State]) -> tuple[_Source, ...]:
-    """What the formulas depend on, in a fixed order."""
-    found: dict[_Source, None] = {}
+def _leaves_by_source(nodes: Iterable[State], spec: CheckedSpec) -> dict[Source, tuple[State, ...]]:
+    """What formulas depend on, and which of their leaves read it."""
+    found: dict[Source, tuple[State, ...]] = {}
     for node in nodes:
-        if node in plain:
-            found |= dict.fromkeys(sorted(reads(node.leaf).names) if node.leaf is not None else ())
+        if node.leaf is not None and _is_plain(node.leaf, spec):
+            for name in sorted(reads(node.leaf).names):
+                found[name] = (*found.get(name, ()), node)
         elif _is_free(node):
-            found[node] = None
-    return tuple(found)
+            found[node] = (node,)
+    return found
 
 
 def _nodes(states: Iterable[State]) -> list[State]:

@@ -8,11 +8,11 @@ anywhere, a cell takes any number of steps. So what is found impossible is so.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.analysis.letters import combinations_of
+from rvmon.analysis.letters import Letters, Table, Truths
 from rvmon.analysis.possible import automaton_letter
 from rvmon.analysis.subject import Subject
 from rvmon.automaton.automaton import Automaton
@@ -26,6 +26,9 @@ Spot = tuple[int, tuple[int, ...]]
 
 State = tuple[int, tuple[Spot | None, ...]]
 """The cell, and each attempt; `None` before its trigger."""
+
+Letter = tuple[tuple[int, bool], ...]
+"""A joint letter: for each requirement the class for its automaton, and if its trigger holds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,66 +44,85 @@ class Aim:
     failed: frozenset[int] = frozenset()
 
 
-def can_reach(
-    spec: CheckedSpec, subjects: Sequence[Subject], offsets: Sequence[int], aim: Aim
-) -> bool | None:
-    """Whether attempts can come to what is looked for.
+class Together:
+    """Answers about groups of requirements of one specification.
 
     Args:
         spec: declares the names.
-        subjects: with automata and triggers.
-        offsets: of their triggers, ticks after the first.
-        aim: what is looked for, if the run ended there.
-
-    Returns:
-        `False` if it surely cannot be, `True` if it may, `None` if that was too much to find out.
-
-    Source: emptiness of a product of timed automata, after Alur and Dill 1994.
     """
-    letters = _letters(spec, subjects)
-    if letters is None:
-        return None
-    search = _Search(spec, subjects, offsets, letters, aim)
-    waiting: list[State] = [(-1, tuple(None for _ in subjects))]
-    seen = set(waiting)
-    while waiting:
-        for state in search.after(waiting.pop()):
-            if state in seen:
-                continue
-            if search.is_reached(state):
-                return True
-            seen.add(state)
-            if len(seen) > MOST_STATES:
-                return None
-            waiting.append(state)
-    return False
+
+    def __init__(self, spec: CheckedSpec) -> None:
+        self.spec = spec
+        self._letters = Letters(spec)
+        self._tables: dict[Subject, Table[tuple[int, bool]] | None] = {}
+        self._known: dict[tuple[Subject, ...], frozenset[Letter] | None] = {}
+
+    def letters(self, subjects: Sequence[Subject]) -> frozenset[Letter] | None:
+        """The joint letters of requirements; `None` if there are too many."""
+        key = tuple(subjects)
+        if key not in self._known:
+            self._known[key] = self._letters.joint([self._table(subject) for subject in key])
+        return self._known[key]
+
+    def _table(self, subject: Subject) -> Table[tuple[int, bool]] | None:
+        if subject not in self._tables:
+            propositions = _automaton(subject).alphabet.propositions
+            trigger = [] if subject.trigger is None else [subject.trigger]
+            states = [*propositions, *trigger]
+            self._tables[subject] = self._letters.table(states, _view(subject))
+        return self._tables[subject]
+
+    def can_start(self, subjects: Sequence[Subject]) -> bool | None:
+        """Whether the triggers of all can hold at one instant; `None` if it was not decided."""
+        letters = self.letters(subjects)
+        if letters is None:
+            return None
+        return any(all(holds for _, holds in letter) for letter in letters)
+
+    def can_reach(
+        self, subjects: Sequence[Subject], offsets: Sequence[int], aim: Aim
+    ) -> bool | None:
+        """Whether attempts can come to what is looked for.
+
+        Args:
+            subjects: with automata and triggers.
+            offsets: of their triggers, ticks after the first.
+            aim: what is looked for, if the run ended there.
+
+        Returns:
+            `False` if it surely cannot be, `True` if it may, `None` if that was too much to find
+            out.
+
+        Source: emptiness of a product of timed automata, after Alur and Dill 1994.
+        """
+        letters = self.letters(subjects)
+        if letters is None:
+            return None
+        search = _Search(self.spec, subjects, offsets, letters, aim)
+        waiting: list[State] = [(-1, tuple(None for _ in subjects))]
+        seen = set(waiting)
+        while waiting:
+            for state in search.after(waiting.pop()):
+                if state in seen:
+                    continue
+                if search.is_reached(state):
+                    return True
+                seen.add(state)
+                if len(seen) > MOST_STATES:
+                    return None
+                waiting.append(state)
+        return False
 
 
-@dataclass(frozen=True, slots=True)
-class _Letter:
-    """One joint letter: the class for each automaton, and whether each trigger holds."""
+def _view(subject: Subject) -> Callable[[Truths], tuple[int, bool]]:
+    """What matters of a requirement's propositions and trigger: class and whether it starts."""
+    automaton, triggered = _automaton(subject), subject.trigger is not None
 
-    classes: tuple[int, ...]
-    triggers: tuple[bool, ...]
+    def view(truths: Truths) -> tuple[int, bool]:
+        own = truths[:-1] if triggered else truths
+        return automaton_letter(automaton, own), triggered and truths[-1]
 
-
-def _letters(spec: CheckedSpec, subjects: Sequence[Subject]) -> frozenset[_Letter] | None:
-    automata = [_automaton(subject) for subject in subjects]
-    states = [p for automaton in automata for p in automaton.alphabet.propositions]
-    triggers = [subject.trigger for subject in subjects if subject.trigger is not None]
-    found = combinations_of(spec, [*states, *triggers])
-    if found is None:
-        return None
-    made = set()
-    for vector in found.vectors:
-        classes = []
-        start = 0
-        for automaton in automata:
-            stop = start + len(automaton.alphabet.propositions)
-            classes.append(automaton_letter(automaton, vector[start:stop]))
-            start = stop
-        made.add(_Letter(tuple(classes), vector[start:]))
-    return frozenset(made)
+    return view
 
 
 def _automaton(subject: Subject) -> Automaton:
@@ -129,7 +151,7 @@ class _Search:
         spec: CheckedSpec,
         subjects: Sequence[Subject],
         offsets: Sequence[int],
-        letters: frozenset[_Letter],
+        letters: frozenset[Letter],
         aim: Aim,
     ) -> None:
         self.aim = aim
@@ -145,18 +167,37 @@ class _Search:
                 cuts |= {offset + cut for clock in location.cuts for cut in clock}
         self.starts = sorted(cuts)
         self.dense = spec.time is TimeModel.HELD
+        self._at: dict[int, frozenset[tuple[int, ...]]] = {}
 
     def after(self, state: State) -> Iterator[State]:
         """The states one step later from which the aim is not lost."""
         cell, spots = state
         for later in self._cells(cell):
-            for letter in self.letters:
+            for classes in self._classes(later):
                 ways = []
                 for index, spot in enumerate(spots):
-                    ways.append(list(self._moves(index, spot, later, letter)))
-                for chosen in product(*ways):
-                    if not any(self._is_lost(i, spot) for i, spot in enumerate(chosen)):
+                    kept = [
+                        reached
+                        for reached in self._moves(index, spot, later, classes[index])
+                        if not self._is_lost(index, reached)
+                    ]
+                    if not kept:
+                        break
+                    ways.append(kept)
+                else:
+                    for chosen in product(*ways):
                         yield later, chosen
+
+    def _classes(self, cell: int) -> frozenset[tuple[int, ...]]:
+        """The joint classes that can come in a cell: whoever starts there has its trigger."""
+        if cell not in self._at:
+            starting = [i for i, at in enumerate(self.offsets) if at == self.starts[cell]]
+            self._at[cell] = frozenset(
+                tuple(own for own, _ in letter)
+                for letter in self.letters
+                if all(letter[index][1] for index in starting)
+            )
+        return self._at[cell]
 
     def _is_lost(self, index: int, spot: Spot | None) -> bool:
         if spot is None:
@@ -178,7 +219,7 @@ class _Search:
         return range(first, min([*ends, last]) + 1)
 
     def _moves(
-        self, index: int, spot: Spot | None, cell: int, letter: _Letter
+        self, index: int, spot: Spot | None, cell: int, class_: int
     ) -> Iterator[Spot | None]:
         """Where one attempt can be after a step in a cell."""
         automaton, age = self.automata[index], self.starts[cell] - self.offsets[index]
@@ -186,8 +227,6 @@ class _Search:
             yield None
             return
         if spot is None:
-            if not letter.triggers[index]:
-                return
             spot = (automaton.initial, ())
         location, regions = spot
         if location <= PASSED:
@@ -195,7 +234,7 @@ class _Search:
             return
         for at in self._regions(index, location, regions, age):
             row = automaton.bases[location] + sum(map(int.__mul__, at, automaton.strides[location]))
-            edge = automaton.edges[row * automaton.classes + letter.classes[index]]
+            edge = automaton.edges[row * automaton.classes + class_]
             if edge >= 0:
                 kept = tuple(0 if s == NOW else at[s] for s in automaton.sources[edge])
                 yield automaton.targets[edge], kept
