@@ -58,6 +58,10 @@ class Findings:
         start = diagnostic.spans[0].span.start if diagnostic.spans else -1
         self.found.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
 
+    def has(self, code: str) -> bool:
+        """Whether a finding of a code is among them."""
+        return any(found == code for found, _, _ in self.found)
+
     def raise_errors(self) -> None:
         """Raise all errors found so far, if there are any."""
         errors = [d for d in self.found.values() if d.severity is Severity.ERROR]

@@ -38,7 +38,7 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
     resolver = Resolver(open_ints=document.open_ints)
     top = Scope()
     declare(document.declarations, top, parts, resolver, findings)
-    automata: list[Automaton] = []
+    automata, edges = list[Automaton](), 0
     symbols: dict[AutomatonKey, AutomatonSymbol] = {}
     for process in processes_of(document, top, resolver, findings):
         declare(process.template.declarations, process.scope, parts, resolver, findings)
@@ -46,16 +46,19 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
         key = (process.family, process.arguments)
         symbols[key] = AutomatonSymbol(len(automata), locations, process.scope)
         automata.append(automaton_of(process, locations, parts, resolver, findings))
-        if sum(len(automaton.edges) for automaton in automata) > MAX_EDGES:
+        edges += len(automata[-1].edges)
+        if edges > MAX_EDGES:
             mend = "narrow the types of parameters and selections"
             findings.add(finding("TA019", f"more than {MAX_EDGES:,} edges", None, mend))
+        if findings.has("TA019"):
             break
     if not automata and not findings.found:
         findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
     names = Names(top, symbols)
-    # Without an automaton, which is an error itself, no query has a meaning.
-    queries = _queries(document.queries if symbols else (), names, findings)
-    signals = _signals(document.signals if symbols else (), names, findings)
+    # Without all automata, which is an error itself, queries have no meaning.
+    complete = bool(symbols) and not findings.has("TA019")
+    queries = _queries(document.queries if complete else (), names, findings)
+    signals = _signals(document.signals if complete else (), names, findings)
     _check_channels(parts, automata, findings)
     findings.raise_errors()
     return Network(

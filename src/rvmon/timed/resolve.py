@@ -42,7 +42,7 @@ from rvmon.timed.zones import MAX_TIME
 MAX_VALUES = 10_000
 """The most values that a quantifier, a `select`, a parameter or an array may range over."""
 
-MAX_UNROLLED = 200_000
+MAX_UNROLLED = 100_000
 """The most conditions that the quantifiers of a model may stand for together."""
 
 INT16 = (-32768, 32767)
