@@ -22,7 +22,7 @@ COMMANDS = {
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
     "init": "a starter specification from a recording",
-    "compile": "a specification as Python or C that runs alone",
+    "compile": "a specification as Python or C that runs alone, or as automata",
     "build": "a specification as a program that judges recordings",
     "verify": "model-check a network of timed automata",
     "conform": "hold recorded runs against a network of timed automata",

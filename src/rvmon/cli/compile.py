@@ -1,27 +1,36 @@
-"""`rvmon compile`: a specification as code that runs elsewhere, or as a graph."""
+"""`rvmon compile`: a specification as code that runs elsewhere, or as automata."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, UnknownNameError
+
+if TYPE_CHECKING:
+    from rvmon.session import Spec
+
+_AUTOMATA = ("dot", "json", "hoa")
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compile",
-        help="a specification as Python or C that runs alone",
+        help="a specification as Python or C that runs alone, or as automata",
         description="Write a monitor that needs nothing of rvmon: one Python file, or C99 (a "
-        "header, a source, a header for C++) that allocates nothing.",
-        epilog="example: rvmon compile specs/handover.rv --to c -o monitor/",
+        "header, a source, a header for C++) that allocates nothing. Or the automata: dot for "
+        "Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time).",
+        epilog="examples: rvmon compile specs/handover.rv --to c -o monitor/; "
+        "rvmon compile specs/handover.rv --to dot --only R1 | dot -Tsvg -o r1.svg",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument("--to", choices=("python", "c"), required=True)
+    parser.add_argument("--to", choices=("python", "c", "dot", "json", "hoa"), required=True)
     parser.add_argument(
-        "-o", "--output", metavar="PATH", help="a file (python; default: print it) or folder (c)"
+        "-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)"
     )
     parser.add_argument("--only", metavar="IDS", help="these requirements: R1,R3")
     parser.add_argument(
@@ -36,6 +45,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = None if arguments.only is None else [name.strip() for name in arguments.only.split(",")]
+    if arguments.to in _AUTOMATA:
+        _write_or_print(_automata(spec, ids, arguments.to), arguments.output)
+        return 0
     plan = spec.plan(only=ids)
     if arguments.to == "python":
         from rvmon.codegen.python_file import python_file
@@ -55,6 +67,39 @@ def run(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise RvmonError(f"cannot write to {folder}: {error.strerror}") from None
     return 0
+
+
+def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
+    """The automata of requirements, one after the other."""
+    from rvmon.monitor import compile_spec
+
+    compiled = compile_spec(spec.checked)
+    for name in ids or ():
+        if name not in compiled.requirements:
+            known = ", ".join(compiled.requirements)
+            raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
+    chosen = [one for name, one in compiled.requirements.items() if ids is None or name in ids]
+    if form == "hoa":
+        from rvmon.export.hoa import hoa
+
+        return "".join(map(hoa, chosen))
+    if form == "json":
+        import msgspec
+
+        from rvmon.export.automaton_json import automaton_json
+
+        found = [automaton_json(one, spec.checked) for one in chosen]
+        return msgspec.json.format(msgspec.json.encode(found), indent=1).decode() + "\n"
+    from rvmon.explain.graph import graph_of
+    from rvmon.explain.graph_text import graph_dot
+
+    texts = []
+    for one in chosen:
+        if one.automaton is None:
+            raise RvmonError(f"error: {one.requirement.id} has no automaton: {one.refusal}")
+        graph = graph_of(one, one.automaton, spec.checked)
+        texts.append(graph_dot(graph, one.requirement.id))
+    return "".join(texts)
 
 
 def _write_or_print(text: str, output: str | None) -> None:

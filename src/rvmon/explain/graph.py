@@ -30,10 +30,12 @@ class Place:
     Attributes:
         name: a short one: `start`, `A`, `B`, …, `P`, `F`.
         owed: what is still owed there; empty at the ends.
+        location: its place in the automaton.
     """
 
     name: str
     owed: str
+    location: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,7 @@ def graph_of(compiled: CompiledRequirement, automaton: Automaton, spec: CheckedS
     """
     names = _names(automaton)
     places = tuple(
-        Place(names[index], _owed(compiled, automaton, index))
+        Place(names[index], _owed(compiled, automaton, index), index)
         for index in sorted(names, key=lambda index: (index <= PASSED, index != automaton.initial))
     )
     reader = _Reader(compiled, automaton, spec)
@@ -123,7 +125,7 @@ class _Reader:
         self, compiled: CompiledRequirement, automaton: Automaton, spec: CheckedSpec
     ) -> None:
         self.automaton = automaton
-        self.texts = _texts(compiled)
+        self.texts = proposition_texts(compiled)
         self.propositions = automaton.alphabet.propositions
         self.letters = _two_valued(automaton)
         trigger = compiled.obligation.trigger
@@ -189,7 +191,7 @@ def _two_valued(automaton: Automaton) -> Mapping[Cube, int]:
     }
 
 
-def _texts(compiled: CompiledRequirement) -> dict[State, str]:
+def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
     """The propositions in the words of the spec."""
     texts: dict[State, str] = {}
     requirement = compiled.requirement

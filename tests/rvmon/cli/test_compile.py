@@ -1,0 +1,58 @@
+"""`rvmon compile` to automata, as a person uses it."""
+
+import json
+
+import pytest
+
+from rvmon.cli import main
+
+SPEC = """
+spec door
+signal closed : bool
+event knock
+requirement D1 "Knocking opens the door"
+  upon knock
+  then within 2 s not closed
+requirement D2 "At last it is closed"
+  upon knock
+  then eventually closed
+"""
+
+
+@pytest.fixture
+def spec(tmp_path):
+    path = tmp_path / "door.rv"
+    path.write_text(SPEC)
+    return str(path)
+
+
+def test_dot(spec, capsys):
+    """A digraph per requirement."""
+    assert main(["compile", spec, "--to", "dot"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.count("digraph") == 2
+    assert "within 2 s not closed" in shown
+
+
+def test_json(spec, tmp_path):
+    """Locations with what is owed and the instants that matter, edges with their conditions."""
+    path = tmp_path / "door.json"
+    assert main(["compile", spec, "--to", "json", "-o", str(path)]) == 0
+    first, second = json.loads(path.read_text())
+    assert [one["name"] for one in first["locations"]] == ["start", "A", "F", "P"]
+    assert first["locations"][1]["clock_cuts_ns"] == [[2_000_000_001]]
+    assert {edge["target"] for edge in second["edges"]} <= {"A", "P"}
+
+
+def test_hoa(spec, capsys):
+    """What has windows is refused by name, the rest can be asked for."""
+    assert main(["compile", spec, "--to", "hoa"]) == 2
+    assert "D1 has windows of time" in capsys.readouterr().err
+    assert main(["compile", spec, "--to", "hoa", "--only", "D2"]) == 0
+    assert capsys.readouterr().out.startswith('HOA: v1\nname: "D2: At last it is closed"')
+
+
+def test_unknown_requirements_are_named(spec, capsys):
+    """The ones there are stand in the message."""
+    assert main(["compile", spec, "--to", "dot", "--only", "D7"]) == 2
+    assert "there are D1, D2" in capsys.readouterr().err
