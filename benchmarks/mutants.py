@@ -1,11 +1,12 @@
 """Does the differential test see wrong engines? Seeded mutants of their source, run against it.
 
-    python -m benchmarks.mutants src/rvmon/automaton src/rvmon/monitor --count 30 --seed 1
+    python -m benchmarks.mutants --engine python --count 30 --seed 1
 
-Changes are drawn evenly over their kinds, from the lines that the test executes. Each is tried in
-a copy of the package. A mutant is killed if the test finds a disagreement, hangs or breaks; one
-that survives is tried again with five times the pairs. Those listed in `EQUIVALENT` change no
-behaviour, for the reason given there. Exits 1 if another one survives.
+Changes are drawn evenly over their kinds, from the lines of the engine's files that the test
+executes (of C, from all lines). Each is tried in a copy of the package. A mutant is killed if the
+test finds a disagreement, hangs or breaks, or if the engine refuses other specifications than it
+did; one that survives is tried again with five times the pairs. Those listed in `EQUIVALENT` change
+no behaviour, for the reason given there; others are drawn in their place. Exits 1 if one survives.
 """
 
 from __future__ import annotations
@@ -19,34 +20,15 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from benchmarks.engines import ENGINES, PACKAGE, files_of
+from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
+from benchmarks.mutation_c import c_mutants
 
 ROOT = Path(__file__).resolve().parent.parent
-
-EQUIVALENT = {
-    "stretch.py off by one: `position - 1` => `position`": (
-        "time passes up to the position before its letter is read, here or in the step itself"
-    ),
-    "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
-        "`true and x` is only not made smaller; it still means x"
-    ),
-    "lower.py and/or: `interval and interval.high` => `interval or interval.high`": (
-        "`held` always has an interval"
-    ),
-    "lane.py dropped statement: `self._pass_to(min(position - 1, limit))` => `pass`": (
-        "a visit, and `reach`, let time pass to the instant before by themselves"
-    ),
-    "construct.py off by one: `entered[clock] + 1` => `entered[clock]`": (
-        "another age of the same region, or a row for one in which no step can happen"
-    ),
-}
-"""Changes that no test could see, with the reason."""
-
-TELLS_ONLY = ("explain.py", "wording.py", "health.py")
-"""Files that make sentences and input health: the differential test compares neither."""
 
 MOST_MEMORY = 4 << 30
 MORE = 5
@@ -55,41 +37,37 @@ MORE = 5
 def main(argv: Sequence[str]) -> int:
     """Draw, run and judge the mutants."""
     options = _parse(argv)
-    files = [file for path in options.paths for file in _python_files(Path(path))]
-    executed = _executed_lines(files, options)
-    found = (m for f in files for m in mutants(f, executed.get(f, set())))
-    drawn = draw((m for m in found if options.only in m.change), options)
+    paths = [file for path in options.paths for file in _python_files(Path(path))]
+    files = paths or files_of(options.engine)
+    changes = [m for m in _changes(files, options) if options.only in m.change]
+    drawn = draw((m for m in changes if m.change not in EQUIVALENT), options)
     with tempfile.TemporaryDirectory() as directory:
-        package = Path(directory) / "src" / "rvmon"
-        shutil.copytree(ROOT / "src" / "rvmon", package)
-        began = time.perf_counter()
-        if (verdict := _run(package, options, options.pairs, 3_600)) != "survived":
-            sys.exit(f"the engine as it is does not pass the test: {verdict}")
-        seconds = time.perf_counter() - began
-        survivors = [m for m in drawn if not _killed(m, package, options, seconds)]
-    equivalent = [mutant for mutant in survivors if mutant.change in EQUIVALENT]
-    killed = len(drawn) - len(survivors)
-    print(f"{len(drawn)} mutants: {killed} killed, {len(equivalent)} equivalent, ", end="")
-    print(f"{len(survivors) - len(equivalent)} survived")
-    return 1 if len(survivors) > len(equivalent) else 0
+        trial = Trial(Path(directory), options)
+        killed = sum([trial.kills(mutant) for mutant in drawn])
+    passed_over = len({m.change for m in changes} & EQUIVALENT.keys())
+    print(
+        f"engine {options.engine}, seed {options.seed}: {len(drawn)} mutants of {len(changes)} in "
+        f"{len(files)} files, {killed} killed, {len(drawn) - killed} survived; "
+        f"{passed_over} known to be equivalent were not drawn"
+    )
+    return 0 if killed == len(drawn) else 1
 
 
 def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("paths", nargs="+", help="files or folders of the engine")
+    parser.add_argument("paths", nargs="*", help="files or folders; default: those of the engine")
     parser.add_argument("--only", default="", help="changes that contain this text")
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--pairs", type=int, default=1_000)
-    parser.add_argument("--engine", default="auto")
+    parser.add_argument("--engine", choices=ENGINES, default="auto")
     parser.add_argument("--time", choices=("held", "sampled", "clocked"))
     parser.add_argument("--without", nargs="*", default=[], metavar="FEATURE")
     return parser.parse_args(argv)
 
 
 def _python_files(path: Path) -> list[Path]:
-    found = sorted(path.rglob("*.py")) if path.is_dir() else [path]
-    return [file.resolve() for file in found if file.name not in TELLS_ONLY]
+    return [file.resolve() for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
 
 
 def _command(options: argparse.Namespace, pairs: int) -> list[str]:
@@ -102,14 +80,26 @@ def _command(options: argparse.Namespace, pairs: int) -> list[str]:
     return command
 
 
-def _executed_lines(files: Iterable[Path], options: argparse.Namespace) -> dict[Path, set[int]]:
+def _changes(files: Sequence[Path], options: argparse.Namespace) -> Iterator[Mutant]:
+    executed = _executed_lines([file for file in files if file.suffix == ".py"], options)
+    for file in files:
+        yield from mutants(file, executed[file]) if file in executed else c_mutants(file)
+
+
+def _executed_lines(files: Sequence[Path], options: argparse.Namespace) -> dict[Path, set[int]]:
     """The lines that the differential test executes in each file."""
     from coverage import CoverageData
 
     with tempfile.TemporaryDirectory() as directory:
         data = Path(directory) / "coverage"
         run = ["-m", "coverage", "run", f"--data-file={data}", *_command(options, options.pairs)]
-        subprocess.run([sys.executable, *run], cwd=ROOT, check=True, capture_output=True)
+        subprocess.run(
+            [sys.executable, *run],
+            cwd=ROOT,
+            env=_environment(Path(directory), ROOT / "src"),
+            check=True,
+            capture_output=True,
+        )
         collected = CoverageData(str(data))
         collected.read()
         return {file: set(collected.lines(str(file)) or ()) for file in files}
@@ -131,41 +121,79 @@ def draw(found: Iterable[Mutant], options: argparse.Namespace) -> list[Mutant]:
     return chosen
 
 
-def _killed(mutant: Mutant, package: Path, options: argparse.Namespace, seconds: float) -> bool:
-    """Try one mutant in the copy of the package, and print what became of it."""
-    place = package / mutant.path.relative_to(ROOT / "src" / "rvmon")
-    place.write_text(mutant.source, encoding="utf-8")
-    try:
-        verdict = _run(package, options, options.pairs, 10 + 5 * seconds)
-        if verdict == "survived":
-            verdict = _run(package, options, MORE * options.pairs, 10 + 5 * MORE * seconds)
-    finally:
-        shutil.copy2(mutant.path, place)
-    reason = EQUIVALENT.get(mutant.change) if verdict == "survived" else None
-    print(f"{'equivalent: ' + reason if reason else verdict:9}  {mutant}", flush=True)
-    return verdict != "survived"
+class Trial:
+    """A copy of the package in which one mutant after the other is tried.
+
+    Args:
+        scratch: an empty folder.
+        options: of the command line.
+    """
+
+    def __init__(self, scratch: Path, options: argparse.Namespace) -> None:
+        self.options = options
+        self.package = scratch / "src" / "rvmon"
+        self.environment = _environment(scratch, scratch / "src")
+        shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
+        self.known: dict[int, tuple[str, float]] = {}
+        self._as_it_is(options.pairs)
+
+    def _as_it_is(self, pairs: int) -> tuple[str, float]:
+        """What the engine refuses without a change, and how many seconds the test takes."""
+        if pairs not in self.known:
+            began = time.perf_counter()
+            verdict, refused = self._run(pairs, 3_600)
+            self.known[pairs] = refused, time.perf_counter() - began
+            if verdict != "survived":
+                sys.exit(f"the engine as it is does not pass the test: {verdict}")
+        return self.known[pairs]
+
+    def kills(self, mutant: Mutant) -> bool:
+        """Try a mutant, and print what became of it."""
+        place = self.package / mutant.path.relative_to(PACKAGE)
+        verdict = "survived"
+        for pairs in (self.options.pairs, MORE * self.options.pairs):
+            wanted, seconds = self._as_it_is(pairs)
+            place.write_text(mutant.source, encoding="utf-8")
+            verdict, refused = self._run(pairs, 10 + 5 * seconds)
+            shutil.copy2(mutant.path, place)
+            if verdict == "survived" and refused != wanted:
+                verdict = "refuses"
+            if verdict != "survived":
+                break
+        print(f"{verdict:9}  {mutant}", flush=True)
+        return verdict != "survived"
+
+    def _run(self, pairs: int, most: float) -> tuple[str, str]:
+        """The test on the copy: `survived`, `killed` or `hung`; how many specs were refused."""
+        try:
+            done = subprocess.run(
+                [sys.executable, *_command(self.options, pairs)],
+                cwd=ROOT,
+                env=self.environment,
+                check=False,
+                capture_output=True,
+                text=True,
+                timeout=most,
+                preexec_fn=_bound_memory,
+            )
+        except subprocess.TimeoutExpired:
+            return "hung", ""
+        refused = [line for line in done.stdout.splitlines() if line.startswith("refused")]
+        return "killed" if done.returncode else "survived", "".join(refused)
 
 
-def _run(package: Path, options: argparse.Namespace, pairs: int, most: float) -> str:
-    """The differential test on the copy: `survived`, `killed` or `hung`."""
-    environment = {
+def _environment(scratch: Path, source: Path) -> dict[str, str]:
+    """The environment of a test; compiled C is kept in the scratch folder, not made fast."""
+    compiler = scratch / "cc"
+    compiler.write_text('#!/bin/sh\nexec gcc "$@" -O0\n')
+    compiler.chmod(0o755)
+    return {
         **os.environ,
-        "PYTHONPATH": f"{package.parent}{os.pathsep}{ROOT}",
+        "CC": str(compiler),
+        "XDG_CACHE_HOME": str(scratch / "cache"),
+        "PYTHONPATH": f"{source}{os.pathsep}{ROOT}",
         "PYTHONDONTWRITEBYTECODE": "1",
     }
-    try:
-        done = subprocess.run(
-            [sys.executable, *_command(options, pairs)],
-            cwd=ROOT,
-            env=environment,
-            check=False,
-            capture_output=True,
-            timeout=most,
-            preexec_fn=_bound_memory,
-        )
-    except subprocess.TimeoutExpired:
-        return "hung"
-    return "killed" if done.returncode else "survived"
 
 
 def _bound_memory() -> None:

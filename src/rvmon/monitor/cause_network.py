@@ -94,6 +94,8 @@ class NetworkCauseFinder:
 
     def _when(self, core: Core, first: int, last: int) -> int | None:
         """The first position at which a formula got the decision's value at its stamp."""
+        if isinstance(core, Constant):
+            return None
         for left, right, at, slope in self.network.known_of(core)[not self.verdict]:
             low, high = max(left, first), min(right, last)
             if low > high:

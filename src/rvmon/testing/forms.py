@@ -59,9 +59,12 @@ class Maker:
 
     def _compiled(self, spec: CheckedSpec) -> CompiledSpec | BatchLibrary | ModuleType | None:
         compiled = compile_spec(spec)
+        requirements = compiled.requirements.values()
+        if self.form == "progression":
+            ahead = any(one.network_plan.looks_back for one in requirements)
+            return None if ahead else compiled
         if self.form not in ("automaton", "file", "c"):
             return compiled
-        requirements = compiled.requirements.values()
         if any(one.automaton is None for one in requirements):
             return None
         if self.form == "automaton":

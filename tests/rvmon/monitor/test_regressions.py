@@ -29,6 +29,12 @@ CASES = {
         [(8, {}), (13, {"x": 0.0}), (16, {"e": True})],
         16,
     ),
+    "a constant below an operator of the past is no cause of anything": (
+        "held",
+        "upon start\n  then once[1 ns, 1 ns] (F[0 ns, 0 ns] false)",
+        [(0, {})],
+        0,
+    ),
     "an instance begins between two ticks of the clock": (
         "sampled every 3 ns",
         "upon g\n  then start\n  for each v in g.k",

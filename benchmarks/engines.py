@@ -1,0 +1,79 @@
+"""The files that each engine consists of, for mutations of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parent.parent / "src" / "rvmon"
+
+_FORMULAS = ("formula/*.py",)
+_INPUTS = tuple(
+    f"dataflow/{name}.py" for name in ("flow", "graph", "inputs", "leaves", "numbers", "since")
+)
+_ATTEMPTS = tuple(
+    f"monitor/{name}.py"
+    for name in (
+        "bench",
+        "build",
+        "compiled",
+        "health",
+        "instances",
+        "judge",
+        "lane",
+        "lanes",
+        "ledger",
+        "monitor",
+        "trigger",
+        "validate",
+    )
+)
+_AUTOMATA = tuple(
+    f"automaton/{name}.py"
+    for name in ("construct", "end", "layout", "location", "reduce", "stretch", "table")
+)
+_PLANS = tuple(f"codegen/{name}.py" for name in ("planning", "tables"))
+_RUNTIME = tuple(
+    f"codegen/runtime/{name}.py" for name in ("nodes", "past", "rule", "table", "unit")
+)
+
+ENGINES: dict[str, tuple[str, ...]] = {
+    "auto": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA),
+    "automaton": (*_AUTOMATA, "monitor/judge.py", "monitor/lane.py", *_INPUTS),
+    "progression": (
+        *_FORMULAS,
+        "automaton/progression.py",
+        "automaton/stretch.py",
+        *_ATTEMPTS,
+    ),
+    "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, "monitor/generated.py"),
+    "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "codegen/runtime/alone.py"),
+    "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in"),
+    "network": (
+        "dataflow/network.py",
+        "dataflow/nodes.py",
+        "dataflow/pieces.py",
+        "dataflow/plan.py",
+        "dataflow/positions.py",
+        "dataflow/sweep.py",
+        "monitor/network_judge.py",
+    ),
+}
+"""By engine, patterns of files below the package; what does not exist (yet) is passed over."""
+
+_ELSEWHERE = (
+    "codegen/c_build.py",
+    "codegen/c_program.py",
+    "codegen/c/program*",
+    "codegen/c/read_*",
+    "codegen/c/monitor.hpp.in",
+    "codegen/python_file.py",
+)
+"""What the differential test of the engine does not run: it compiles and reads files."""
+
+
+def files_of(engine: str) -> list[Path]:
+    """The files of an engine."""
+    found = {file for pattern in ENGINES[engine] for file in PACKAGE.glob(pattern)}
+    wanted = {PACKAGE / pattern for pattern in ENGINES[engine]}
+    left = {file for pattern in _ELSEWHERE for file in PACKAGE.glob(pattern)} - wanted
+    return sorted(found - left)

@@ -1,0 +1,20 @@
+"""Mutations that change no behaviour, with the reason; `benchmarks.mutants` draws others."""
+
+EQUIVALENT = {
+    "stretch.py off by one: `position - 1` => `position`": (
+        "time passes up to the position before its letter is read, here or in the step itself"
+    ),
+    "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
+        "`true and x` is only not made smaller; it still means x"
+    ),
+    "lower.py and/or: `interval and interval.high` => `interval or interval.high`": (
+        "`held` always has an interval"
+    ),
+    "lane.py dropped statement: `self._pass_to(min(position - 1, limit))` => `pass`": (
+        "a visit, and `reach`, let time pass to the instant before by themselves"
+    ),
+    "construct.py off by one: `entered[clock] + 1` => `entered[clock]`": (
+        "another age of the same region, or a row for one in which no step can happen"
+    ),
+}
+"""By file and change, as `Mutant.change` writes it."""
