@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rvmon.analysis import rules
 from rvmon.analysis.examine import Examination
-from rvmon.analysis.subject import Conflict
+from rvmon.analysis.subject import Conflict, Implication
 from rvmon.diagnostics.diagnostic import Diagnostic, Label
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked import CheckedSpec, Requirement
@@ -23,15 +23,7 @@ def findings_of(spec: CheckedSpec, found: Examination) -> list[Diagnostic]:
         for diagnostic in _single(spec, found, name)
     ]
     conflicts = [_conflict(spec, conflict) for conflict in found.conflicts]
-    implied = [
-        finding(
-            rules.IMPLIED,
-            f"{one.implied} fails only where {one.by} fails: it adds nothing",
-            *_places(spec, one.implied, one.by),
-            mend=f"drop {one.implied}, or look whether it was meant otherwise",
-        )
-        for one in found.implications
-    ]
+    implied = [_implied(spec, implication) for implication in found.implications]
     return [*singles, *conflicts, *implied]
 
 
@@ -61,17 +53,40 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
         )
 
 
-def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
-    ids = conflict.ids
-    named = f"{', '.join(ids[:-1])} and {ids[-1]}"
-    last = conflict.offsets[-1]
-    when = f"{ids[-1]} {format_duration(last)} after {ids[0]}" if last else "at one instant"
+def _implied(spec: CheckedSpec, found: Implication) -> Diagnostic:
     return finding(
-        rules.CONFLICT,
-        f"{named} cannot {'all' if len(ids) > 2 else 'both'} hold once they are triggered, {when}",
-        *_places(spec, *ids),
-        mend="narrow one of the triggers, or settle which one yields",
+        rules.IMPLIED,
+        f"{found.implied} fails only where {_listed(found.by, 'or')} fails: it adds nothing",
+        *_places(spec, found.implied, *found.by),
+        mend=f"drop {found.implied}, or look whether it was meant otherwise",
     )
+
+
+def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
+    first = conflict.ids[0]
+    if set(conflict.ids) == {first}:
+        again = format_duration(conflict.offsets[-1])
+        message = f"{first} cannot hold once it is triggered again, {again} later"
+        mend = "let it hold for a shorter time, or say what a second trigger means"
+    else:
+        both = "both" if len(conflict.ids) == 2 else "all"
+        named = _listed(conflict.ids, "and")
+        when = ", ".join(_later(conflict)) or "at one instant"
+        message = f"{named} cannot {both} hold once they are triggered, {when}"
+        mend = "narrow one of the triggers, or settle which one yields"
+    return finding(rules.CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), mend=mend)
+
+
+def _later(conflict: Conflict) -> Iterator[str]:
+    """Which are triggered how long after the first."""
+    for name, offset in zip(conflict.ids, conflict.offsets, strict=True):
+        if offset:
+            yield f"{name} {format_duration(offset)} after {conflict.ids[0]}"
+
+
+def _listed(names: Sequence[str], word: str) -> str:
+    *rest, last = names
+    return f"{', '.join(rest)} {word} {last}" if rest else last
 
 
 def _places(spec: CheckedSpec, *names: str) -> Iterator[Label]:

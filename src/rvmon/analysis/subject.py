@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.state import State
-from rvmon.spec.checked import Requirement
+from rvmon.spec.checked import BoundAtom, Constant, Mode, Requirement
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,13 +30,38 @@ class Subject:
         """The requirement's id."""
         return self.requirement.id
 
+    @property
+    def is_always(self) -> bool:
+        """Whether it holds of every instant, so that an attempt is under way at each."""
+        trigger = self.requirement.trigger
+        always = isinstance(trigger, Constant) and trigger.value
+        return always and self.requirement.mode is Mode.WHENEVER
+
+    @property
+    def starts_late(self) -> bool:
+        """Whether an attempt can start at another instant than the first."""
+        return not self.is_always and not isinstance(self.requirement.trigger, BoundAtom)
+
+    @property
+    def starts_anew(self) -> bool:
+        """Whether an attempt starts at every instant at which its trigger holds."""
+        return self.requirement.pulse and self.requirement.mode is Mode.UPON
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A requirement of a set, triggered so many ticks after the first."""
+
+    subject: Subject
+    offset: int = 0
+
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
     """Requirements that cannot all hold.
 
     Attributes:
-        ids: a minimal set.
+        ids: a minimal set; one that is triggered twice stands twice.
         offsets: for each how long after the first it is triggered, ticks.
     """
 
@@ -46,7 +71,7 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True)
 class Implication:
-    """A requirement that fails only where another one fails."""
+    """A requirement that fails only where one of some others fails; a minimal set of those."""
 
     implied: str
-    by: str
+    by: tuple[str, ...]

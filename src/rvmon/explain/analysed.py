@@ -61,9 +61,10 @@ def conflict_example(compiled: CompiledSpec, conflict: Conflict) -> Example | No
 
     One on which none has failed yet is preferred.
     """
-    chosen = [compiled.requirements[name] for name in conflict.ids]
+    chosen = [compiled.requirements[name] for name in dict.fromkeys(conflict.ids)]
     goal = _triggered_as(conflict.ids, conflict.offsets)
-    budget = Budget(runs=CONFLICT_RUNS, samples=3)
+    step = min((offset for offset in conflict.offsets if offset), default=0)
+    budget = Budget(runs=CONFLICT_RUNS, samples=3, step=step)
     found = shortest_examples(compiled, chosen, goal, [_OPEN, _MET], budget).examples
     return found.get(_OPEN) or found.get(_MET)
 
