@@ -45,7 +45,7 @@ def test_random_differences(seed):
     """On a timeline that tells two random requirements apart, the oracle says so too."""
     dice = random.Random(100 + seed)
     shown = 0
-    for _ in range(8):
+    for _ in range(12):
         spec = random_spec(dice, Profile(requirements=3, depth=2, mixed=False))
         if len(spec.requirements) < 2:
             continue
