@@ -120,8 +120,8 @@ class Spec:
         """Judge a finished trace.
 
         Args:
-            trace: a path (`.csv`, `.jsonl`), columns by name (arrays, an Arrow table), a
-                `Recording`, or an iterable of `(t, values)` with t in seconds.
+            trace: a path (`.csv`, `.jsonl`, `.parquet`), columns by name (arrays, an Arrow table),
+                a `Recording`, or an iterable of `(t, values)` with t in seconds.
             time: the time column of columns; if its name ends in `_ns`, integer ticks.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
@@ -136,6 +136,10 @@ class Spec:
         report = self._evaluate_arrays(trace, time, engine, chosen, end)
         if report is not None:
             return report
+        if isinstance(trace, str | Path):
+            report = self.evaluate_file(trace, engine=engine, only=chosen, until=until)
+            if report is not None:
+                return report
         recording = self.recording(trace, time=time)
         if engine == "c":
             from rvmon.monitor.batch_c import evaluate_recording
@@ -146,26 +150,53 @@ class Spec:
             monitor.step_ns(sample.t, sample.values)
         return monitor.finish_ns(recording.end if end is None else end)
 
+    def evaluate_file(
+        self,
+        path: str | Path,
+        *,
+        engine: str = "auto",
+        only: Iterable[str] | None = None,
+        until: float | None = None,
+    ) -> Report | None:
+        """Judge a CSV or Parquet file by its columns, a block at a time; see `evaluate`.
+
+        Returns:
+            `None` where rows have to be read and judged one by one.
+        """
+        from rvmon.monitor.batch_file import evaluate_file
+
+        return evaluate_file(
+            self._compiled,
+            self.schema,
+            path,
+            only=None if only is None else tuple(only),
+            engine=engine,
+            until=None if until is None else ticks_of_seconds(until),
+        )
+
     def _evaluate_arrays(
         self, trace: Any, time: str, engine: str, only: tuple[str, ...] | None, until: int | None
     ) -> Report | None:
         """The fast way for NumPy arrays and Arrow tables; `None` where it does not lead."""
         if not (hasattr(trace, "column_names") or isinstance(trace, Mapping)):
             return None
-        from rvmon.monitor.batch import arrays_of, can_batch, evaluate_columns, in_order
+        from rvmon.monitor.batch import arrays_of, can_batch, evaluate_blocks, in_order
 
         arrays = arrays_of(trace, self.checked, time)
         if arrays is None:
             return None
         times, columns = arrays
         if engine == "c":
-            from rvmon.monitor.batch_c import evaluate_arrays
+            from rvmon.monitor.batch_c import evaluate_c_blocks
 
-            return evaluate_arrays(self._compiled, columns, times, only=only, until=until)
+            return evaluate_c_blocks(
+                self._compiled, list(columns), [(times, columns)], only=only, until=until
+            )
         if not can_batch(self._compiled, only) or not in_order(times):
             return None
-        return evaluate_columns(
-            self._compiled, columns, times, only=only, engine=engine, until=until
+        blocks = [(times, columns)]
+        return evaluate_blocks(
+            self._compiled, list(columns), blocks, only=only, engine=engine, until=until
         )
 
     def recording(self, trace: Any, *, time: str = "t") -> Recording:

@@ -90,6 +90,18 @@ def _load_and_judge(
     return judge(load(path, const=constants), trace, options)
 
 
+@dataclass(frozen=True, slots=True)
+class _Cut:
+    """The samples of a recording up to an instant; it can be read once."""
+
+    samples: Iterator[Sample]
+    names: frozenset[str] | None
+    end: int | None
+
+    def __iter__(self) -> Iterator[Sample]:
+        return self.samples
+
+
 def judge(spec: Spec, trace: str, options: Options) -> Judged:
     """Judge one recording; if it is broken, what was decided before the break stays decided."""
     before: list[Attempt] = []
@@ -98,11 +110,22 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         recording = FileRecording(trace, spec.schema, ordered=ordered)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
-        monitor = spec.monitor(only=options.only, engine=options.engine, sources=recording.names)
         end = None if options.until is None else ticks_of_seconds(options.until)
-        for sample in _up_to(end, shown_while_reading(recording), ordered=ordered):
-            before.extend(monitor.step_ns(sample.t, sample.values))
-        report = monitor.finish_ns(end)
+        report = None
+        if end is None:
+            report = spec.evaluate_file(trace, engine=options.engine, only=options.only)
+        if report is None:
+            samples = _up_to(end, shown_while_reading(recording), ordered=ordered)
+            if options.engine == "c":
+                cut = _Cut(samples, recording.names, end)
+                report = spec.evaluate(cut, engine="c", only=options.only)
+            else:
+                monitor = spec.monitor(
+                    only=options.only, engine=options.engine, sources=recording.names
+                )
+                for sample in samples:
+                    before.extend(monitor.step_ns(sample.t, sample.values))
+                report = monitor.finish_ns(end)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:

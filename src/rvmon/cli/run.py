@@ -28,8 +28,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "run",
         help="judge recordings by a specification",
-        description="Judge recordings (.csv, .jsonl, or - for JSON lines on standard input) by a "
-        "specification: P passed, F failed, NT not triggered, I inconclusive.",
+        description="Judge recordings (.csv, .jsonl, .parquet, or - for JSON lines on standard "
+        "input) by a specification: P passed, F failed, NT not triggered, I inconclusive.",
         epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
@@ -44,7 +44,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=instant,
         help="judge to T seconds, be it before or after the last sample",
     )
-    parser.add_argument("--engine", default="auto", help="how to judge (default: auto)")
+    parser.add_argument(
+        "--engine",
+        metavar="NAME",
+        default="auto",
+        help="how to judge: auto (default), python, automaton, progression, or c: compiled by the "
+        "C compiler that is installed, without reasons",
+    )
     parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any, assert_never
@@ -11,11 +12,11 @@ import numpy as np
 
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.leaves import reads
-from rvmon.errors import TraceError
 from rvmon.formula.state import Leaf
 from rvmon.monitor.build import build_monitor
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.generated import can_generate, plan_requirements
+from rvmon.readers.ticks import ticks_of_column
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
@@ -33,9 +34,8 @@ from rvmon.spec.checked import (
     TimeModel,
     UpdateValue,
 )
-from rvmon.trace.health import HealthKind
+from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.schema import Kind
-from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ def arrays_of(
             return None
         times = stamps.astype(np.int64, copy=False)
     else:
-        times = _ticks_of_column(stamps)
+        times = ticks_of_column(stamps)
     return times, columns
 
 
@@ -147,10 +147,10 @@ def can_batch(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
     return all(can_generate(one) for one in chosen)
 
 
-def evaluate_columns(
+def evaluate_blocks(
     compiled: CompiledSpec,
-    columns: Columns,
-    times: NDArray[np.int64],
+    names: Sequence[str],
+    blocks: Iterable[tuple[NDArray[np.int64], Columns]],
     *,
     only: Sequence[str] | None,
     engine: str,
@@ -160,26 +160,33 @@ def evaluate_columns(
 
     Args:
         compiled: the specification.
-        columns: declared names only, of equal length: every signal is updated in each row.
-        times: int64[n] ticks, strictly increasing.
+        names: of the columns; declared ones.
+        blocks: instants (int64[n] ticks, strictly increasing throughout) and the columns by name,
+            of equal length: every signal is updated in each row.
         only: ids of the requirements; default all.
         engine: `auto` or the name of one that judges samples.
         until: the end of the trace in ticks, if after its last row.
     """
     chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
-    read = list(columns)
-    monitor = build_monitor(compiled, only=only, engine=engine, sources=frozenset(read))
+    monitor = build_monitor(compiled, only=only, engine=engine, sources=frozenset(names))
     plan = plan_requirements(compiled, chosen)
     step = monitor.step_ns
-    for start in range(0, len(times), CHUNK):
-        rows = _rows_that_matter(plan, columns, times, start, min(start + CHUNK, len(times)))
-        lists = [columns[name][rows].tolist() for name in read]
-        for t, *values in zip(times[rows].tolist(), *lists, strict=True):
-            step(t, dict(zip(read, values, strict=True)))
-    last = int(times[-1]) if len(times) else None
+    unknown: Counter[str] = Counter()
+    last = None
+    for times, columns in blocks:
+        for start in range(0, len(times), CHUNK):
+            stop = min(start + CHUNK, len(times))
+            rows = _rows_that_matter(plan, columns, times, start, stop)
+            lists = [columns[name][rows].tolist() for name in names]
+            for t, *values in zip(times[rows].tolist(), *lists, strict=True):
+                step(t, dict(zip(names, values, strict=True)))
+            for name, column in columns.items():
+                if column.dtype.kind == "f":
+                    unknown[name] += int(np.isnan(column[start:stop]).sum())
+        last = int(times[-1]) if len(times) else last
     if last is not None and until is not None:
         last = max(last, until)
-    return _with_counts(monitor.finish_ns(last), columns)
+    return _with_counts(monitor.finish_ns(last), unknown)
 
 
 def _rows_that_matter(
@@ -220,6 +227,7 @@ def _refreshing(times: NDArray[np.int64], bound: int) -> NDArray[np.bool_]:
     if bound < 2:
         return np.ones(len(times), bool)
     turns = np.diff(times // (bound // 2)) != 0
+    # The last row of a piece is taken, as its first one is: there is no other to compare with.
     return np.concatenate(([True], turns)) | np.concatenate((turns, [True]))
 
 
@@ -295,36 +303,14 @@ def _number(expression: Numeric, columns: Columns) -> Any:
             assert_never(expression)
 
 
-def _with_counts(report: Report, columns: Columns) -> Report:
+def _with_counts(report: Report, unknown: Mapping[str, int]) -> Report:
     """The report with all rows counted at which a signal was not known, not only those judged."""
 
-    def counted() -> Iterator[Any]:
+    def counted() -> Iterator[Health]:
         for entry in report.health:
-            column = columns.get(entry.name)
-            if entry.kind is HealthKind.NAN and column is not None:
-                yield replace(entry, count=int(np.isnan(column).sum()))
+            if entry.kind is HealthKind.NAN and entry.name in unknown:
+                yield replace(entry, count=unknown[entry.name])
             else:
                 yield entry
 
     return replace(report, health=tuple(counted()))
-
-
-def _ticks_of_column(seconds: NDArray[Any]) -> NDArray[np.int64]:
-    """Seconds to ticks, each rounded once as `ticks_of_seconds` does.
-
-    Raises:
-        TraceError: a number is not finite or out of range.
-    """
-    if seconds.dtype.kind == "i" and not (np.abs(seconds) >= 4_600_000_000).any():
-        return seconds.astype(np.int64) * 1_000_000_000
-    values = seconds.astype(np.float64, copy=False)
-    if not np.isfinite(values).all() or (np.abs(values) >= 4.6e9).any():
-        bad = values[~(np.abs(values) < 4.6e9)][0]
-        ticks_of_seconds(float(bad))
-        raise TraceError(f"time {bad} s is out of range")
-    whole = np.floor(values)
-    parts = (values - whole) * 1e9
-    ticks = whole.astype(np.int64) * 1_000_000_000 + np.rint(parts).astype(np.int64)
-    for row in np.flatnonzero(np.abs(parts - np.floor(parts) - 0.5) < 1e-5):
-        ticks[row] = ticks_of_seconds(float(values[row]))
-    return ticks

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -39,10 +39,10 @@ def library_of(compiled: CompiledSpec, only: Sequence[str] | None) -> BatchLibra
     return found
 
 
-def evaluate_arrays(
+def evaluate_c_blocks(
     compiled: CompiledSpec,
-    columns: Mapping[str, NDArray[Any]],
-    times: NDArray[np.int64],
+    names: Sequence[str],
+    blocks: Iterable[tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]],
     *,
     only: Sequence[str] | None,
     until: int | None,
@@ -51,17 +51,18 @@ def evaluate_arrays(
 
     Args:
         compiled: the specification.
-        columns: declared names only, of equal length: every signal is updated in each row, an
-            event occurs where its column is true; NaN is unknown.
-        times: int64[n] ticks.
+        names: of the columns; declared ones.
+        blocks: instants (int64[n] ticks) and the columns by name, of equal length: every signal is
+            updated in each row, an event occurs where its column is true; NaN is unknown.
         only: ids of the requirements; default all.
         until: the end of the trace in ticks, if after its last row.
 
     Raises:
         TimeOrderError: an instant is not after the one before.
     """
-    with _Judging(compiled, only, frozenset(columns)) as judging:
-        judging.take(times, array_columns(compiled.checked, columns))
+    with _Judging(compiled, only, frozenset(names)) as judging:
+        for times, columns in blocks:
+            judging.take(times, array_columns(compiled.checked, columns))
         return judging.report(until)
 
 

@@ -129,25 +129,28 @@ def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
     for column in layout.signals:
         if cell := row[column.index]:
             values[column.name] = _scalar(cell, column)
-    return t, values | _occurrences(row, layout.events)
+    given = [(column, cell) for column in layout.events if (cell := row[column.index])]
+    return t, values | occurrences((column, _scalar(cell, column)) for column, cell in given)
 
 
-def _occurrences(row: list[str], columns: tuple[Column, ...]) -> dict[str, Value]:
-    """Events of a row: an event with a payload cell occurs unless its own cell says false."""
+def occurrences(cells: Iterable[tuple[Column, Scalar]]) -> dict[str, Value]:
+    """Events of a row: an event with a payload cell occurs unless its own cell says false.
+
+    Args:
+        cells: those that say something, of the columns of events and of their fields.
+    """
     flags: dict[str, Scalar] = {}
     payloads: dict[str, dict[str, Scalar]] = {}
-    for column in columns:
-        if cell := row[column.index]:
-            value = _scalar(cell, column)
-            if column.field is None:
-                flags[column.name] = value
-            else:
-                payloads.setdefault(column.name, {})[column.field] = value
-    occurrences: dict[str, Value] = dict(flags)
-    occurrences.update(
+    for column, value in cells:
+        if column.field is None:
+            flags[column.name] = value
+        else:
+            payloads.setdefault(column.name, {})[column.field] = value
+    found: dict[str, Value] = dict(flags)
+    found.update(
         (name, payload) for name, payload in payloads.items() if flags.get(name) is not False
     )
-    return occurrences
+    return found
 
 
 def _scalar(cell: str, column: Column) -> Scalar:

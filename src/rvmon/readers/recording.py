@@ -13,17 +13,18 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.jsonl_rows import jsonl_samples
+from rvmon.readers.parquet import parquet_layout, parquet_samples
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import format_ticks
 
-FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl"}
+FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet"}
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
 
 
 class FileRecording:
-    """A CSV or JSON-lines file, read as a stream: memory does not grow with its length.
+    """A CSV, JSON-lines or Parquet file, read as a stream: memory does not grow with its length.
 
     Attributes:
         path: the file, `-` for standard input.
@@ -37,7 +38,7 @@ class FileRecording:
         """Open the recording and read its header.
 
         Args:
-            path: a `.csv`, `.jsonl` or `.ndjson` file, or `-`.
+            path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`.
             schema: the names that the spec declares.
             ordered: whether a stamp before the one above it is an error; not so under `max delay`.
 
@@ -55,8 +56,14 @@ class FileRecording:
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
                 layout = self._layout(split_lines(text))
-            self.names = layout.names
-            self._ignored.update(dict.fromkeys(layout.ignored, 1))
+            self._take_names(layout)
+        elif self._format == "parquet":
+            with self._named_errors():
+                self._take_names(parquet_layout(self.path, schema))
+
+    def _take_names(self, layout: Layout) -> None:
+        self.names = layout.names
+        self._ignored.update(dict.fromkeys(layout.ignored, 1))
 
     def __iter__(self) -> Iterator[Sample]:
         """Samples in order of the file, equal stamps merged.
@@ -64,14 +71,20 @@ class FileRecording:
         Raises:
             TraceError: with file and line; the samples before it have been given out.
         """
+        if self._format == "parquet":
+            with self._named_errors():
+                yield from self._merged(parquet_samples(self.path, self._schema))
+            return
         with self._text() as text:
             self._open_text = text
             if self._format == "csv":
                 rows = split_lines(text)
-                lines = csv_samples(rows, self._layout(rows))
+                yield from self._merged(csv_samples(rows, self._layout(rows)))
             else:
-                lines = jsonl_samples(text, self._schema, self._ignored)
-            yield from coalesce(self._in_order(lines), self._schema.events, self._conflicts)
+                yield from self._merged(jsonl_samples(text, self._schema, self._ignored))
+
+    def _merged(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
+        return coalesce(self._in_order(lines), self._schema.events, self._conflicts)
 
     @property
     def fraction_read(self) -> float:
@@ -90,10 +103,11 @@ class FileRecording:
 
     def _in_order(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
         last: int | None = None
+        unit = "row" if self._format == "parquet" else "line"
         for line, t, values in lines:
             if self._ordered and last is not None and t < last:
                 raise TimeOrderError(
-                    f"line {line}: time goes backwards, from {format_ticks(last)} to "
+                    f"{unit} {line}: time goes backwards, from {format_ticks(last)} to "
                     f"{format_ticks(t)}: sort the recording by time, or allow for late samples "
                     "with `max delay` in the spec"
                 )
@@ -113,12 +127,18 @@ class FileRecording:
     @contextmanager
     def _text(self) -> Iterator[TextIO]:
         """The open text; errors inside are given the file's name."""
-        try:
+        with self._named_errors():
             if self.path == "-":
                 yield sys.stdin
             else:
                 with open(self.path, encoding="utf-8", newline="") as text:
                     yield text
+
+    @contextmanager
+    def _named_errors(self) -> Iterator[None]:
+        """Errors inside are given the file's name."""
+        try:
+            yield
         except UnicodeDecodeError as error:
             raise TraceError(
                 f"{self.path}: not UTF-8 text ({error.reason} at byte {error.start}): "

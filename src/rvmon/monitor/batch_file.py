@@ -1,0 +1,60 @@
+"""Recordings on disk judged by their columns, a block at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import chain
+from pathlib import Path
+
+from rvmon.monitor.batch import can_batch, evaluate_blocks
+from rvmon.monitor.batch_c import evaluate_c_blocks
+from rvmon.monitor.compiled import CompiledSpec
+from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.csv_blocks import csv_blocks
+from rvmon.readers.parquet import parquet_blocks
+from rvmon.trace.schema import Schema
+from rvmon.verdict.report import Report
+
+READERS: Mapping[str, Callable[[str | Path, Schema], Iterator[Block]]] = {
+    ".csv": csv_blocks,
+    ".parquet": parquet_blocks,
+}
+"""By ending of the file's name."""
+
+
+def evaluate_file(
+    compiled: CompiledSpec,
+    schema: Schema,
+    path: str | Path,
+    *,
+    only: Sequence[str] | None,
+    engine: str,
+    until: int | None = None,
+) -> Report | None:
+    """Judge a recording by its columns; memory does not grow with its length.
+
+    Args:
+        compiled: the specification.
+        schema: its names.
+        path: of the recording.
+        only: ids of the requirements; default all.
+        engine: `auto`, `c` or the name of one that judges samples.
+        until: the end of the trace in ticks, if after its last row.
+
+    Returns:
+        `None` where rows have to be read and judged one by one: the file is not plain, or each row
+        may matter.
+    """
+    reader = READERS.get(Path(path).suffix.lower())
+    if reader is None or (engine != "c" and not can_batch(compiled, only)):
+        return None
+    blocks = reader(path, schema)
+    try:
+        first = next(blocks)
+        names = list(first.columns)
+        pairs = ((block.times, block.columns) for block in chain([first], blocks))
+        if engine == "c":
+            return evaluate_c_blocks(compiled, names, pairs, only=only, until=until)
+        return evaluate_blocks(compiled, names, pairs, only=only, engine=engine, until=until)
+    except (NotPlainError, StopIteration):
+        return None

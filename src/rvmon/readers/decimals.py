@@ -1,0 +1,124 @@
+"""Many cells of text as numbers at once, exactly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_DIGITS = 15
+"""So many digits and their power of ten are exact doubles: the quotient is rounded once."""
+
+_POWERS = 10.0 ** np.arange(_DIGITS + 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """Cells of a text.
+
+    Attributes:
+        text: uint8[…], all of it.
+        starts: int64[n], where each cell begins.
+        ends: int64[n], behind its last character.
+    """
+
+    text: NDArray[np.uint8]
+    starts: NDArray[np.int64]
+    ends: NDArray[np.int64]
+
+
+def whole_numbers(cells: Cells) -> NDArray[np.int64] | None:
+    """The cells as integers; `None` if one is none, or has more than 18 digits.
+
+    >>> text = np.frombuffer(b"12,-7", np.uint8)
+    >>> whole_numbers(Cells(text, np.array([0, 3]), np.array([2, 5]))).tolist()
+    [12, -7]
+    """
+    read = _mantissas(cells, 18)
+    if read is None or read[1].any():
+        return None
+    return read[0]
+
+
+def decimals(cells: Cells) -> NDArray[np.float64] | None:
+    """The cells as doubles; `None` if one is no plain decimal of at most 15 digits.
+
+    >>> text = np.frombuffer(b"0.5,-12", np.uint8)
+    >>> decimals(Cells(text, np.array([0, 4]), np.array([3, 7]))).tolist()
+    [0.5, -12.0]
+    """
+    read = _mantissas(cells, _DIGITS)
+    if read is None:
+        return None
+    mantissa, behind = read
+    made: NDArray[np.float64] = mantissa / _POWERS[behind]
+    # An integer has no negative zero.
+    minus = cells.text[cells.starts] == ord("-")
+    return np.where(minus & (mantissa == 0), -0.0, made)
+
+
+def nanoseconds(cells: Cells) -> NDArray[np.int64] | None:
+    """Cells of decimal seconds as ticks; `None` if one has more than 9 digits behind the point.
+
+    >>> text = np.frombuffer(b"0.5,12", np.uint8)
+    >>> nanoseconds(Cells(text, np.array([0, 4]), np.array([3, 6]))).tolist()
+    [500000000, 12000000000]
+    """
+    read = _mantissas(cells, 18)
+    if read is None:
+        return None
+    mantissa, behind = read
+    if (behind > 9).any():
+        return None
+    factor = 10 ** (9 - behind)
+    if (np.abs(mantissa) > (1 << 62) // factor).any():
+        return None
+    ticks: NDArray[np.int64] = mantissa * factor
+    return ticks
+
+
+def truth_values(cells: Cells) -> NDArray[np.bool_] | None:
+    """The cells as truth values; `None` if one is neither 0 nor 1."""
+    first = cells.text[cells.starts]
+    if ((cells.ends - cells.starts) != 1).any() or ((first | 1) != ord("1")).any():
+        return None
+    ones: NDArray[np.bool_] = first == ord("1")
+    return ones
+
+
+def _mantissas(cells: Cells, most: int) -> tuple[NDArray[np.int64], NDArray[Any]] | None:
+    """The digits of each cell as an integer, and how many stand behind the point."""
+    text, starts = cells.text, cells.starts
+    first = text[starts]
+    signed = (first == ord("-")) | (first == ord("+"))
+    begins = starts + signed
+    lengths = cells.ends - begins
+    if not len(lengths) or lengths.min() < 1 or lengths.max() > most + 1:
+        return None
+    mantissa = np.zeros(len(starts), np.int64)
+    behind = np.zeros(len(starts), np.int64)
+    pointed = np.zeros(len(starts), bool)
+    power = np.ones(len(starts), np.int64)
+    for place in range(int(lengths.max())):
+        at = cells.ends - 1 - place
+        inside = at >= begins
+        character = np.where(inside, text[at], ord("0"))
+        digit = character - np.uint8(ord("0"))
+        point = character == ord(".")
+        if point.any():
+            if (point & (pointed | (lengths == 1))).any():
+                return None
+            behind[point] = place
+            pointed |= point
+            digit[point] = 0
+        if (digit > 9).any():
+            return None
+        mantissa += digit * power
+        power *= np.where(point, 1, 10)
+    if ((lengths - pointed) > most).any():
+        return None
+    return np.where(first == ord("-"), -mantissa, mantissa), behind

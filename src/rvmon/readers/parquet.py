@@ -1,0 +1,146 @@
+"""Parquet: a time column `t` or `t_ns`, a column per signal, event or payload field, as in CSV.
+
+Needs pyarrow, the extra `arrow`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rvmon.errors import RvmonError, TraceError
+from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.csv_rows import Column, Layout, occurrences, read_layout
+from rvmon.trace.sample import Value
+from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+ROWS = 1 << 16
+"""Rows that are in memory at a time."""
+
+_FITTING = {Kind.BOOL: "b", Kind.INT: "i", Kind.REAL: "fi"}
+
+
+def _opened(path: str | Path) -> Any:
+    """The file.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: it is no Parquet file.
+    """
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        raise RvmonError(
+            "Parquet needs pyarrow, which is not installed: pip install 'rvmon[arrow]'"
+        ) from None
+    try:
+        return pyarrow.parquet.ParquetFile(path)
+    except pyarrow.ArrowInvalid as error:
+        raise TraceError(f"not a Parquet file ({str(error).splitlines()[0]})") from None
+
+
+def parquet_layout(path: str | Path, schema: Schema) -> Layout:
+    """What the file's columns are.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: it is no Parquet file, or has no time column or two.
+    """
+    return read_layout(list(_opened(path).schema_arrow.names), schema)
+
+
+def parquet_blocks(path: str | Path, schema: Schema) -> Iterator[Block]:
+    """Read a file whose columns are whole.
+
+    Args:
+        path: of the file.
+        schema: the declared names.
+
+    Raises:
+        NotPlainError: there are gaps, payloads or labels, or the instants do not increase.
+    """
+    import numpy as np
+
+    from rvmon.readers.ticks import ticks_of_column
+
+    layout = _layout_or_not_plain(path, schema)
+    columns = (*layout.signals, *layout.events)
+    if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
+        raise NotPlainError
+    stamp = "t_ns" if layout.in_ticks else "t"
+    last = -TIME_LIMIT
+    for batch in _opened(path).iter_batches(ROWS, columns=[stamp, *(c.name for c in columns)]):
+        stamps = _array(batch, stamp, "i" if layout.in_ticks else "fi")
+        times = stamps.astype(np.int64, copy=False) if layout.in_ticks else ticks_of_column(stamps)
+        if not len(times) or times[0] <= last or not (times[1:] > times[:-1]).all():
+            raise NotPlainError
+        last = int(times[-1])
+        if last >= TIME_LIMIT:
+            raise NotPlainError
+        yield Block(times, {c.name: _array(batch, c.name, _FITTING[c.kind]) for c in columns})
+
+
+def _layout_or_not_plain(path: str | Path, schema: Schema) -> Layout:
+    try:
+        return parquet_layout(path, schema)
+    except TraceError:
+        raise NotPlainError from None
+
+
+def _array(batch: Any, name: str, kinds: str) -> NDArray[Any]:
+    column = batch.column(name)
+    if column.null_count:
+        raise NotPlainError
+    array: NDArray[Any] = column.to_numpy(zero_copy_only=False)
+    if array.dtype.kind not in kinds:
+        raise NotPlainError
+    return array
+
+
+def parquet_samples(
+    path: str | Path, schema: Schema
+) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
+    """Row number from 1, ticks and values of each row; a null is no update.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: with the row's number.
+    """
+    layout = parquet_layout(path, schema)
+    stamp = "t_ns" if layout.in_ticks else "t"
+    columns = (*layout.signals, *layout.events)
+    names = [stamp, *(_called(column) for column in columns)]
+    row = 0
+    for batch in _opened(path).iter_batches(ROWS, columns=names):
+        for cells in batch.to_pylist():
+            row += 1
+            yield row, _ticks(cells[stamp], row, in_ticks=layout.in_ticks), _values(cells, layout)
+
+
+def _called(column: Column) -> str:
+    return column.name if column.field is None else f"{column.name}.{column.field}"
+
+
+def _values(cells: Mapping[str, Any], layout: Layout) -> dict[str, Value]:
+    given = {
+        column.name: cells[column.name]
+        for column in layout.signals
+        if cells[column.name] is not None
+    }
+    found = [(column, cells[_called(column)]) for column in layout.events]
+    return given | occurrences((column, value) for column, value in found if value is not None)
+
+
+def _ticks(stamp: Any, row: int, *, in_ticks: bool) -> int:
+    if in_ticks and isinstance(stamp, int):
+        return stamp
+    if not in_ticks and isinstance(stamp, int | float):
+        return ticks_of_seconds(stamp)
+    wanted = "a whole number of nanoseconds" if in_ticks else "a number of seconds"
+    raise TraceError(f"row {row}: time `{stamp}` is not {wanted}")

@@ -1,0 +1,158 @@
+"""Files read by columns: the same report as row by row, or not at all."""
+
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.readers import csv_blocks as module
+from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.csv_blocks import csv_blocks
+from rvmon.readers.decimals import Cells, decimals, nanoseconds, whole_numbers
+from rvmon.trace.time import ticks_of_text
+
+SPEC = """
+spec watch "A base"
+time {time}
+signal p : bool
+signal speed : real  {stale}
+signal count : int
+event stop
+requirement R1 "a"
+  upon stop
+  then within 1 s speed < 0.2
+requirement R2 "b"
+  whenever p and once[100 ms, 900 ms] count > 2
+  then within 700 ms speed * 2 + 1 < 1.5
+requirement R3 "c"
+  always (count >= 3 -> within 1 s (count < 1 or stop))
+"""
+
+
+def csv_text(seed: int, rows: int = 2000) -> str:
+    """A plain file: every cell is filled."""
+    dice = random.Random(seed)
+    t, speed, p, count = 0, 0.3, False, 0
+    lines = ["t,ignored,speed,p,stop,count"]
+    for _ in range(rows):
+        t += dice.choice([1, 50_000_000, 49_999_999, 600_000_000])
+        speed += dice.choice([0, 0, 0.01, -0.01])
+        p ^= dice.random() < 0.05
+        count = dice.randrange(5) if dice.random() < 0.1 else count
+        stop = int(dice.random() < 0.02)
+        lines.append(f"{t // 10**9}.{t % 10**9:09d},7,{speed:.3f},{p:d},{stop},{count}")
+    return "\n".join(lines) + "\n"
+
+
+def by_rows(spec: rvmon.Spec, path: Path) -> rvmon.Report:
+    """The report of the slow way."""
+    recording = spec.recording(path)
+    monitor = spec.monitor(sources=recording.names)
+    for sample in recording:
+        monitor.step_ns(sample.t, sample.values)
+    return monitor.finish_ns(None)
+
+
+@pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
+@pytest.mark.parametrize("time", ["held", "sampled every 20 ms"])
+def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
+    """Verdicts, records, reasons and health are the same, wherever a block ends."""
+    monkeypatch.setattr(module, "BLOCK", 1999)
+    (tmp_path / "a.csv").write_text(csv_text(1).replace("\n", "\r\n"))
+    spec = rvmon.loads(SPEC.format(time=time, stale=stale))
+    report = spec.evaluate_file(tmp_path / "a.csv")
+    assert report == by_rows(spec, tmp_path / "a.csv")
+    assert spec.evaluate(tmp_path / "a.csv") == report
+    assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
+
+
+@pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
+def test_parquet_says_what_csv_says(time, tmp_path):
+    """The same recording as Parquet, whole and with gaps and payloads."""
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import csv, parquet
+
+    (tmp_path / "a.csv").write_text(csv_text(2))
+    types = {"p": pyarrow.bool_(), "stop": pyarrow.bool_(), "t": pyarrow.float64()}
+    table = csv.read_csv(tmp_path / "a.csv", convert_options=csv.ConvertOptions(column_types=types))
+    parquet.write_table(table, tmp_path / "a.parquet", row_group_size=700)
+    spec = rvmon.loads(SPEC.format(time=time, stale=""))
+    expected = by_rows(spec, tmp_path / "a.csv")
+    assert spec.evaluate(tmp_path / "a.parquet") == expected
+    assert by_rows(spec, tmp_path / "a.parquet") == expected
+    gaps = table.set_column(2, "speed", pyarrow.array([0.1, None] * 1000))
+    parquet.write_table(gaps, tmp_path / "gaps.parquet")
+    assert spec.evaluate_file(tmp_path / "gaps.parquet") is None
+    report = spec.evaluate(tmp_path / "gaps.parquet")
+    assert report.verdicts["R1"] == "P"
+
+
+def test_what_is_no_parquet_file_is_refused_with_its_name(tmp_path):
+    """The message names the file and what is wrong with it."""
+    pytest.importorskip("pyarrow")
+    (tmp_path / "a.parquet").write_text("t,p\n")
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    with pytest.raises(rvmon.TraceError, match=r"a\.parquet: not a Parquet file"):
+        spec.evaluate(tmp_path / "a.parquet")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,p\n",
+        "",
+        "p,q\n1,0\n",
+        "t,p\n1,1\n0,1\n",
+        "t,p\n1,1\n1,0\n",
+        "t,p\n1,true\n",
+        "t,p\n1,\n",
+        "t,p\n1\n",
+        "t,p\n1,1,1\n",
+        't,p\n1,"1"\n',
+        "t,p\n 1,1\n",
+        "t,p\nsoon,1\n",
+        "t,p\n1e3,1\n",
+        "t,speed\n1,nan\n",
+        "t,speed\n1,0.12345678901234567\n",
+        "t,speed\n1,.\n",
+        "t,speed\n1,1.2.3\n",
+        "t,count\n1,1.5\n",
+        "t,count\n1,-\n",
+        "t,x\n1,é\n",
+        "t_ns,p\n9223372036854775807,1\n",
+    ],
+)
+def test_what_is_not_plain_is_left_to_the_other_way(text, tmp_path):
+    """Nothing odd is read by columns: whoever reads rows says what is wrong, or reads it."""
+    (tmp_path / "a.csv").write_text(text)
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    with pytest.raises(NotPlainError):
+        list(csv_blocks(tmp_path / "a.csv", spec.schema))
+    assert spec.evaluate_file(tmp_path / "a.csv") is None
+
+
+def cells(texts: list[str]) -> Cells:
+    ends = np.cumsum([len(text) for text in texts])
+    joined = np.frombuffer("".join(texts).encode(), np.uint8)
+    return Cells(joined, ends - [len(text) for text in texts], ends)
+
+
+def test_numbers_are_exact():
+    """Decimals are the nearest doubles, seconds the nearest ticks, as read one by one."""
+    dice = random.Random(3)
+    texts = ["0", "-0", "+5", "-0.0", ".5", "5.", "000.250", "999999999999999", "-1.000000001"]
+    for _ in range(500):
+        whole, part = dice.randrange(10 ** dice.randint(1, 6)), dice.randint(0, 9)
+        behind = f".{dice.randrange(10**part):0{part}d}" if part else ""
+        texts.append(f"{dice.choice(['', '-', '+'])}{whole}{behind}")
+    read = decimals(cells(texts))
+    assert read is not None
+    assert [repr(x) for x in read.tolist()] == [repr(float(text)) for text in texts]
+    texts.remove("999999999999999")
+    ticks = nanoseconds(cells(texts))
+    assert ticks is not None
+    assert ticks.tolist() == [ticks_of_text(text) for text in texts]
+    numbers = ["0", "-7", "+12", "123456789012345678"]
+    assert whole_numbers(cells(numbers)).tolist() == [int(text) for text in numbers]
