@@ -2,101 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
-from rvmon.spec.checked import (
-    Binary,
-    CheckedSpec,
-    Formula,
-    Interval,
-    Unary,
-    UpdateFunction,
-    UpdateValue,
-)
+from rvmon.spec.checked import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
 from rvmon.testing.drive import drive
 from rvmon.testing.generate_spec import Profile
+from rvmon.testing.scale import compact, in_units, scaled
 from rvmon.testing.strategies import cases
 from rvmon.testing.walk import numerics
-from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 
 SPARSE = 1_000
 """So many ticks between any two instants that differ: one tick more never meets another."""
 
 FURTHER = 1_000_000
-
-
-def scaled(case: Case, factor: int) -> Case:
-    """All durations and stamps, so many times longer."""
-    return Case(
-        _spec(case.spec, factor),
-        tuple(
-            replace(action, t=action.t * factor) if isinstance(action, Sample) else action * factor
-            for action in case.actions
-        ),
-        None if case.end is None else case.end * factor,
-        case.names,
-    )
-
-
-def _spec(spec: CheckedSpec, factor: int) -> CheckedSpec:
-    return replace(
-        spec,
-        period=None if spec.period is None else spec.period * factor,
-        signals={
-            name: signal
-            if signal.stale_after is None
-            else replace(signal, stale_after=signal.stale_after * factor)
-            for name, signal in spec.signals.items()
-        },
-        requirements={
-            name: replace(
-                owed,
-                trigger=_formula(owed.trigger, factor),
-                consequent=_formula(owed.consequent, factor),
-            )
-            for name, owed in spec.requirements.items()
-        },
-    )
-
-
-def _formula(formula: Formula, factor: int) -> Formula:
-    match formula:
-        case Unary(operand=operand, interval=window):
-            operand = _formula(operand, factor)
-            return replace(formula, operand=operand, interval=_window(window, factor))
-        case Binary(left=left, right=right, interval=window):
-            left, right = _formula(left, factor), _formula(right, factor)
-            return replace(formula, left=left, right=right, interval=_window(window, factor))
-        case _:
-            return formula
-
-
-def _window(window: Interval | None, factor: int) -> Interval | None:
-    if window is None:
-        return None
-    return Interval(window.low * factor, None if window.high is None else window.high * factor)
-
-
-def in_units(report: Report, unit: int) -> list[tuple[object, ...]]:
-    """The attempts with each instant as whole units and the ticks beside them."""
-
-    def split(instant: int | None) -> tuple[int, int] | None:
-        if instant is None:
-            return None
-        whole = (instant + unit // 2) // unit
-        return whole, instant - whole * unit
-
-    return [
-        (a.requirement, a.number, split(a.triggered), split(a.decided), a.verdict, a.decision)
-        for a in report.attempts
-    ]
 
 
 @settings(max_examples=60, deadline=None)
@@ -124,3 +47,16 @@ def by_automaton(case: Case) -> Report:
 
 def _numbers(formula: Formula) -> list[UpdateFunction]:
     return [part.function for part in numerics(formula) if isinstance(part, UpdateValue)]
+
+
+@settings(max_examples=80, deadline=None)
+@given(data=st.data())
+def test_a_case_made_compact_is_judged_the_same(data: st.DataObject) -> None:
+    """Brought to few ticks, a case has the same attempts, at the same instants and ticks."""
+    case = scaled(data.draw(cases(Profile(mixed=False, requirements=1))), SPARSE)
+    small = compact(case)
+    assume(small is not None)
+    assert small is not None
+    assert small.unit <= small.grain
+    wanted = in_units(by_automaton(case), small.grain, small.origin)
+    assert in_units(by_automaton(small.case), small.unit) == wanted
