@@ -14,7 +14,6 @@ from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
     from rvmon.timed.model import Network
-    from rvmon.timed.observation import Observation
     from rvmon.timed.outcome import Outcome
     from rvmon.timed.search import Budget, Watch
 
@@ -97,7 +96,10 @@ def run(arguments: argparse.Namespace) -> int:
     _show_warnings(network)
     budget = Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
     if arguments.spec is not None:
-        return _check_spec(network, arguments, budget)
+        from rvmon.cli.verify_spec import check_spec
+
+        with _shown() as watch:
+            return check_spec(network, arguments, budget, watch)
     if arguments.suite is not None:
         return _show_suite(network, arguments, budget)
     if arguments.simulate is not None:
@@ -181,53 +183,6 @@ def _print_json(network: Network, outcomes: Sequence[Outcome]) -> None:
     from rvmon.timed.describe import outcome_data
 
     print(json.dumps({"queries": [outcome_data(network, o) for o in outcomes]}, indent=2))
-
-
-# A specification.
-
-
-def _check_spec(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
-    from rvmon.session import load
-    from rvmon.timed.describe import observation_data
-    from rvmon.timed.observe import observe
-
-    spec = load(arguments.spec)
-    bindings = dict(_binding(text) for text in arguments.bind)
-    observations = []
-    with _shown() as watch:
-        for one in observe(network, spec.checked, bindings=bindings, budget=budget, watch=watch):
-            observations.append(one)
-            if arguments.format == "text":
-                _print_observation(one)
-    if arguments.format == "json":
-        print(json.dumps({"requirements": [observation_data(o) for o in observations]}, indent=2))
-    return int(any(not one.holds for one in observations))
-
-
-def _binding(text: str) -> tuple[str, str]:
-    name, _, value = text.partition("=")
-    if not name.strip() or not value.strip():
-        raise RvmonError(f"--bind {text}: expected NAME=EXPRESSION, such as 'open=Door.open'")
-    return name.strip(), value.strip()
-
-
-def _print_observation(one: Observation) -> None:
-    from rvmon.timed.describe import run_lines
-
-    word = {True: "holds on all runs", False: "fails on some run", None: "not decided"}[one.holds]
-    print(
-        f"{one.requirement}: {word}; {one.remark}" if one.remark else f"{one.requirement}: {word}"
-    )
-    if one.text:
-        print(f'    "{one.text}"')
-    print(f"    {one.statistics.visited:,} states, {one.statistics.seconds:.2f} s")
-    named = (("triggered", one.triggered), ("passes", one.passing), ("fails", one.failing))
-    for name, shown in named:
-        if shown is not None:
-            print(f"    {name}:")
-            for line in run_lines(one.network, shown):
-                print(f"      {line}")
-    print(flush=True)
 
 
 # Suites and simulation.

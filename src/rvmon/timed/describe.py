@@ -17,7 +17,7 @@ from rvmon.trace.time import TICKS_PER_SECOND
 def action_text(network: Network, action: Action | None) -> str:
     """The edges of an action, each with its automaton; the sender first."""
     if action is None:
-        return "(nothing is done)"
+        return "(time passes)"
     return ", ".join(f"{network.automata[a].name}: {edge.text}" for a, edge in action.edges)
 
 

@@ -89,7 +89,7 @@ def _observe(
     factory = Factory()
     obligation = lower(requirement, factory)
     alphabet = alphabet_of(obligation.owed)
-    letters = Letters(_signals(network), frozenset(labels_of(network)))
+    letters = Letters(signals_of(network), frozenset(labels_of(network)))
     trigger = obligation.trigger
     if trigger is None:
         raise NotExpressibleError("it is judged at the end of a trace")
@@ -139,7 +139,7 @@ def _observe(
     )
 
 
-def _signals(network: Network) -> dict[str, Evaluator]:
+def signals_of(network: Network) -> dict[str, Evaluator]:
     """How specifications' names are read off the network; its own variables come last."""
     signals = {}
     for name, symbol in network.names.top.symbols.items():

@@ -1,11 +1,14 @@
-"""Recordings as the actions that a network knows."""
+"""Recordings as the actions that a network knows, and runs of it as recordings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
 
 from rvmon.timed.conformance import Recorded
+from rvmon.timed.evaluate import Evaluator
 from rvmon.timed.model import Network
+from rvmon.timed.run import Action, Position, Run
 from rvmon.trace.sample import Sample
 
 
@@ -45,3 +48,39 @@ def actions_in(
         ]
     length = 0 if first is None or last is None else last - first
     return actions, length, frozenset(action.label for action in actions)
+
+
+def recording_of(
+    network: Network, run: Run, signals: Mapping[str, Evaluator]
+) -> tuple[list[Sample], int]:
+    """A run as it would be recorded: its signals at each action, the actions' labels as events.
+
+    Args:
+        network: with a unit of time.
+        run: of the network.
+        signals: how each is read off locations and variables.
+
+    Returns:
+        The samples, actions at one instant in one of them; the instant at which the run ends.
+    """
+
+    def read(position: Position) -> dict[str, int]:
+        return {n: value(position.locations, position.values) for n, value in signals.items()}
+
+    unit, now = network.unit or 1, Fraction(0)
+    samples: dict[int, dict[str, int | bool]] = {0: {**read(run.start)}}
+    for step in run.steps:
+        now += step.delay
+        if step.action is not None:
+            label = _label(network, step.action)
+            at = samples.setdefault(round(now * unit), {})
+            at.update(read(step.position) | ({label: True} if label else {}))
+    return [Sample(t, values) for t, values in samples.items()], round(now * unit)
+
+
+def _label(network: Network, action: Action) -> str:
+    for _, edge in action.edges:
+        if edge.label:
+            return edge.label
+    sync = action.edges[0][1].sync
+    return _channel_name(network, sync.slot.first) if sync is not None else ""

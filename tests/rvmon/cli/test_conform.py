@@ -24,6 +24,8 @@ def folder(tmp_path):
     """A model with a recording that conforms and one that does not."""
     (tmp_path / "lamp.ta").write_text(MODEL)
     (tmp_path / "good.csv").write_text("t,pressed,dark\n10,0,0\n12,1,\n16,,1\n")
+    (tmp_path / "text.csv").write_text("t,text\n0,hello\n1,there\n")
+    (tmp_path / "text.jsonl").write_text('{"t": 0, "text": "hello"}\n')
     (tmp_path / "bad.csv").write_text("t,pressed,dark\n10,0,0\n12,1,\n18,,1\n")
     return tmp_path
 
@@ -69,12 +71,39 @@ def test_tolerance_and_end(folder):
         (["good.csv", "--observe", "light"], "no label `light`"),
         (["good.csv", "--tolerance", "-1"], "at least 0"),
         (["missing.csv"], "missing.csv"),
+        (["text.csv"], "nothing in it is an action of the model: its actions are pressed, dark"),
+        (["text.jsonl"], "nothing in it is an action of the model"),
+        (["text.csv", "--observe", "dark"], "no column `dark`"),
+        (["good.csv", "--until", "-1"], "at least 0"),
+        (["good.csv", "--until", "inf"], "a time in seconds"),
+        (["good.csv", "--tolerance", "nan"], "a time in seconds"),
     ],
 )
 def test_wrong_input_exits_with_2(folder, arguments, message, capsys):
     """Unknown labels, senseless tolerances and missing files are said, without a traceback."""
-    words = [str(folder / a) if a.endswith(".csv") else a for a in arguments]
+    words = [str(folder / a) if a.endswith(("csv", "jsonl")) else a for a in arguments]
     assert main(["conform", str(folder / "lamp.ta"), *words]) == 2
     error = capsys.readouterr().err
     assert message in error
     assert "Traceback" not in error
+
+
+def test_a_broken_recording_does_not_hide_the_others(folder, capsys):
+    """The others are compared, and the exit code is that of wrong input."""
+    files = [str(folder / name) for name in ("lamp.ta", "text.csv", "good.csv")]
+    assert main(["conform", *files]) == 2
+    assert "good.csv: conforms" in capsys.readouterr().out
+
+
+def test_an_empty_recording_may_be_a_quiet_run(folder, capsys):
+    """Who says what would be seen may have a recording in which nothing of it is."""
+    words = [str(folder / "lamp.ta"), str(folder / "text.jsonl"), "--observe", "pressed"]
+    assert main(["conform", *words]) == 0
+    assert "conforms; 0 actions explained" in capsys.readouterr().out
+
+
+def test_until_may_cut_a_recording(folder, capsys):
+    """What comes after the given end is not compared."""
+    words = [str(folder / "lamp.ta"), str(folder / "bad.csv"), "--until", "6"]
+    assert main(["conform", *words]) == 0
+    assert "conforms; 1 action explained" in capsys.readouterr().out

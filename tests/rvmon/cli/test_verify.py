@@ -1,6 +1,7 @@
 """`rvmon verify` prints answers for people and programs, and exits accordingly."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,19 @@ def test_the_run_is_shown_in_seconds(tmp_path, capsys):
         ([str(MODELS / "bridge.ta"), "--query", "Torch.one"], "a query speaks of runs"),
         ([str(MODELS / "fischer.ta"), "--const", "N"], "expected NAME=NUMBER"),
         ([str(MODELS / "fischer.ta"), "--const", "M=2"], "no constant `M`"),
+        ([str(MODELS / "fischer.ta"), "--const", "N=" + "9" * 5000], "expected NAME=NUMBER"),
+        ([str(MODELS / "bridge.ta"), "--max-states", "0"], "at least 1"),
+        ([str(MODELS / "bridge.ta"), "--max-states", "-1"], "at least 1"),
+        ([str(MODELS / "bridge.ta"), "--max-memory", "0"], "at least 1"),
+        ([str(MODELS / "bridge.ta"), "--max-seconds", "nan"], "a time in seconds"),
+        ([str(MODELS / "bridge.ta"), "--max-seconds", "-1"], "at least 0"),
+        ([str(MODELS / "bridge.ta"), "--simulate", "0"], "at least 1"),
+        ([str(MODELS / "bridge.ta"), "--spec", "a.rv", "--suite", "edges"], "not allowed with"),
+        ([str(MODELS / "bridge.ta"), "--suite", "edges", "--query", "over"], "does nothing"),
+        ([str(MODELS / "bridge.ta"), "--bind", "a=b"], "does nothing without --spec"),
+        ([str(MODELS / "bridge.ta"), "--until", "3"], "does nothing without --simulate"),
+        ([str(MODELS / "bridge.ta"), "--export", "bridge.png"], "end the name in .xml"),
+        ([str(MODELS / "bridge.ta"), "--export", "/nowhere/bridge.xml"], "No such file"),
     ],
 )
 def test_wrong_input_exits_with_2(arguments, message, capsys):
@@ -146,4 +160,42 @@ def test_simulation(lamp, capsys):
     assert main([*words, "--format", "json"]) == 0
     (answer,) = json.loads(capsys.readouterr().out)["simulated"]
     assert answer["low"] <= answer["share"] <= answer["high"]
-    assert main(["verify", model, "--simulate", "0"]) == 2
+
+
+@pytest.mark.parametrize("ending", ["xml", "dot", "svg"])
+def test_export(lamp, ending, tmp_path):
+    """The model is written for UPPAAL, from where it comes back, or drawn."""
+    if ending == "svg" and shutil.which("dot") is None:
+        pytest.skip("Graphviz's program dot is not installed")
+    path = tmp_path / f"lamp.{ending}"
+    assert main(["verify", lamp[0], "--export", str(path)]) == 0
+    text = path.read_text(encoding="utf-8")
+    assert "Lamp" in text
+    if ending == "xml":
+        assert main(["verify", str(path), "--query", "E<> Lamp.on"]) == 0
+    if ending == "svg":
+        assert text.count("<path") >= 4
+
+
+def test_a_drawing_needs_graphviz(lamp, tmp_path, monkeypatch, capsys):
+    """Without Graphviz the message says what to install, or to write DOT instead."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["verify", lamp[0], "--export", str(tmp_path / "lamp.svg")]) == 2
+    assert "install Graphviz" in capsys.readouterr().err
+
+
+def test_runs_are_drawn_as_timelines(lamp, capsys):
+    """What a requirement reads along each run stands below it, judged as a recording would be."""
+    model, spec = lamp
+    assert main(["verify", model, "--spec", spec, "--bind", "lit=Lamp.on"]) == 1
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    drawn = [line.split() for line in lines if line.startswith(("OK ", "BAD "))]
+    assert [line[-1] for line in drawn] == ["P", "P", "F"]
+    assert "lit      ▇▇▇▇▇▇▇▇▇▁▁▁▁▁▁▁▁▁" in lines
+
+
+def test_a_requirement_beyond_the_model_is_said_plainly(lamp, capsys):
+    """The line gives the reason and no second word for it."""
+    model, spec = lamp
+    main(["verify", model, "--spec", spec])
+    assert "BAD: not expressible: the network has no signal `lit`" in capsys.readouterr().out
