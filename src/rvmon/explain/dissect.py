@@ -42,6 +42,18 @@ def dissect(
     begin = samples[0].t
     start, stop = max(attempt.triggered - margin, begin), min(last + margin, end)
     eye = Eye(spec, requirement, samples, end, attempt, names)
+    return Anatomy(attempt, start, stop, begin, strands_of(eye, start, stop))
+
+
+def strands_of(eye: Eye, start: int, stop: int) -> tuple[Strand, ...]:
+    """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time.
+
+    Args:
+        eye: sees an attempt's requirement on its recording.
+        start: the first tick.
+        stop: the last tick.
+    """
+    requirement = eye.requirement
     strands = []
     parts: list[tuple[str, Formula]] = [("owed", requirement.consequent)]
     if not isinstance(requirement.trigger, BoundAtom) and not _is_true(requirement.trigger):
@@ -53,7 +65,7 @@ def dissect(
             true = both(truth.sure, shown)
             false = outside(both(truth.may, shown), start, stop)
             strands.append(Strand(depth, format_formula(formula), part, true, false))
-    return Anatomy(attempt, start, stop, begin, tuple(strands))
+    return tuple(strands)
 
 
 def _is_true(formula: Formula) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rvmon.explain.anatomy import Strand
 from rvmon.report.timeline import Ghost
 from rvmon.report.tracks import Track
 from rvmon.report.view import View
@@ -21,6 +22,8 @@ class Panel:
         view: the stretch of time that is shown.
         tracks: of the signals and events concerned.
         ghost: the nearest passing attempt, for a failed one.
+        strands: the truth of each part of the requirement over the view; empty if that would take
+            too long.
         miss: if it was never triggered, what the trigger lacked when it was nearest.
     """
 
@@ -30,6 +33,7 @@ class Panel:
     view: View
     tracks: tuple[Track, ...]
     ghost: Ghost | None
+    strands: tuple[Strand, ...] = ()
     miss: str = ""
 
     @property

@@ -10,6 +10,7 @@ from rvmon.report.forecast import forecast_sentence
 from rvmon.report.headline import headline
 from rvmon.report.markup import Child, e, with_code
 from rvmon.report.panel import Panel
+from rvmon.report.parts_html import parts_details
 from rvmon.report.run_page import RunPage
 from rvmon.report.spec_html import spec_lines
 from rvmon.report.style import MARKS
@@ -53,6 +54,7 @@ def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET
         drawing,
         _cursor_controls(panel, report.origin),
         _legend(panel, content),
+        parts_details(panel, report.origin, end),
         _values(panel.attempt),
         _siblings(panel, panels, content),
     )

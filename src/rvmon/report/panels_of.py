@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from rvmon.explain.anatomy import Strand
+from rvmon.explain.dissect import strands_of
+from rvmon.explain.eye import Eye
 from rvmon.explain.miss import nearest_miss
 from rvmon.report.choose import shown_attempts
 from rvmon.report.nearest import Candidate, nearest_passing
@@ -11,10 +14,13 @@ from rvmon.report.panel import Panel
 from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.report.tracks import Track
 from rvmon.report.tracks_of import tracks_of
-from rvmon.report.view import view_of, whole_run
+from rvmon.report.view import View, view_of, whole_run
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
+
+MOST_DISSECTED = 50_000
+"""Of longer runs the parts are not drawn; `rvmon why` takes the time for it."""
 
 
 def panels_of(content: RunPage) -> list[Panel]:
@@ -38,18 +44,53 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
     tracks = tracks_in(content.run)
     if not attempts:
         view = whole_run(report, samples[0].t if samples else report.origin)
-        yield Panel(panel_id(name, None), name, None, view, tracks, None, _miss(content, name))
+        yield Panel(panel_id(name, None), name, None, view, tracks, None, (), _miss(content, name))
     candidates: list[Candidate] = []
     if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
         candidates.append(Candidate(content.run, tracks))
         others = (other for other in content.others if other.samples)
         candidates.extend(Candidate(other, tracks_in(other)) for other in others)
+    dissected = _Dissected(content, name)
     for attempt in attempts:
         view = view_of(attempt, report)
         ghost = None
         if attempt.verdict is Verdict.FAIL:
             ghost = nearest_passing(attempt, tracks, view, candidates)
-        yield Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost)
+        strands = dissected.strands(attempt, view)
+        yield Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost, strands)
+
+
+class _Dissected:
+    """A requirement on a run, whose attempts are taken apart."""
+
+    def __init__(self, content: RunPage, name: str) -> None:
+        self.spec = content.spec
+        self.requirement = content.spec.requirements[name]
+        self.samples = content.run.samples
+        self.end = content.run.report.end
+        self.names = _sources(content)
+        self._eye: Eye | None = None
+
+    def strands(self, attempt: Attempt, view: View) -> tuple[Strand, ...]:
+        """The truth of each part over a view, as far as the run reaches."""
+        if not self.samples or self.end is None or len(self.samples) > MOST_DISSECTED:
+            return ()
+        start, stop = max(view.start, self.samples[0].t), min(view.end, self.end)
+        return strands_of(self._seen(attempt, self.end), start, stop) if start <= stop else ()
+
+    def _seen(self, attempt: Attempt, end: int) -> Eye:
+        """What an attempt captured changes what is seen; without that, one look is enough."""
+        own = self.requirement.captures or self.requirement.for_each
+        if self._eye is None or own:
+            self._eye = Eye(self.spec, self.requirement, self.samples, end, attempt, self.names)
+        return self._eye
+
+
+def _sources(content: RunPage) -> frozenset[str]:
+    """The signals and events that the run has."""
+    health = content.run.report.health
+    absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
+    return frozenset({*content.spec.signals, *content.spec.events} - absent)
 
 
 def _miss(content: RunPage, name: str) -> str:
@@ -57,12 +98,10 @@ def _miss(content: RunPage, name: str) -> str:
     run = content.run
     if name in run.report.misses or not run.samples:
         return run.report.misses.get(name, "")
-    absent = {health.name for health in run.report.health if health.kind is HealthKind.ABSENT}
-    names = frozenset({*content.spec.signals, *content.spec.events} - absent)
     requirement, end = content.spec.requirements[name], run.report.end
     if end is None:
         return ""
-    return nearest_miss(content.spec, requirement, run.samples, end, names)
+    return nearest_miss(content.spec, requirement, run.samples, end, _sources(content))
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:

@@ -65,8 +65,8 @@ def timeline(
         offending = _offending(attempt) if track.name in blamed else ()
         other = ghosts.get(track.name)
         rows.append(track_row(track, view, end, offending, other, ghost.end if ghost else end))
-    rows.append(_axis(view, origin))
-    guides = [] if attempt is None else _guides(attempt, view, end)
+    rows.append(axis_row(view, origin))
+    guides = [] if attempt is None else guides_of(attempt, view, end)
     overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
     return e("div", {"class": "timeline"}, *rows, overlay)
 
@@ -139,8 +139,8 @@ def _labels(attempt: Attempt, view: View, origin: int, end: int) -> list[tuple[E
     return labels
 
 
-def _guides(attempt: Attempt, view: View, end: int) -> list[ET.Element]:
-    """Lines through all tracks at trigger, deadline and decision."""
+def guides_of(attempt: Attempt, view: View, end: int) -> list[ET.Element]:
+    """Lines through all rows at trigger, deadline and decision."""
     wanted = [("trigger", attempt.triggered), ("deadline", _window(attempt)[1])]
     wanted.append(("end", end) if attempt.decided is None else ("decision", attempt.decided))
     return [
@@ -157,7 +157,8 @@ def _guides(attempt: Attempt, view: View, end: int) -> list[ET.Element]:
     ]
 
 
-def _axis(view: View, origin: int) -> ET.Element:
+def axis_row(view: View, origin: int) -> ET.Element:
+    """The row with the instants."""
     ticks = [
         e(
             "span",

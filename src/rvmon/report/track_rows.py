@@ -59,6 +59,20 @@ def track_row(
     return e("div", {"class": "row"}, name, plot)
 
 
+def truth_row(label: ET.Element, track: Track, view: View, end: int) -> ET.Element:
+    """Draw when a formula was true.
+
+    Args:
+        label: stands beside it.
+        track: its truth, as a switch.
+        view: the stretch of time that is shown.
+        end: the last instant of the run, ticks.
+    """
+    plot = e("div", {"class": "plot switch truth"})
+    _add_stretches(plot, stretches(track, view, end + 1))
+    return e("div", {"class": "row"}, e("div", {"class": "name"}, label), plot)
+
+
 def _add_event(
     plot: ET.Element, track: Track, view: View, blamed: Sequence[int], ghost: Track | None
 ) -> None:

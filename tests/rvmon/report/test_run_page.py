@@ -110,6 +110,30 @@ def test_a_run_in_which_nothing_happened_has_a_page():
     assert "D1" in Reader(page).ids
 
 
+def test_each_part_of_an_attempt_has_a_row():
+    """Trigger and owed formulas, when they were true and where nobody knows, open where it failed.
+
+    The door stays closed: `not closed` is never true; what is owed is not known near the end.
+    """
+    page = run_page(content())
+    section = re.search(r'<section id="D1-1".*?</section>', page, re.DOTALL)[0]
+    parts = re.search(r'<details class="parts" open.*?</details>', section, re.DOTALL)[0]
+    rows = parts.split('<div class="row">')[1:]
+    shown = {re.search(r"<code[^>]*>(.*?)</code>", row)[1]: row for row in rows[:-1]}
+    assert list(shown) == ["knock", "within 2 s not closed", "not closed"]
+    assert [row.count('class="on"') for row in shown.values()] == [1, 0, 0]
+    assert all('class="unknown"' not in row for row in shown.values())  # the run lasts to 20 s
+    late = run_page(content(judged("late", [(0.0, {"closed": True}), (19.0, {"knock": True})])))
+    parts = re.search(r'<section id="D1-1".*?</section>', late, re.DOTALL)[0]
+    assert 'class="unknown"' in parts.split("within 2 s not closed</code>")[1].split("</div>")[1]
+
+
+def test_passing_attempts_keep_their_parts_folded():
+    """What passed needs no explanation at first sight."""
+    page = run_page(content(door(answer=1.0)))
+    assert '<details class="parts">' in page
+
+
 def test_the_failed_part_is_underlined_in_the_spec():
     """The subformula, in its line, with the line's number."""
     page = run_page(content())

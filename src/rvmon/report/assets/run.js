@@ -51,7 +51,7 @@
     const panel = run.panels[open.id];
     const fraction = (t - panel.start) / (panel.end - panel.start);
     instant = t;
-    open.querySelector(".cursor").style.left = 100 * fraction + "%";
+    for (const cursor of open.querySelectorAll(".cursor")) cursor.style.left = 100 * fraction + "%";
     open.querySelector("input").value = Math.round(1000 * fraction);
     open.querySelector(".instant").textContent = reading(instant, panel.trigger);
     for (const output of open.querySelectorAll("output[data-track]")) {
