@@ -111,12 +111,15 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
     absent = dict(environment.missing)
     for workload in workloads(size, sections):
         _say(f"{workload.section}: {workload.name}, {workload.form}")
-        results.append(measure(workload, list(contenders(environment, native, workload.section)), size.plan))
+        taking_part = list(contenders(environment, native, workload.section))
+        results.append(measure(workload, taking_part, size.plan))
         agreements += check(workload, environment, traces=size.traces)
     for workload in suite.processed(size.columns) if "process" in sections else ():
         _say(f"process: {workload.name}")
         with tempfile.TemporaryDirectory() as folder:
-            results.append(measure_process(workload, size.repeats, native, Path(folder)))
+            results.append(
+                measure_process(workload, size.repeats, environment, native, Path(folder))
+            )
         agreements += check(workload, environment, traces=size.traces)
     open_attempts: list[OpenAttempts] = []
     if "open" in sections:

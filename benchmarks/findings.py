@@ -64,13 +64,51 @@ GOALS = (
     ),
     Goal("batch in memory, no compiler", "batch", "rvmon evaluate", "reelay", "past", 30),
     Goal("batch in memory, generated C", "batch", "rvmon evaluate, C", "reelay C++", "past", 10),
-    Goal("whole process, CSV", "process", "rvmon run, csv", "reelay C++, csv", "past", 0.5),
     Goal("whole process, CSV", "process", "rvmon build, csv", "reelay C++, csv", "past", 2),
     Goal(
         "whole process, binary", "process", "rvmon build, binary", "reelay C++, binary", "past", 2
     ),
+    Goal("whole process, CSV", "process", "rvmon run, csv", "reelay C++, csv", "past", 0.5),
+    Goal("whole process, Parquet", "process", "rvmon run, parquet", "reelay, parquet", "past", 5),
 )
 """Mstlo has no factor in the design; it is given reelay's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quoted:
+    """A figure of a peer that cannot be measured here.
+
+    Attributes:
+        mode: what was measured.
+        section: whose results ours is taken from.
+        ours: label of our form.
+        peer: who.
+        figure: CPU ns per row, from another machine: the least and the most.
+        times: the peer is to need at least so many times ours.
+        names: the results that count; empty: all.
+    """
+
+    mode: str
+    section: str
+    ours: str
+    peer: str
+    figure: tuple[float, float]
+    times: float
+    names: tuple[str, ...] = ()
+
+
+QUOTED = (
+    Quoted("10 monitors", "many", "rvmon step", "R2U2 C", (550, 550), 5, ("10 monitors",)),
+    Quoted("100 monitors", "many", "rvmon step", "R2U2 C", (5_100, 5_100), 5, ("100 monitors",)),
+    Quoted(
+        "1000 monitors", "many", "rvmon step", "R2U2 C", (48_700, 48_700), 5, ("1000 monitors",)
+    ),
+    Quoted("batch in memory", "batch", "rvmon evaluate, C", "R2U2 C", (37, 195), 10),
+    Quoted("whole process, CSV", "process", "rvmon build, csv", "R2U2 C", (107, 179), 2),
+    Quoted("whole process, CSV", "process", "rvmon run, csv", "R2U2 C", (107, 179), 0.5),
+    Quoted("whole process, JSONL", "process", "rvmon build, jsonl", "reelay", (128, 164), 2),
+)
+"""Measured on another machine on these families; R2U2 is not on the package index."""
 
 FLATNESS = 1.2
 """The most by which bound 100,000 may cost more than bound 10."""

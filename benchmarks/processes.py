@@ -5,19 +5,27 @@ from __future__ import annotations
 import json
 import resource
 import statistics
+import struct
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
+import numpy as np
 from benchmarks.measure import Figure, Result
 from benchmarks.ours import always_text, specification
+from benchmarks.peers.environment import Environment
 from benchmarks.peers.native import Native, packed
 from benchmarks.workload import Column, Workload
 
 from rvmon.testing.peers import dialects
 from rvmon.testing.peers.dialects import translate
+
+BY_PARQUET = Path(__file__).parent / "peers" / "parquet_with_reelay.py"
+FEW = 50_000
+"""Rows for what judges row by row in Python."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,21 +36,25 @@ class Program:
         label: who, and what it reads.
         command: exits 0 or 1.
         violated: reads the first violated row from what it prints.
+        rows: of the file.
     """
 
     label: str
     command: tuple[str, ...]
     violated: Callable[[str], int | None]
+    rows: int
 
 
-def measure_process(workload: Workload, repeats: int, native: Native, folder: Path) -> Result:
+def measure_process(
+    workload: Workload, repeats: int, environment: Environment, native: Native, folder: Path
+) -> Result:
     """Judge a workload's only formula by every program there is, from files in the folder."""
     (formula,) = workload.formulas
     spec = folder / "spec.rv"
     spec.write_text(specification([always_text(formula)], workload.columns))
-    files = _files(folder / "trace", workload.columns)
     pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
-    programs = list(_programs(spec, files, native, pattern))
+    stem = folder / "trace"
+    programs = [*_ours(spec, stem, workload), *_peers(stem, pattern, workload, environment, native)]
     return Result(
         workload.section,
         workload.name,
@@ -50,43 +62,107 @@ def measure_process(workload: Workload, repeats: int, native: Native, folder: Pa
         1,
         workload.rows,
         workload.changing,
-        tuple(_figures(programs, workload.rows, repeats)),
+        tuple(_figures(programs, repeats)),
     )
 
 
-def _files(stem: Path, columns: Mapping[str, Column]) -> dict[str, Path]:
-    """The same rows as CSV, JSON lines and bytes."""
-    names = list(columns)
-    cells = list(zip(*columns.values(), strict=True))
-    files = {kind: stem.with_suffix(f".{kind}") for kind in ("csv", "jsonl", "bin")}
-    with files["csv"].open("w") as csv:
-        csv.write("t_ns," + ",".join(names) + "\n")
-        csv.writelines(
-            f"{t}," + ",".join("1" if cell else "0" for cell in row) + "\n"
-            for t, row in enumerate(cells)
-        )
-    with files["jsonl"].open("w") as jsonl:
-        for t, row in enumerate(cells):
-            values = ", ".join(
-                f'"{name}": {"true" if cell else "false"}'
-                for name, cell in zip(names, row, strict=True)
-            )
-            jsonl.write(f'{{"t_ns": {t}, {values}}}\n')
-    files["bin"].write_bytes(packed(columns))
-    return files
+def _ours(spec: Path, stem: Path, workload: Workload) -> Iterator[Program]:
+    columns, rows = workload.columns, workload.rows
+    csv, jsonl = _csv(stem, columns), _jsonl(stem, columns, rows)
+    rvmon = (sys.executable, "-m", "rvmon")
+    run = (*rvmon, "run", str(spec))
+    judged = (*run, str(csv), "--format", "json")
+    few = str(_jsonl(stem.with_name("few"), columns, FEW))
+    yield Program("rvmon run, csv", judged, _ours_violated, rows)
+    yield Program("rvmon run -e c, csv", (*judged, "--engine", "c"), _ours_violated, rows)
+    yield Program(
+        "rvmon run, jsonl", (*run, few, "--format", "json"), _ours_violated, min(rows, FEW)
+    )
+    parquet = _parquet(stem, columns)
+    if parquet is not None:
+        judged = (*run, str(parquet), "--format", "json")
+        yield Program("rvmon run, parquet", judged, _ours_violated, rows)
+    binary = stem.with_name("judge")
+    done = subprocess.run(
+        [*rvmon, "build", str(spec), "-o", str(binary)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode == 0:
+        for kind, path in (("csv", csv), ("jsonl", jsonl), ("binary", _fixed(stem, columns))):
+            command = (str(binary), str(path))
+            yield Program(f"rvmon build, {kind}", command, _ours_violated, rows)
 
 
-def _programs(
-    spec: Path, files: Mapping[str, Path], native: Native, pattern: str
+def _peers(
+    stem: Path, pattern: str, workload: Workload, environment: Environment, native: Native
 ) -> Iterator[Program]:
-    run = (sys.executable, "-m", "rvmon", "run", str(spec))
-    for kind in ("csv", "jsonl"):
-        judged = (*run, str(files[kind]), "--format", "json")
-        yield Program(f"rvmon run, {kind}", judged, _ours_violated)
+    rows = workload.rows
     if native.binary is not None:
-        for mode, kind in (("csv", "csv"), ("binary", "bin")):
-            command = (str(native.binary), mode, str(files[kind]), pattern)
-            yield Program(f"reelay C++, {mode}", command, _reelay_violated)
+        data = stem.with_suffix(".bytes")
+        data.write_bytes(packed(workload.columns))
+        for mode, path in (("csv", stem.with_suffix(".csv")), ("binary", data)):
+            command = (str(native.binary), mode, str(path), pattern)
+            yield Program(f"reelay C++, {mode}", command, _reelay_violated, rows)
+    parquet = stem.with_suffix(".parquet")
+    if parquet.exists() and {"reelay", "pyarrow"} <= set(environment.versions):
+        command = (str(environment.python), str(BY_PARQUET), str(parquet), pattern)
+        yield Program("reelay, parquet", command, _reelay_violated, rows)
+
+
+def _cells(columns: Mapping[str, Column]) -> Iterator[tuple[bool | float, ...]]:
+    return zip(*columns.values(), strict=True)
+
+
+def _csv(stem: Path, columns: Mapping[str, Column]) -> Path:
+    path = stem.with_suffix(".csv")
+    with path.open("w") as file:
+        file.write("t_ns," + ",".join(columns) + "\n")
+        file.writelines(
+            f"{t}," + ",".join("1" if cell else "0" for cell in row) + "\n"
+            for t, row in enumerate(_cells(columns))
+        )
+    return path
+
+
+def _jsonl(stem: Path, columns: Mapping[str, Column], rows: int) -> Path:
+    path = stem.with_suffix(".jsonl")
+    with path.open("w") as file:
+        for t, row in enumerate(islice(_cells(columns), rows)):
+            values = {name: bool(cell) for name, cell in zip(columns, row, strict=True)}
+            file.write(json.dumps({"t_ns": t, **values}) + "\n")
+    return path
+
+
+def _fixed(stem: Path, columns: Mapping[str, Column]) -> Path:
+    """The fixed layout that programs of `rvmon build` read."""
+    path = stem.with_suffix(".bin")
+    names = [name.encode() for name in columns]
+    header = b"rvmonbin" + struct.pack("=I", len(names))
+    header += b"".join(struct.pack("=I", len(name)) + name for name in names)
+    width = len(names)
+    layout = np.dtype([("t", "i8"), ("values", "f8", (width,)), ("states", "u1", (width,))])
+    table = np.zeros(len(next(iter(columns.values()))), layout)
+    table["t"] = np.arange(len(table))
+    table["states"] = 3
+    for place, column in enumerate(columns.values()):
+        table["values"][:, place] = column
+    path.write_bytes(header + table.tobytes())
+    return path
+
+
+def _parquet(stem: Path, columns: Mapping[str, Column]) -> Path | None:
+    try:
+        import pyarrow as pa
+        from pyarrow import parquet
+    except ImportError:
+        return None
+    path = stem.with_suffix(".parquet")
+    arrays = {name: np.array(column) for name, column in columns.items()}
+    rows = len(next(iter(arrays.values())))
+    parquet.write_table(pa.table({"t_ns": np.arange(rows, dtype=np.int64), **arrays}), path)
+    return path
 
 
 def _ours_violated(printed: str) -> int | None:
@@ -100,20 +176,27 @@ def _reelay_violated(printed: str) -> int | None:
     return None if row < 0 else row
 
 
-def _figures(programs: list[Program], rows: int, repeats: int) -> Iterator[Figure]:
+def _figures(programs: list[Program], repeats: int) -> Iterator[Figure]:
     spent: dict[str, list[float]] = {program.label: [] for program in programs}
     violated: dict[str, int | None] = {}
-    for _ in range(repeats):
+    for number in range(-1, repeats):  # the first round fills caches and does not count
         for program in programs:
             before = _children()
             done = subprocess.run(program.command, capture_output=True, text=True, check=False)
             if done.returncode not in (0, 1):
                 raise RuntimeError(f"{program.label}: {done.stderr[:500]}")
-            spent[program.label].append((_children() - before) * 1e9 / rows)
+            if number >= 0:
+                spent[program.label].append((_children() - before) * 1e9 / program.rows)
             violated[program.label] = program.violated(done.stdout)
-    for label, times in spent.items():
+    for program in programs:
+        times = spent[program.label]
         yield Figure(
-            label, rows, statistics.median(times), min(times), max(times), (violated[label],)
+            program.label,
+            program.rows,
+            statistics.median(times),
+            min(times),
+            max(times),
+            (violated[program.label],),
         )
 
 

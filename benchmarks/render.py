@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from benchmarks.agreement import Agreement
-from benchmarks.findings import ATTEMPT_BYTES, FLATNESS, GOALS, Findings, Goal
+from benchmarks.findings import ATTEMPT_BYTES, FLATNESS, GOALS, QUOTED, Findings, Goal
 from benchmarks.measure import Figure, Result
 
 TITLES = {
@@ -34,7 +35,10 @@ def render(findings: Findings) -> str:
         "",
         "## Goals",
         "",
+        "Times are medians over the workloads that count; the ratio is the peer's time over ours.",
+        "",
         *_goals(findings),
+        *_quoted(findings),
     ]
     for section, title in TITLES.items():
         results = [result for result in findings.results if result.section == section]
@@ -79,9 +83,21 @@ def _figure(result: Result, label: str) -> Figure | None:
     return next((figure for figure in result.figures if figure.label == label), None)
 
 
-def _ratios(findings: Findings, goal: Goal) -> list[float]:
-    """Peer over ours for each result that counts, where both took part and judged alike."""
-    found = []
+@dataclass(frozen=True, slots=True)
+class _Pairs:
+    """Results in which two sides took part and judged alike."""
+
+    ours: list[float]
+    peers: list[float]
+
+    @property
+    def ratios(self) -> list[float]:
+        """The peer's time over ours."""
+        return [peer / own for own, peer in zip(self.ours, self.peers, strict=True)]
+
+
+def _pairs(findings: Findings, goal: Goal) -> _Pairs:
+    found = _Pairs([], [])
     for result in findings.results:
         counts = result.section == goal.section and result.form == goal.form
         if not counts or (goal.names and result.name not in goal.names):
@@ -90,7 +106,8 @@ def _ratios(findings: Findings, goal: Goal) -> list[float]:
         if ours is None or peer is None or result.changing > goal.changing:
             continue
         if _alike(findings.agreements, result, ours, peer):
-            found.append(peer.median / ours.median)
+            found.ours.append(ours.median)
+            found.peers.append(peer.median)
     return found
 
 
@@ -109,36 +126,72 @@ def _alike(agreements: Sequence[Agreement], result: Result, ours: Figure, peer: 
 
 
 def _goals(findings: Findings) -> Iterator[str]:
-    yield "| mode | we | peer | ratio: median (least to most) | goal | |"
-    yield "|---|---|---|---|---|---|"
+    yield "| mode | we | | peer | | workloads | ratio (least to most) | goal | met |"
+    yield "|---|---|---|---|---|---|---|---|---|"
     for goal in GOALS:
-        ratios = _ratios(findings, goal)
+        pairs = _pairs(findings, goal)
+        ratios = pairs.ratios
         if not ratios:
-            text, mark = "not measured", ""
+            own, other, text, mark = "–", "–", "not measured", "–"
         else:
             median = statistics.median(ratios)
+            own = time_text(statistics.median(pairs.ours))
+            other = time_text(statistics.median(pairs.peers))
             text = f"{ratio_text(median)} ({ratio_text(min(ratios))} to {ratio_text(max(ratios))})"
-            mark = "met" if median >= goal.times else "not met"
+            mark = "yes" if median >= goal.times else "no"
         yield (
-            f"| {goal.mode} | {goal.ours} | {goal.peer} | {text} | "
-            f"≥ {ratio_text(goal.times)} | {mark} |"
+            f"| {goal.mode} | {goal.ours} | {own} | {goal.peer} | {other} | {len(ratios)} | "
+            f"{text} | ≥ {ratio_text(goal.times)} | {mark} |"
         )
     flat = _flatness(findings)
     if flat is not None:
-        mark = "met" if flat <= FLATNESS else "not met"
+        mark = "yes" if flat <= FLATNESS else "no"
         yield (
-            f"| bound 10 to 100,000 | rvmon step | – | {ratio_text(flat)} | "
+            f"| bound 10 to 100,000 | rvmon step | – | – | – | – | {ratio_text(flat)} | "
             f"≤ {ratio_text(FLATNESS)} | {mark} |"
         )
     if findings.open_attempts:
         most = max(findings.open_attempts, key=lambda entry: entry.attempts)
         least = min(findings.open_attempts, key=lambda entry: entry.attempts)
         growth = most.median / least.median
-        mark = "met" if most.size <= ATTEMPT_BYTES and growth <= FLATNESS else "not met"
+        mark = "yes" if most.size <= ATTEMPT_BYTES and growth <= FLATNESS else "no"
         yield (
-            f"| {least.attempts} to {most.attempts:,} open attempts | rvmon step | – | "
-            f"{ratio_text(growth)} a sample, {most.size:.0f} bytes each | "
+            f"| {least.attempts} to {most.attempts:,} open attempts | rvmon step | "
+            f"{time_text(most.median)} | – | – | – | {ratio_text(growth)} a sample, {most.size:.0f} bytes each | "
             f"constant, ≤ {ATTEMPT_BYTES} bytes | {mark} |"
+        )
+
+
+def _quoted(findings: Findings) -> Iterator[str]:
+    """Ours beside figures from elsewhere: no ratio, as nobody looked whether both judge alike."""
+    lines = []
+    for entry in QUOTED:
+        found = [
+            figure.median
+            for result in findings.results
+            if result.section == entry.section
+            and result.form == "past"
+            and (not entry.names or result.name in entry.names)
+            if (figure := _figure(result, entry.ours)) is not None
+        ]
+        if found:
+            least, most = entry.figure
+            figure = time_text(least) if least == most else f"{time_text(least)}–{time_text(most)}"
+            wanted = most / entry.times
+            own = statistics.median(found)
+            lines.append(
+                f"| {entry.mode} | {entry.ours} | {time_text(own)} | {entry.peer} | {figure} | "
+                f"≤ {time_text(wanted)} | {'yes' if own <= wanted else 'no'} |"
+            )
+    if lines:
+        yield from (
+            "",
+            "Figures that are quoted, from another machine: there is no ratio, as verdicts could",
+            "not be compared. The goal is the larger figure over the factor that was set.",
+            "",
+            "| mode | we | | quoted | | goal | met |",
+            "|---|---|---|---|---|---|---|",
+            *lines,
         )
 
 
@@ -190,13 +243,21 @@ def _open_attempts(findings: Findings) -> Iterator[str]:
 def _agreements(agreements: Sequence[Agreement]) -> Iterator[str]:
     yield "Verdicts compared row by row on damaged traces, and the instant of the first failure."
     yield ""
-    yield "| peer | workload | form | equal | of | our FALSE among them |"
+    yield "| peer | form | workloads | equal | of | our FALSE among them |"
     yield "|---|---|---|---|---|---|"
-    for entry in agreements:
-        if entry.compared:
+    compared = [entry for entry in agreements if entry.compared]
+    for label, form in sorted({(entry.label, entry.form) for entry in compared}):
+        own = [entry for entry in compared if (entry.label, entry.form) == (label, form)]
+        names = {entry.name for entry in own}
+        equal, count = sum(e.equal for e in own), sum(e.compared for e in own)
+        false = sum(e.false for e in own)
+        yield f"| {label} | {form} | {len(names)} | {equal:,} | {count:,} | {false:,} |"
+    for entry in compared:
+        if entry.equal < entry.compared:
+            yield ""
             yield (
-                f"| {entry.label} | {entry.name} | {entry.form} | {entry.equal} | "
-                f"{entry.compared} | {entry.false} |"
+                f"{entry.label} disagrees on {entry.name}, {entry.form}: "
+                f"{entry.equal} of {entry.compared}."
             )
     remarks = sorted({f"{e.label}: {e.remark}" for e in agreements if e.remark})
     if remarks:
