@@ -11,6 +11,7 @@ import argparse
 import platform
 import sys
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -104,30 +105,36 @@ def _lines(path: Path) -> list[str]:
 
 def run(size: Size, sections: Sequence[str], command: str) -> Findings:
     """Measure all chosen sections, telling what is under way."""
+    began = time.monotonic()
+
+    def say(text: str) -> None:
+        _say(f"{time.monotonic() - began:4.0f} s  {text}")
+
     environment = prepare()
     native = build(environment)
     results: list[Result] = []
     agreements: list[Agreement] = []
     absent = dict(environment.missing)
     for workload in workloads(size, sections):
-        _say(f"{workload.section}: {workload.name}, {workload.form}")
+        say(f"{workload.section}: {workload.name}, {workload.form}")
         taking_part = list(contenders(environment, native, workload.section))
         results.append(measure(workload, taking_part, size.plan))
         agreements += check(workload, environment, traces=size.traces)
     for workload in suite.processed(size.columns) if "process" in sections else ():
-        _say(f"process: {workload.name}")
+        say(f"process: {workload.name}")
         with tempfile.TemporaryDirectory() as folder:
-            results.append(
-                measure_process(workload, size.repeats, environment, native, Path(folder))
-            )
+            place = Path(folder)
+            results.append(measure_process(workload, size.repeats, environment, native, place))
         agreements += check(workload, environment, traces=size.traces)
     open_attempts: list[OpenAttempts] = []
     if "open" in sections:
-        _say("open attempts")
+        say("open attempts")
         try:
             open_attempts += measure_open(size.repeats, size.attempts)
         except PeerError as error:
             absent["open attempts"] = str(error)
+    if "differences" in sections:
+        say("where the peers read otherwise")
     table = differences.table(environment) if "differences" in sections else []
     versions = {"rvmon": version("rvmon"), **environment.versions}
     if native.binary is None:

@@ -113,7 +113,7 @@ def _pairs(findings: Findings, goal: Goal) -> _Pairs:
 
 def _alike(agreements: Sequence[Agreement], result: Result, ours: Figure, peer: Figure) -> bool:
     """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
-    name = peer.label.split()[0]
+    name = peer.label.split()[0].rstrip(",")
     checked = [
         a
         for a in agreements
@@ -157,7 +157,8 @@ def _goals(findings: Findings) -> Iterator[str]:
         mark = "yes" if most.size <= ATTEMPT_BYTES and growth <= FLATNESS else "no"
         yield (
             f"| {least.attempts} to {most.attempts:,} open attempts | rvmon step | "
-            f"{time_text(most.median)} | – | – | – | {ratio_text(growth)} a sample, {most.size:.0f} bytes each | "
+            f"{time_text(most.median)} | – | – | – | "
+            f"{ratio_text(growth)} a sample, {most.size:.0f} bytes each | "
             f"constant, ≤ {ATTEMPT_BYTES} bytes | {mark} |"
         )
 

@@ -24,6 +24,9 @@ FINDINGS = Findings(
 )
 
 
+STEP = "| online, one step from Python | rvmon step |"
+
+
 def line(page: str, start: str) -> str:
     """The line of a page that starts so."""
     return next(text for text in page.splitlines() if text.startswith(start))
@@ -31,30 +34,29 @@ def line(page: str, start: str) -> str:
 
 def test_ratio_with_agreement() -> None:
     """A goal shows the peer's time over ours, and whether that is enough."""
-    goal = line(render(FINDINGS), "| online, one step from Python | rvmon step | reelay |")
-    assert "| 9.0× (9.0× to 9.0×) | ≥ 5.0× | met |" in goal
+    goal = line(render(FINDINGS), STEP)
+    assert goal == f"{STEP} 100 ns | reelay | 900 ns | 1 | 9.0× (9.0× to 9.0×) | ≥ 5.0× | yes |"
 
 
 def test_no_ratio_without_agreement() -> None:
     """Where verdicts were not compared, or differed, there is no ratio."""
-    start = "| online, one step from Python | rvmon step | reelay |"
     for agreements in ((), (replace(ALIKE, equal=299),)):
         page = render(replace(FINDINGS, agreements=agreements))
-        assert "not measured" in line(page, start)
+        assert "not measured" in line(page, STEP)
 
 
 def test_no_ratio_with_other_violation() -> None:
     """Where the timed passes found another first violation, there is no ratio."""
     other = replace(RESULT, figures=(OURS, replace(REELAY, violated=(500,))))
     page = render(replace(FINDINGS, results=(other,)))
-    assert "not measured" in line(page, "| online, one step from Python | rvmon step | reelay |")
+    assert "not measured" in line(page, STEP)
 
 
 def test_missed_goal() -> None:
     """A goal that is missed is said to be missed."""
     slow = replace(RESULT, figures=(replace(OURS, median=600.0), REELAY))
     page = render(replace(FINDINGS, results=(slow,)))
-    assert "| 1.5× (1.5× to 1.5×) | ≥ 5.0× | not met |" in page
+    assert "| 1.5× (1.5× to 1.5×) | ≥ 5.0× | no |" in page
 
 
 def test_tables() -> None:
@@ -70,12 +72,28 @@ def test_open_attempts() -> None:
     small = OpenAttempts(1, 100.0, 99.0, 101.0, 0.0)
     large = OpenAttempts(100_000, 110.0, 99.0, 130.0, 20.0)
     page = render(replace(FINDINGS, open_attempts=(small, large)))
-    assert "| 1.1× a sample, 20 bytes each | constant, ≤ 24 bytes | met |" in page
+    assert "| 1.1× a sample, 20 bytes each | constant, ≤ 24 bytes | yes |" in page
     page = render(replace(FINDINGS, open_attempts=(small, replace(large, size=130.0))))
-    assert "| 1.1× a sample, 130 bytes each | constant, ≤ 24 bytes | not met |" in page
+    assert "| 1.1× a sample, 130 bytes each | constant, ≤ 24 bytes | no |" in page
 
 
 def test_absent() -> None:
     """What was not measured is named with its reason."""
     page = render(replace(FINDINGS, absent={"mstlo-python": "no wheel"}))
     assert "* Not measured: mstlo-python: no wheel" in page
+
+
+def test_quoted() -> None:
+    """Beside a quoted figure ours is shown and judged, without a ratio."""
+    own = Figure("rvmon build, csv", 1000, 40.0, 39.0, 41.0, (999,))
+    page = render(replace(FINDINGS, results=(replace(RESULT, section="process", figures=(own,)),)))
+    quoted = line(page, "| whole process, CSV | rvmon build, csv | 40 ns | R2U2 C |")
+    assert quoted.endswith("| 107 ns–179 ns | ≤ 90 ns | yes |")
+
+
+def test_disagreement_is_named() -> None:
+    """Agreement is summed up by peer; where sides differ, the workload is named."""
+    other = replace(ALIKE, name="AbsentBR 10", equal=299)
+    page = render(replace(FINDINGS, agreements=(ALIKE, other)))
+    assert "| reelay | past | 2 | 599 | 600 | 40 |" in page
+    assert "reelay disagrees on AbsentBR 10, past: 299 of 300." in page
