@@ -1,0 +1,136 @@
+"""By how much a leaf holds or fails to at the current position."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from itertools import product
+
+from rvmon.dataflow.inputs import Inputs, payloads_of
+from rvmon.dataflow.numbers import COMPARE, events_of, reader
+from rvmon.dataflow.steps import INFINITE
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
+from rvmon.spec.checked import (
+    Arithmetic,
+    CheckedSpec,
+    Compare,
+    CompareOp,
+    FieldValue,
+    Literal,
+    Numeric,
+    NumericOp,
+    SignalValue,
+    UpdateValue,
+)
+from rvmon.spec.units import parse_unit
+from rvmon.trace.sample import Payload, Scalar
+
+Margin = tuple[float, float]
+"""Least and greatest value that the robustness can have, given what is not known."""
+
+OF_TRUTH: Mapping[int, Margin] = {
+    FALSE: (-INFINITE, -INFINITE),
+    UNKNOWN: (-INFINITE, INFINITE),
+    TRUE: (INFINITE, INFINITE),
+}
+"""What a proposition that is no comparison of numbers counts as."""
+
+
+def margin_reader(
+    leaf: Leaf,
+    truth: Callable[[], int],
+    inputs: Inputs,
+    captured: Mapping[str, Scalar],
+    spec: CheckedSpec,
+) -> Callable[[], Margin]:
+    """A function that gives the robustness of a leaf at the current position, in base units.
+
+    Args:
+        leaf: any.
+        truth: gives its truth there.
+        inputs: read at each call.
+        captured: values of `let` and `for each`.
+        spec: gives the units.
+
+    Source: SEMANTICS 5.
+    """
+    if not isinstance(leaf, Compare):
+        return lambda: OF_TRUTH[truth()]
+    left = reader(leaf.left, inputs, captured)
+    right = reader(leaf.right, inputs, captured)
+    op, factor = leaf.op, base_factor(leaf, spec)
+
+    def of(payloads: Mapping[str, Payload]) -> Margin:
+        return margin(op, left(payloads), right(payloads), factor)
+
+    events = events_of(leaf.left, leaf.right)
+    if not events:
+        return lambda: of({})
+
+    def of_occurrences() -> Margin:
+        if any(event in inputs.absent for event in events):
+            return OF_TRUTH[UNKNOWN]
+        found = OF_TRUTH[FALSE]
+        choices = [
+            [p for value in inputs.occurrences.get(event, ()) for p in payloads_of(value)]
+            for event in events
+        ]
+        for chosen in product(*choices):
+            payloads = {e: p for e, p in zip(events, chosen, strict=True) if p is not None}
+            own = of(payloads) if len(payloads) == len(events) else OF_TRUTH[UNKNOWN]
+            found = max(found[0], own[0]), max(found[1], own[1])
+        return found
+
+    return of_occurrences
+
+
+def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:
+    """By how much a comparison holds; what is not known may be anything.
+
+    >>> margin(CompareOp.LT, 3.0, 5.0, 0.01)
+    (0.02, 0.02)
+    """
+    if left is None or right is None:
+        return OF_TRUTH[UNKNOWN]
+    if isinstance(left, str) or isinstance(right, str):
+        return OF_TRUTH[TRUE if COMPARE[op](left, right) else FALSE]
+    difference = 0.0 if left == right else (left - right) * factor
+    match op:
+        case CompareOp.LT | CompareOp.LE:
+            value = -difference
+        case CompareOp.GT | CompareOp.GE:
+            value = difference
+        case CompareOp.EQ:
+            value = -math.fabs(difference)
+        case CompareOp.NE:
+            value = math.fabs(difference)
+    return value, value
+
+
+def base_factor(leaf: Compare, spec: CheckedSpec) -> float:
+    """What the unit of a comparison is in base units; 1 where it is not plain."""
+    for side in (leaf.left, leaf.right):
+        if isinstance(side, Literal) and side.unit:
+            return float(parse_unit(side.unit).factor)
+    units = (_unit(side, spec) for side in (leaf.left, leaf.right))
+    found = next((unit for unit in units if unit), "")
+    return float(parse_unit(found).factor)
+
+
+def _unit(expression: Numeric, spec: CheckedSpec) -> str:
+    """The unit that an expression's values come in, "" if it has none or is a product."""
+    match expression:
+        case Literal(unit=unit):
+            return unit
+        case SignalValue(name=name) | UpdateValue(name=name):
+            return spec.signals[name].type.unit
+        case FieldValue(event=event, field=field):
+            return spec.events[event].fields[field].unit
+        case Arithmetic(op=op, args=args) if op not in (
+            NumericOp.MUL,
+            NumericOp.DIV,
+            NumericOp.SQRT,
+        ):
+            return next((unit for arg in args if (unit := _unit(arg, spec))), "")
+        case _:
+            return ""
