@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rvmon.codegen.plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
+    from rvmon.monitor.robustness import Margins
     from rvmon.spec.checked import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
@@ -150,6 +151,39 @@ class Spec:
             monitor.step_ns(sample.t, sample.values)
         return monitor.finish_ns(recording.end if end is None else end)
 
+    def evaluate_many(
+        self,
+        traces: Iterable[Any],
+        *,
+        time: str = "t",
+        engine: str = "auto",
+        only: Iterable[str] | None = None,
+        jobs: int = 1,
+    ) -> Iterator[Report]:
+        """Judge many traces, in their order; the specification is compiled once per process.
+
+        Args:
+            traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
+            time: the time column of columns; if its name ends in `_ns`, integer ticks.
+            engine: `auto` or the name of one.
+            only: ids of the requirements to judge; default all.
+            jobs: processes; 1 judges in this one.
+
+        Raises:
+            TraceError: a trace cannot be read; the reports before it have been given out.
+
+        >>> spec = loads("spec s\\nsignal p : bool\\nrequirement R1\\n  always p\\n")
+        >>> runs = [[(0, {"p": True})], [(0, {"p": False})]]
+        >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
+        ['P', 'F']
+        """
+        options = (time, engine, None if only is None else tuple(only))
+        if jobs > 1:
+            from rvmon.many import evaluate_in_processes
+
+            return evaluate_in_processes(self.checked, traces, options, jobs)
+        return (self.evaluate(trace, time=time, engine=engine, only=options[2]) for trace in traces)
+
     def evaluate_file(
         self,
         path: str | Path,
@@ -197,6 +231,45 @@ class Spec:
         blocks = [(times, columns)]
         return evaluate_blocks(
             self._compiled, list(columns), blocks, only=only, engine=engine, until=until
+        )
+
+    def robustness(
+        self,
+        trace: Any,
+        *,
+        time: str = "t",
+        only: Iterable[str] | None = None,
+        until: float | None = None,
+    ) -> Margins:
+        """By how much a finished trace meets each requirement, or fails to, in base units.
+
+        Comparisons of numbers count by the distance of their sides, other propositions as infinite;
+        unknown input and what would come after the end may be anything. Where the least value of an
+        attempt is above 0 it has passed, where the greatest is below 0 it has failed.
+
+        Args:
+            trace: as `evaluate` takes it.
+            time: the time column of columns.
+            only: ids of the requirements; default all.
+            until: the end of the trace in seconds, if it ended after its last sample.
+
+        Returns:
+            The figures of the attempts by requirement and number, and as streams.
+
+        Raises:
+            TraceError: the trace cannot be read.
+
+        Source: SEMANTICS 5; Donze and Maler 2010.
+        """
+        from rvmon.monitor.robustness import margins_of
+
+        recording = self.recording(trace, time=time)
+        return margins_of(
+            self._compiled,
+            recording,
+            only=None if only is None else tuple(only),
+            sources=recording.names,
+            end=recording.end if until is None else ticks_of_seconds(until),
         )
 
     def recording(self, trace: Any, *, time: str = "t") -> Recording:

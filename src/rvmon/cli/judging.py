@@ -13,7 +13,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec, load
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
@@ -31,12 +31,14 @@ class Options:
         engine: `auto` or the name of one.
         until: the instant in seconds to which recordings are judged; default their last sample.
         strict_columns: whether missing and undeclared columns are errors.
+        robustness: whether to find the robustness of each attempt as well.
     """
 
     only: tuple[str, ...] | None = None
     engine: str = "auto"
     until: float | None = None
     strict_columns: bool = False
+    robustness: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +114,9 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
             _refuse_mismatch(recording, spec)
         end = None if options.until is None else ticks_of_seconds(options.until)
         report = None
-        if end is None:
+        if options.robustness:
+            report = _with_robustness(spec, recording, end, options, ordered=ordered)
+        elif end is None:
             report = spec.evaluate_file(trace, engine=options.engine, only=options.only)
         if report is None:
             samples = _up_to(end, shown_while_reading(recording), ordered=ordered)
@@ -134,6 +138,17 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         return Judged(trace, None, tuple(before), place + message)
     report = replace(report, misses=_misses(spec, trace, report, recording.names))
     return Judged(trace, _named(report, trace, recording.health()))
+
+
+def _with_robustness(
+    spec: Spec, recording: FileRecording, end: int | None, options: Options, *, ordered: bool
+) -> Report:
+    """The report with a figure for each attempt; the samples are kept, to be read twice."""
+    kept = tuple(_up_to(end, shown_while_reading(recording), ordered=ordered))
+    trace = Trace(kept, recording.names, end)
+    report = spec.evaluate(trace, engine=options.engine, only=options.only)
+    margins = spec.robustness(trace, only=options.only)
+    return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))
 
 
 def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iterator[Sample]:

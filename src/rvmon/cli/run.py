@@ -54,6 +54,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"
     )
+    parser.add_argument(
+        "--robustness",
+        action="store_true",
+        help="say by how much each attempt passed or failed (SI units; negative: failed)",
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text")
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
@@ -84,7 +89,11 @@ def run(arguments: argparse.Namespace) -> int:
     spec = load(arguments.spec, const=constants)
     _show_warnings(spec)
     options = Options(
-        _ids(arguments.only, spec), arguments.engine, arguments.until, arguments.strict_columns
+        _ids(arguments.only, spec),
+        arguments.engine,
+        arguments.until,
+        arguments.strict_columns,
+        arguments.robustness,
     )
     must_trigger = _ids(arguments.require_triggered or None, spec)
     judged = list(

@@ -5,7 +5,7 @@ The whole trace is looked at: what comes behind a decision counts as long as the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rvmon.automaton.location import PASSED
@@ -26,7 +26,7 @@ from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.spec.checked import CheckedSpec
-from rvmon.trace.sample import Scalar
+from rvmon.trace.sample import Sample, Scalar
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
 
@@ -273,7 +273,7 @@ def _negated(margin: Margin) -> Margin:
 
 def margins_of(
     compiled: CompiledSpec,
-    samples: Sequence[tuple[int, Mapping[str, object]]],
+    samples: Iterable[Sample],
     *,
     only: Sequence[str] | None = None,
     sources: frozenset[str] | None = None,
@@ -283,7 +283,7 @@ def margins_of(
 
     Args:
         compiled: the specification.
-        samples: of the trace, times in ticks.
+        samples: of the trace.
         only: ids of the requirements; default all.
         sources: the names that can arrive; `None`: all.
         end: the end of the trace, if it ended after its last sample.
@@ -292,6 +292,6 @@ def margins_of(
     """
     chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
     monitor = MarginMonitor(compiled, chosen, sources)
-    for t, values in samples:
-        monitor.step_ns(t, values)
+    for sample in samples:
+        monitor.step_ns(sample.t, sample.values)
     return monitor.margins_ns(end)

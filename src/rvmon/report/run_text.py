@@ -71,12 +71,27 @@ def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("", "verdict", "attempts"):
         table.add_column(heading, no_wrap=True)
+    least = _least_robustness(report)
+    if least:
+        table.add_column("robustness", no_wrap=True)
     table.add_column("requirement", style="dim")
     for name, verdict in report.verdicts.items():
         counts = report.counts[name]
         listed = "  ".join(f"{count} {kind}" for kind, count in counts.items() if count)
-        table.add_row(name, verdict_text(verdict), listed or "–", spec.requirements[name].text)
+        figure = [least.get(name, "–")] if least else []
+        text = spec.requirements[name].text
+        table.add_row(name, verdict_text(verdict), listed or "–", *figure, text)
     return table
+
+
+def _least_robustness(report: Report) -> dict[str, str]:
+    """By requirement the least robustness of its attempts, where it was found."""
+    least: dict[str, float] = {}
+    for attempt in report.attempts:
+        if attempt.robustness is not None:
+            known = least.get(attempt.requirement, attempt.robustness)
+            least[attempt.requirement] = min(known, attempt.robustness)
+    return {name: f"{value:.4g}" for name, value in least.items()}
 
 
 def _miss_text(name: str, miss: str) -> Text:
@@ -97,6 +112,8 @@ def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
     when = f"attempt {attempt.number}, triggered {format_ticks(attempt.triggered)}"
     if attempt.decided is not None:
         when += f", decided {format_ticks(attempt.decided)}"
+    if attempt.robustness is not None:
+        when += f", robustness {attempt.robustness:.4g}"
     text = Text.assemble(
         (f"{attempt.requirement} ", "bold"), verdict_text(attempt.verdict), f"  {when}\n"
     )

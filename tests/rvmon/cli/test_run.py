@@ -207,3 +207,21 @@ def test_a_forecast_is_shown_beside_the_verdict(tmp_path, capsys):
     assert main(["run", str(spec), str(trace), "--report", str(tmp_path / "pages")]) == 0
     pages = [page.read_text() for page in (tmp_path / "pages").rglob("*.html")]
     assert any("forecast F: no continuation can fulfil it" in page for page in pages)
+
+
+def test_robustness_is_shown_on_demand(tmp_path, capsys):
+    """Text shows the least figure and that of a failed attempt, JSON that of each."""
+    (tmp_path / "s.rv").write_text(
+        'spec s\nsignal x : real [cm]\nevent e\nrequirement R1 "x"\n'
+        "  upon e then within 3 s x > 10 cm\n"
+    )
+    (tmp_path / "t.csv").write_text("t,x,e\n0,2,1\n1,12,\n9,3,1\n20,,\n")
+    words = ["run", str(tmp_path / "s.rv"), str(tmp_path / "t.csv"), "--robustness"]
+    assert main(words) == 1
+    shown = capsys.readouterr().out
+    assert "robustness" in shown
+    assert "decided 12.000000001 s, robustness -0.07" in shown
+    main([*words, "--format", "json"])
+    [attempts] = json.loads(capsys.readouterr().out)["requirements"].values()
+    figures = [attempt["robustness"] for attempt in attempts["attempts"]]
+    assert figures == pytest.approx([0.02, -0.07])
