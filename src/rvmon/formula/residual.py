@@ -109,12 +109,22 @@ def substitute(
         TooManyClausesError: an intermediate result may have more than `limit` clauses.
     """
     found: set[Clause] = set()
-    for clause in residual:
+    # What is met on the way depends on the order: whether it keeps to a limit must not.
+    ordered = residual if limit is None else sorted(residual, key=_in_order)
+    for clause in ordered:
         made: Residual = frozenset([clause.difference(values)])
-        for atom in clause:
+        for atom in clause if limit is None else sorted(clause, key=_by_number):
             if atom in values:
                 made = both(made, values[atom], limit)
         found |= made
         if limit is not None and len(found) > limit:
             found = set(_reduced(found))
     return _reduced(found)
+
+
+def _by_number(atom: Atom) -> tuple[int, int]:
+    return atom[0].id, atom[1]
+
+
+def _in_order(clause: Clause) -> list[tuple[int, int]]:
+    return sorted(map(_by_number, clause))

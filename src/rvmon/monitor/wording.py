@@ -135,7 +135,7 @@ class Words:
     def owed(self, residual: Residual, anchors: Sequence[int]) -> str:
         """What a residual still asks for, as text of the spec."""
         clauses = []
-        for clause in sorted(residual, key=lambda c: (len(c), sorted(n.id for n, _ in c))):
+        for clause in sorted(residual, key=lambda c: (len(c), sorted((n.id, x) for n, x in c))):
             parts = [
                 self._with_deadline(node, anchors, clock)
                 for node, clock in sorted(clause, key=lambda atom: (atom[1], atom[0].id))
