@@ -24,6 +24,7 @@ from rvmon.testing.features import Feature, possible
 from rvmon.testing.forms import FORMS, Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.interrupt import interrupting
 
 MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeModel.CLOCKED}
 FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale")
@@ -34,7 +35,7 @@ def run_part(
 ) -> Tally:
     """Judge the cases of some seeds; runs in a worker."""
     return campaign(
-        Maker(options.engine),
+        interrupting(Maker(options.engine)) if options.interrupt else Maker(options.engine),
         seeds,
         profile,
         traces,
@@ -57,6 +58,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
     parser.add_argument("--features", action="store_true", help="count what was generated")
+    parser.add_argument("--interrupt", action="store_true", help="snapshots at random points")
     parser.add_argument("--fail-fast", action="store_true", help="stop soon, shrink nothing")
     return parser.parse_args(argv)
 

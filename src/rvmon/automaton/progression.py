@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from functools import cached_property
+from typing import Any
 
 from rvmon.automaton.location import NOW, Location, location_of, normalise
 from rvmon.automaton.machine import Token
@@ -46,6 +48,7 @@ class Progression:
     def __init__(self, owed: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
         self.alphabet = alphabet
         self._name = name
+        self._owed = owed
         self._locations: list[Location] = []
         self._index: dict[Residual, int] = {}
         self._edges: dict[tuple[int, tuple[int, ...], int], Edge] = {}
@@ -60,6 +63,43 @@ class Progression:
             index = self._index[residual] = len(self._locations)
             self._locations.append(location_of(residual))
         return index
+
+    def table(self) -> list[list[list[list[int]]]]:
+        """The residuals of its locations: clauses of pairs of a formula's number and a clock."""
+        return [
+            sorted(sorted([node.id, clock] for node, clock in clause) for clause in one.residual)
+            for one in self._locations
+        ]
+
+    def learn(self, table: list[list[list[list[int]]]]) -> list[int]:
+        """Its own locations for those of another machine for the same formula.
+
+        Args:
+            table: of the other one.
+        """
+        return [
+            self._location(
+                frozenset(
+                    frozenset((self._nodes[number], clock) for number, clock in clause)
+                    for clause in residual
+                )
+            )
+            for residual in table
+        ]
+
+    @cached_property
+    def _nodes(self) -> dict[int, Any]:
+        """The formula and its parts by their numbers."""
+        found: dict[int, Any] = {}
+        stack: list[Any] = [self._owed]
+        while stack:
+            node = stack.pop()
+            if node.id not in found:
+                found[node.id] = node
+                parts = [getattr(node, name, None) for name in ("left", "right", "operand")]
+                parts += [getattr(node, "opened", None), *getattr(node, "args", ())]
+                stack += [part for part in parts if part is not None]
+        return found
 
     def step(self, token: Token, t: int, letter: int) -> Token:
         """See `Machine`."""

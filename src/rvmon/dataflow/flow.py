@@ -32,6 +32,7 @@ class Flow:
         origin: the first position; `None` before it.
         position: the position that `values` were evaluated at last.
         since: per node, the position from which on it has had its value.
+        memory: what the nodes that look back remember.
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Flow:
         self._fading: list[int] = []
         self._wakes: dict[int, int] = {}
         self._left = True
+        self.memory: dict[int, Since | Previous] = {}
         self._momentary = frozenset(
             place
             for place, reads in graph.reads.items()
@@ -191,7 +193,7 @@ class Flow:
         return elapsed
 
     def _previous(self, place: int) -> Evaluate:
-        node = Previous(self.gap or 1)
+        node = self.memory[place] = Previous(self.gap or 1)
         (operand,) = self.graph.operands[place]
         values = self.values
 
@@ -203,7 +205,7 @@ class Flow:
         return previous
 
     def _since(self, place: int, state: State) -> Evaluate:
-        node = Since(state.low, state.high, self.gap or 1)
+        node = self.memory[place] = Since(state.low, state.high, self.gap or 1)
         left, right = self.graph.operands[place]
         values = self.values
 

@@ -322,6 +322,11 @@ class GeneratedMonitor(Monitor):
         self._unit.after = self._floor = LIMIT
         return report
 
+    def snapshot(self) -> bytes:
+        """See `Monitor.snapshot`."""
+        self._see()
+        return super().snapshot()
+
     @property
     def next_due(self) -> int | None:
         """See `Monitor.next_due`."""

@@ -13,7 +13,9 @@ from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Reported
 from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.trigger import Trigger
+from rvmon.trace.sample import Scalar
 
 
 @dataclass(slots=True, eq=False)
@@ -40,10 +42,14 @@ class Lane:
         judges: of the requirements in it, in the order of the file.
         starters: the same.
         waiting: samples whose position has not come yet.
+        made_for: the requirement of an instance or of a captured attempt, with its values.
     """
 
-    def __init__(self, flow: Flow) -> None:
+    def __init__(
+        self, flow: Flow, made_for: tuple[CompiledRequirement, Mapping[str, Scalar]] | None = None
+    ) -> None:
         self.flow = flow
+        self.made_for = made_for
         self.judges: list[Bench] = []
         self.starters: list[Starter] = []
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []

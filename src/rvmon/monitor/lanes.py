@@ -22,6 +22,12 @@ from rvmon.trace.sample import Payload, Scalar, Value
 
 Captured = Mapping[str, Scalar]
 
+Shape = tuple[
+    list[tuple[str, list[tuple[Scalar, int]]]], list[tuple[str, dict[str, Scalar], Scalar, bool]]
+]
+"""Per requirement the values of its instances with their first instants; per lane its requirement,
+captured values, the value of its instance, and whether attempts start in it."""
+
 
 class Lanes:
     """All lanes of one run.
@@ -50,6 +56,7 @@ class Lanes:
         self.sources = sources
         self.ledger = ledger
         self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+        self._by_id = {compiled.requirement.id: compiled for compiled in requirements}
         self._each: list[tuple[CompiledRequirement, ForEach]] = []
         self._instances: dict[str, dict[Scalar, Instance]] = {}
         needs_history = any(_needs_history(compiled) for compiled in requirements)
@@ -120,6 +127,50 @@ class Lanes:
             for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
 
+    # Snapshots.
+
+    def shape(self) -> Shape:
+        """What instances and captured attempts there are: what `rebuild` makes lanes for."""
+        instances = [
+            (name, [(one.value, one.first) for one in known.values()])
+            for name, known in self._instances.items()
+        ]
+        lanes = [
+            (
+                lane.made_for[0].requirement.id,
+                dict(lane.made_for[1]),
+                None if instance is None else instance.value,
+                bool(lane.starters),
+            )
+            for lane, instance in self._lanes
+            if lane.made_for is not None
+        ]
+        return instances, lanes
+
+    def rebuild(self, shape: Shape) -> None:
+        """Make the lanes that another run had; what they hold is to be set afterwards.
+
+        Args:
+            shape: of the other run.
+        """
+        instances, lanes = shape
+        each_of = {compiled.requirement.id: each for compiled, each in self._each}
+        for name, found in instances:
+            self._instances[name] = {
+                value: Instance(rank, each_of[name].value, value, first)
+                for rank, (value, first) in enumerate(found, start=1)
+            }
+        for name, captured, value, starts in lanes:
+            compiled = self._by_id[name]
+            instance = None if value is None else self._instances[name][value]
+            graph = compiled.shared_graph if starts else compiled.consequent_graph
+            lane = Lane(self._flow(graph, captured), (compiled, captured))
+            if starts:
+                self._seat(lane, compiled, captured, instance)
+            else:
+                self._judge(compiled, lane, captured)
+            self._lanes.append((lane, instance))
+
     # Making lanes.
 
     def _flow(self, graph: Graph, captured: Captured) -> Flow:
@@ -181,12 +232,12 @@ class Lanes:
             own[capture.name] = _capture(capture.value, parent.flow, own)
         graph = compiled.consequent_graph
         if _looks_back(compiled):
-            lane = Lane(self._flow(graph, own))
+            lane = Lane(self._flow(graph, own), (compiled, own))
             judge = self._judge(compiled, lane, own)
             self._replay(lane, instance)
             lane.through(t)
         else:
-            lane = Lane(parent.flow.fork(graph, own, occurring=True))
+            lane = Lane(parent.flow.fork(graph, own, occurring=True), (compiled, own))
             judge = self._judge(compiled, lane, own)
         return lane, judge
 
@@ -213,7 +264,7 @@ class Lanes:
         """A lane for an instance, as of just before the sample at `t`."""
         graph = compiled.shared_graph
         if _needs_history(compiled):
-            lane = Lane(self._flow(graph, captured))
+            lane = Lane(self._flow(graph, captured), (compiled, captured))
             starter = self._seat(lane, compiled, captured, instance)
             # No attempt starts before the value has occurred.
             start, starter.start = starter.start, _never
@@ -222,7 +273,8 @@ class Lanes:
             starter.start = start
             lane.drop_episode(starter)
             return lane
-        lane = Lane(self.main.flow.fork(graph, captured, occurring=False))
+        flow = self.main.flow.fork(graph, captured, occurring=False)
+        lane = Lane(flow, (compiled, captured))
         for taken, seen in self.main.waiting:
             lane.sample(taken, seen_by(instance, seen))
         self._seat(lane, compiled, captured, instance)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rvmon.automaton.machine import INFINITY
-from rvmon.errors import TimeOrderError, TraceError
+from rvmon.errors import SnapshotError, TimeOrderError, TraceError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.intake import Intake
@@ -19,6 +20,17 @@ from rvmon.trace.time import TIME_LIMIT, format_ticks, ticks_of_seconds
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What a monitor was asked for; see `rvmon.monitor.build.build_monitor`."""
+
+    compiled: CompiledSpec
+    requirements: Sequence[CompiledRequirement]
+    engine: str
+    settle: str
+    sources: frozenset[str] | None
 
 
 class Monitor:
@@ -36,6 +48,7 @@ class Monitor:
         settle: str,
         sources: frozenset[str] | None,
     ) -> None:
+        self.choice = Choice(compiled, requirements, engine, settle, sources)
         self._compiled = compiled
         self._requirements = requirements
         self._engine = engine
@@ -186,6 +199,26 @@ class Monitor:
         if self._reached is not None and self._compiled.checked.time is not TimeModel.SAMPLED:
             known.append(self._reached - 1)
         return max(known)
+
+    @property
+    def lanes(self) -> Lanes:
+        """What judges the run."""
+        return self._lanes
+
+    def snapshot(self) -> bytes:
+        """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
+
+        It holds the open attempts, held values, samples held back and all records so far, and no
+        code; another specification or version refuses it.
+
+        Raises:
+            SnapshotError: the run is finished.
+        """
+        if self._report is not None:
+            raise SnapshotError("the run is finished: keep its report, or call reset()")
+        from rvmon.monitor.snapshot import snapshot
+
+        return snapshot(self)
 
     @property
     def open(self) -> Sequence[Attempt]:

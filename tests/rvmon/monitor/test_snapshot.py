@@ -1,0 +1,150 @@
+"""A run that is put away and taken up again goes on as if nothing had happened."""
+
+import random
+
+import pytest
+
+import rvmon
+from rvmon.errors import SnapshotError
+from rvmon.session import Spec
+from rvmon.testing.differential import campaign, case_of
+from rvmon.testing.drive import tell
+from rvmon.testing.forms import Maker
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.interrupt import Interrupted, interrupting
+
+TEXT = """
+spec door
+signal closed : bool input
+signal width  : real  stale after 3 s
+event knock(force: real) input
+requirement D1
+  upon knock
+  then within 2 s not closed
+requirement D2
+  upon knock
+  then within 4 s width < bound
+  let bound = knock.force
+requirement D3
+  whenever width > prev(width)
+  then for 1 s closed
+"""
+SAMPLES = [
+    (0, {"closed": True}),
+    (1, {"knock": {"force": 0.5}, "width": 0.7}),
+    (2, {"width": float("nan"), "knock": True}),
+    (3, {"width": 0.75, "knock": {"force": 1.0}}),
+    (8, {"closed": None}),
+    (9, {"closed": False, "width": 2.0}),
+]
+
+
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "progression", "network"])
+def test_interruptions_change_nothing(engine):
+    """Every engine, taken up from snapshots at random points, judges as the law says."""
+    seeds = [f"snapshot/{number}" for number in range(40)]
+    profile, traces = Profile(mixed=engine in ("auto", "network")), TraceProfile()
+    tally = campaign(interrupting(Maker(engine)), seeds, profile, traces, online_every=6)
+    assert tally.pairs > 25
+    assert not tally.disagreements, tally.disagreements[0]
+
+
+def test_another_process_could_take_over():
+    """A specification that was compiled anew takes the snapshot, and gives the same bytes again."""
+    taken = 0
+    for number in range(25):
+        case = case_of(f"anew/{number}", Profile(), TraceProfile())
+        monitor = Spec(case.spec).monitor(sources=case.names)
+        dice = random.Random(number)
+        for action in case.actions:
+            tell(monitor, action)
+            if dice.random() < 0.2:
+                data = monitor.snapshot()
+                monitor = Spec(case.spec).restore(data)
+                assert monitor.snapshot() == data
+                taken += 1
+    assert taken > 10
+
+
+@pytest.mark.parametrize("text", ["max delay 2 s\n", ""])
+def test_samples_held_back_are_kept(text):
+    """What waits to be sorted or merged is in the snapshot, and so is what came too late."""
+    spec = rvmon.loads(TEXT.replace("spec door\n", f"spec door\n{text}"))
+    plain = spec.monitor(settle="next")
+    other = Interrupted(spec.monitor(settle="next"), random.Random(1), share=1)
+    stream = [*SAMPLES, (9, {"width": 2.5}), (9, {"closed": True})]
+    if text:
+        stream = [stream[1], stream[0], *stream[2:], (1, {"closed": False})]
+    for t, values in stream:
+        assert plain.step_ns(t * 10**9, values) == other.step_ns(t * 10**9, values)
+    report = plain.finish_ns(20 * 10**9)
+    assert report == other.finish_ns(20 * 10**9)
+    assert {"late", "conflict"} & {one.kind.value for one in report.health}
+
+
+def test_open_attempts_and_records_are_kept():
+    """The restored monitor shows the same open attempts and reports the same run."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    for t, values in SAMPLES[:4]:
+        monitor.step(t, values)
+    restored = spec.restore(monitor.snapshot())
+    assert list(restored.open) == list(monitor.open) != []
+    assert restored.next_due == monitor.next_due
+    for t, values in SAMPLES[4:]:
+        assert list(monitor.step(t, values)) == list(restored.step(t, values))
+    assert monitor.finish(20) == restored.finish(20)
+
+
+def test_another_specification_is_refused():
+    """A snapshot names what it does not fit; layout and comments do not count."""
+    monitor = rvmon.loads(TEXT).monitor()
+    monitor.step(0, {"closed": True})
+    data = monitor.snapshot()
+    with pytest.raises(SnapshotError, match="another specification"):
+        rvmon.loads(TEXT.replace("2 s", "3 s")).restore(data)
+    assert rvmon.loads(f"# the front door\n{TEXT}\n").restore(data).snapshot() == data
+
+
+def test_wrong_bytes_are_refused():
+    """Bytes that are cut, changed or something else are no snapshot, whatever is changed."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    monitor.step(0, {"closed": True})
+    data = monitor.snapshot()
+    for wrong in (b"", b"PK\x03\x04", data[:-1], data + b" ", data.replace(b"closed", b"opened")):
+        with pytest.raises(SnapshotError, match=r"no snapshot|damaged"):
+            spec.restore(wrong)
+
+
+def test_forged_bytes_are_refused():
+    """Well-formed bytes with a right checksum that fit no monitor are an error of ours."""
+    import hashlib
+    import json
+
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    monitor.step(1, {"closed": True, "knock": {"force": 1.0}})
+    head, _, body = monitor.snapshot().partition(b"\n")
+    document = json.loads(body)
+    forged = [
+        {**document, "state": ["object", "os", "system"]},
+        {**document, "state": ["kept"]},
+        {**document, "engine": "none"},
+        {**document, "lanes": ["tuple", ["list"], ["list", ["tuple", "D2", ["dict"], 7, True]]]},
+        {name: value for name, value in document.items() if name != "only"},
+    ]
+    for one in forged:
+        text = json.dumps(one).encode()
+        checksum = hashlib.sha256(text).hexdigest().encode()
+        with pytest.raises(SnapshotError):
+            spec.restore(head.rpartition(b" ")[0] + b" " + checksum + b"\n" + text)
+
+
+def test_a_finished_run_has_a_report_and_no_snapshot():
+    """After the end there is nothing to go on with."""
+    monitor = rvmon.loads(TEXT).monitor()
+    monitor.finish()
+    with pytest.raises(SnapshotError, match="finished"):
+        monitor.snapshot()
