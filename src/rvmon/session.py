@@ -109,6 +109,20 @@ class Spec:
             sources=None if sources is None else frozenset(sources),
         )
 
+    def restore(self, data: bytes) -> Monitor:
+        """Make the monitor that a snapshot was taken of; it goes on as that would have.
+
+        Args:
+            data: from `Monitor.snapshot`.
+
+        Raises:
+            SnapshotError: the bytes are no snapshot, are damaged, or come from another
+                specification or another version of rvmon.
+        """
+        from rvmon.monitor.snapshot import restore
+
+        return restore(self._compiled, data)
+
     def evaluate(
         self,
         trace: Any,
