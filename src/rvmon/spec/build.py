@@ -45,6 +45,7 @@ from rvmon.spec.items import (
     Triggered,
     TypeSyntax,
     UnwantedClause,
+    WrittenMonitor,
 )
 from rvmon.spec.syntax import Ident, Name
 
@@ -149,6 +150,9 @@ class Builder(ExpressionBuilder):
 
     def response(self, meta: Meta, children: Children) -> ResponseMonitor:
         return ResponseMonitor(children[-1], self.span(meta))
+
+    def written(self, meta: Meta, children: Children) -> WrittenMonitor:
+        return WrittenMonitor(self.span(meta))
 
     def text_clause(self, meta: Meta, children: Children) -> TextClause:
         return TextClause(str(children[0]), _string(children[1]), self.span(meta))

@@ -38,6 +38,7 @@ _WORDS = {
     "EQUAL": "`=`",
     "STALE_AFTER": "`stale after`",
     "MONITOR_AS_RESPONSE": "`monitor as response`",
+    "MONITOR_AS_WRITTEN": "`monitor as written`",
     "MAX_DELAY": "`max delay`",
     "COMPARE": "a comparison",
     "MINUS": "`-`",

@@ -18,7 +18,8 @@ from rvmon.spec.split import split_items
 
 _CLAUSES = frozenset(
     {
-        *("UPON", "WHENEVER", "THEN", "MONITOR_AS_RESPONSE", "TEXT_CLAUSE", "SEVERITY", "TAGS"),
+        *("UPON", "WHENEVER", "THEN", "MONITOR_AS_RESPONSE", "MONITOR_AS_WRITTEN"),
+        *("TEXT_CLAUSE", "SEVERITY", "TAGS"),
         *("LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE", "GOAL", "UNWANTED"),
     }
 )

@@ -144,6 +144,13 @@ class ResponseMonitor:
 
 
 @dataclass(frozen=True, slots=True)
+class WrittenMonitor:
+    """`monitor as written`."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class TextClause:
     """`source`, `rationale` or `severity` with its text."""
 
@@ -222,7 +229,7 @@ class RequirementItem:
 
     name: Ident
     text: str
-    body: Bare | Triggered | ResponseMonitor
+    body: Bare | Triggered | ResponseMonitor | WrittenMonitor
     clauses: tuple[Clause, ...]
     span: Span
 

@@ -35,7 +35,9 @@ from rvmon.spec.items import (
     TagsClause,
     TextClause,
     Triggered,
+    WrittenMonitor,
 )
+from rvmon.spec.linear import linear_form
 from rvmon.spec.normalise import normalised
 from rvmon.spec.properties import checked_property
 from rvmon.spec.quantities import node_of
@@ -137,6 +139,10 @@ def _parts(
             if ctl is None:
                 raise Refusal(property_rules.no_property(span))
             return Mode.UPON, *derived_response(checker.table, ctl, ticks, span)
+        case WrittenMonitor(span=span):
+            if ctl is None:
+                raise Refusal(property_rules.nothing_written(span))
+            return normalised(linear_form(ctl, span, checker.table.time))
 
 
 def _property(checker: Checker, item: RequirementItem) -> Property | None:

@@ -101,7 +101,31 @@ requirement R1
 """,
 )
 
-RULES = (PATH_OUTSIDE, BARE_TIME, FOREIGN_NAME, NO_RESPONSE)
+NOT_LINEAR = Rule(
+    "RV054",
+    "not-on-one-run",
+    Severity.ERROR,
+    "`monitor as written` cannot judge the property on single runs.",
+    "A monitor sees one run. A property on all paths can be judged on each of them if it means the "
+    "same there: what is to come is about one instant, and of two ways one is open at a time. "
+    "What is on some path (`AG EF reset`) needs a model.",
+    """spec demo
+signal safe : bool
+
+requirement R1
+  monitor as written
+  property AF AG safe
+""",
+    """spec demo
+signal safe : bool
+
+requirement R1
+  monitor as written
+  property AG AF safe
+""",
+)
+
+RULES = (PATH_OUTSIDE, BARE_TIME, FOREIGN_NAME, NO_RESPONSE, NOT_LINEAR)
 
 
 def path_outside(span: Span) -> Diagnostic:
@@ -163,6 +187,56 @@ def no_property(span: Span) -> Diagnostic:
         "there is no property to derive the monitor from",
         span,
         mend="add a clause `property E<> (…)`",
+    )
+
+
+def nothing_written(span: Span) -> Diagnostic:
+    """`monitor as written` without a property."""
+    return finding(
+        NOT_LINEAR,
+        "there is no property to be monitored",
+        span,
+        mend="add a clause `property A[] (…)`",
+    )
+
+
+def reads_model(span: Span, text: str) -> Diagnostic:
+    """A clock or location in a property that is monitored."""
+    return finding(
+        NOT_LINEAR,
+        f"`{short(text)}` reads a clock or location of a model, which no run shows",
+        span,
+        mend="check it with `rvmon verify`, or say it by signals of this file",
+    )
+
+
+def some_path(span: Span) -> Diagnostic:
+    """An existential path formula in a property that is monitored."""
+    return finding(
+        NOT_LINEAR,
+        f"`{short(span.text)}` speaks of some path, and a run shows one only",
+        span,
+        mend="check it with `rvmon verify`; what some run should show is a goal: `cover ID = φ`",
+    )
+
+
+def choice_of_paths(span: Span) -> Diagnostic:
+    """A disjunction of two path formulas that may both hold."""
+    return finding(
+        NOT_LINEAR,
+        f"`{short(span.text)}` leaves open which of the two the paths fulfil",
+        span,
+        mend="let `p` choose: `(p and φ) or (not p and ψ)`; or check it with `rvmon verify`",
+    )
+
+
+def not_on_one_path(span: Span) -> Diagnostic:
+    """A path formula that means more on all paths than on each."""
+    return finding(
+        NOT_LINEAR,
+        f"`{short(span.text)}` means another thing on all paths together than on each of them",
+        span,
+        mend="let what comes be about one instant; or check it with `rvmon verify`",
     )
 
 
