@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -174,7 +174,7 @@ class Spec:
         only: Iterable[str] | None = None,
         jobs: int = 1,
     ) -> Iterator[Report]:
-        """Judge many traces, in their order; the specification is compiled once per process.
+        r"""Judge many traces, in their order; the specification is compiled once per process.
 
         Args:
             traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
@@ -186,17 +186,25 @@ class Spec:
         Raises:
             TraceError: a trace cannot be read; the reports before it have been given out.
 
-        >>> spec = loads("spec s\\nsignal p : bool\\nrequirement R1\\n  always p\\n")
+        >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
         >>> runs = [[(0, {"p": True})], [(0, {"p": False})]]
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
         ['P', 'F']
         """
-        options = (time, engine, None if only is None else tuple(only))
-        if jobs > 1:
-            from rvmon.many import evaluate_in_processes
+        chosen = None if only is None else tuple(only)
+        if jobs < 2:
+            return (self.evaluate(trace, time=time, engine=engine, only=chosen) for trace in traces)
+        return self._evaluate_elsewhere(traces, time, engine, chosen, jobs)
 
-            return evaluate_in_processes(self.checked, traces, options, jobs)
-        return (self.evaluate(trace, time=time, engine=engine, only=options[2]) for trace in traces)
+    def _evaluate_elsewhere(
+        self, traces: Iterable[Any], time: str, engine: str, only: tuple[str, ...] | None, jobs: int
+    ) -> Iterator[Report]:
+        import pickle
+        from concurrent.futures import ProcessPoolExecutor
+
+        judge = partial(_evaluate_here, pickle.dumps(self.checked), time, engine, only)
+        with ProcessPoolExecutor(jobs) as pool:
+            yield from pool.map(judge, traces)
 
     def evaluate_file(
         self,
@@ -307,6 +315,20 @@ class Spec:
             names = frozenset(columns) & {*self.schema.signals, *self.schema.events}
             return Trace(tuple(column_samples(columns, self.schema, time)), names)
         return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in trace))
+
+
+def _evaluate_here(
+    checked: bytes, time: str, engine: str, only: tuple[str, ...] | None, trace: Any
+) -> Report:
+    return _spec_of(checked).evaluate(trace, time=time, engine=engine, only=only)
+
+
+@lru_cache(maxsize=1)
+def _spec_of(checked: bytes) -> Spec:
+    """The specification that another process sent; a worker compiles it for its first trace."""
+    import pickle
+
+    return Spec(pickle.loads(checked))  # noqa: S301 - from the process that began this one
 
 
 def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:

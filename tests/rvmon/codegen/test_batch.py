@@ -150,3 +150,13 @@ def test_a_cache_that_others_can_write_is_refused(tmp_path, monkeypatch):
     spec = rvmon.loads(SPEC.format(time="held", extra=""))
     with pytest.raises(rvmon.RvmonError, match=r"written by others|no C compiler"):
         spec.evaluate(recording(8, 20), engine="c")
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_many_traces_in_one_call(jobs):
+    """Each trace gets its own report, in order, whatever the number of processes."""
+    spec = rvmon.loads(SPEC.format(time="held", extra=""))
+    runs = [recording(seed, 200) for seed in range(3)]
+    reports = list(spec.evaluate_many(runs, jobs=jobs, only=["R1", "R3"]))
+    assert reports == [spec.evaluate(run, only=["R1", "R3"]) for run in runs]
+    assert set(reports[0].verdicts) == {"R1", "R3"}
