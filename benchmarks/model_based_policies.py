@@ -14,7 +14,8 @@ from collections import Counter
 
 from handover.checker import Checker, spec_path
 from handover.driver import run_test
-from handover.generator.model_based import PolicyName, model_based
+from handover.generator.model_based import model_based
+from handover.generator.template import PolicyName
 from rvmon.session import load
 
 POLICIES: tuple[PolicyName, ...] = ("likely", "shortest", "fastest")

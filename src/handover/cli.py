@@ -54,7 +54,8 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         "--strategy",
         metavar="NAMES",
         default="pseudorandom,constrained",
-        help="of pseudorandom, constrained, model-based, directed (default: the first two)",
+        help="of pseudorandom, constrained, model-based, model-based-shortest, "
+        "model-based-fastest, directed (default: the first two)",
     )
     parser.add_argument(
         "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"

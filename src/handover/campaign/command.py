@@ -29,7 +29,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rich.console import Console
 
-DEMO_STRATEGIES = ("pseudorandom", "constrained", "model-based", "directed")
+DEMO_STRATEGIES = tuple(STRATEGIES)
 DEMO_ROBOTS = ("legacy", "correct")
 
 

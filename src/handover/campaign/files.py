@@ -10,6 +10,7 @@ from handover.campaign.summary import CampaignSummary
 from handover.campaign.tables import all_tables
 from handover.campaign.text import print_summary
 from handover.generator.files import save
+from handover.generator.model_based import save_templates
 from rvmon.report.table_csv import tables_csv
 from rvmon.report.table_latex import table_latex
 
@@ -30,11 +31,15 @@ def write_tables(folder: Path, summary: CampaignSummary) -> None:
 
 
 def write_tests(folder: Path, results: Results) -> None:
-    """Write every test that was played to `tests/`, each to be replayed alone."""
+    """Write every test that was played to `tests/`, each to be replayed alone.
+
+    Those that the model gave have their templates in `templates/`.
+    """
     tests = folder / "tests"
     tests.mkdir(parents=True, exist_ok=True)
     for test in {one.job.test.name: one.job.test for one in results.outcomes}.values():
         save(test, tests)
+    save_templates({one.job.test.strategy for one in results.outcomes}, folder / "templates")
 
 
 def _plain_text(summary: CampaignSummary) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from handover.generator.abstract_test import AbstractTest
 from handover.generator.files import directed
@@ -22,6 +23,8 @@ STRATEGIES: Mapping[str, Strategy] = {
     "pseudorandom": pseudorandom,
     "constrained": constrained,
     "model-based": model_based,
+    "model-based-shortest": partial(model_based, policy="shortest"),
+    "model-based-fastest": partial(model_based, policy="fastest"),
     "directed": _directed,
 }
 """In the order of the columns of a table."""

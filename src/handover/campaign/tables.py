@@ -72,6 +72,12 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
         notes.append(
             f"PARTIAL: {summary.cut_short} after {summary.finished} of {summary.planned} tests."
         )
+    if "model-based" in figures.strategies:
+        notes.append(
+            "Model-based tests follow a run of the model for each query: the likeliest by the "
+            "model's weights (model-based), the one with the fewest steps (model-based-shortest), "
+            "the one that takes the least time (model-based-fastest)."
+        )
     crashed = sum(len(strategy.crashes) for strategy in figures.strategies.values())
     if crashed:
         notes.append(f"The robot's code crashed in {crashed} tests, judged all the same.")

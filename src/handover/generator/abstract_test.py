@@ -26,6 +26,14 @@ Switch = Literal[
 
 Parameter = Literal[Switch, "time"]
 Verdict = Literal["P", "F", "NT", "I"]
+Strategy = Literal[
+    "pseudorandom",
+    "constrained",
+    "model-based",
+    "model-based-shortest",
+    "model-based-fastest",
+    "directed",
+]
 
 
 class SendSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="send_signal"):
@@ -74,7 +82,7 @@ class AbstractTest(
     """
 
     name: Annotated[str, msgspec.Meta(min_length=1)]
-    strategy: Literal["pseudorandom", "constrained", "model-based", "directed"]
+    strategy: Strategy
     seed: Annotated[int, msgspec.Meta(ge=0)]
     actions: tuple[Action, ...]
     text: str = ""

@@ -13,12 +13,21 @@ from handover.generator.abstract_test import (
     ReceiveSignal,
     SendSignal,
     SetParam,
+    Strategy,
 )
 from handover.generator.files import AbstractTestError
-from handover.generator.template import Limit, Template, TemplateStep, Wait
+from handover.generator.template import (
+    Limit,
+    PolicyName,
+    Template,
+    TemplateStep,
+    Wait,
+    save_template,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
+    from pathlib import Path
 
     from rvmon.timed.model import Network
     from rvmon.timed.run import Run
@@ -35,8 +44,11 @@ PATIENCE = 40
 The longest waits of a witness need a robot that waits as long; two seconds are enough to vary.
 """
 
-PolicyName = Literal["shortest", "fastest", "likely"]
-
+_STRATEGIES: dict[PolicyName, Strategy] = {
+    "likely": "model-based",
+    "shortest": "model-based-shortest",
+    "fastest": "model-based-fastest",
+}
 _Edge = tuple[str, str, str]
 _POSTURES: tuple[tuple[str, Literal["hgazeOk", "hlocationOk", "hpressureOk"]], ...] = (
     ("gaze", "hgazeOk"),
@@ -98,6 +110,21 @@ def templates(policy: PolicyName = "likely") -> tuple[Template, ...]:
     return tuple(found)
 
 
+def save_templates(strategies: Collection[str], folder: Path) -> None:
+    """Write the templates of those strategies that take tests from the model.
+
+    Args:
+        strategies: names of any strategies.
+        folder: gets a folder for each strategy that has templates.
+    """
+    for policy, strategy in _STRATEGIES.items():
+        if strategy in strategies:
+            own = folder / strategy
+            own.mkdir(parents=True, exist_ok=True)
+            for template in templates(policy):
+                save_template(template, own)
+
+
 def project(network: Network, run: Run) -> tuple[tuple[TemplateStep, ...], tuple[Limit, ...]]:
     """What of a run concerns the human and the sensors, with all limits between its instants.
 
@@ -154,9 +181,10 @@ def instantiate(template: Template, seed: int) -> AbstractTest:
     """
     rng = random.Random(f"model-based/{seed}/{template.name}")  # noqa: S311  # repeatable
     times = choose_times(template, rng)
+    strategy = _STRATEGIES[template.policy]
     return AbstractTest(
-        name=f"model-based-{template.name}",
-        strategy="model-based",
+        name=f"{strategy}-{template.name}",
+        strategy=strategy,
         seed=rng.getrandbits(32),
         actions=tuple(_script(template, times)),
         text=f"{template.query} ({template.policy} witness)",

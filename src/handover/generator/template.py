@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
 from handover.generator.abstract_test import Action
 from handover.generator.files import AbstractTestError
+
+PolicyName = Literal["shortest", "fastest", "likely"]
+"""How a witness is chosen among several."""
 
 
 class Wait(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -58,7 +62,7 @@ class Template(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_def
     name: str
     remark: str
     query: str
-    policy: str
+    policy: PolicyName
     unit_s: float
     steps: tuple[TemplateStep, ...]
     limits: tuple[Limit, ...] = ()

@@ -1,6 +1,5 @@
 """The handover as a network of six timed automata, and what is asked of it."""
 
-from handover.model.checking import model_checking
 from handover.model.network import handover_network
 
-__all__ = ["handover_network", "model_checking"]
+__all__ = ["handover_network"]

@@ -15,6 +15,7 @@ from handover.generator.model_based import (
     instantiate,
     model_based,
     project,
+    save_templates,
     templates,
 )
 from handover.generator.template import Wait, load_template, save_template
@@ -92,6 +93,21 @@ def test_templates_are_files(tmp_path):
     path = save_template(template, tmp_path)
     assert load_template(path) == template
     assert '"gaze: off → ok"' in path.read_text()
+
+
+def test_each_way_of_choosing_has_its_tests_and_templates(tmp_path):
+    """Tests say in their strategy and name which witness they follow; templates stand apart."""
+    tests = {policy: model_based(4, 1, policy) for policy in ("likely", "shortest", "fastest")}
+    assert {test.strategy for test in tests["likely"]} == {"model-based"}
+    assert {test.strategy for test in tests["fastest"]} == {"model-based-fastest"}
+    assert len({test.name for group in tests.values() for test in group}) == 12
+    save_templates({"model-based", "model-based-fastest", "constrained"}, tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "model-based",
+        "model-based-fastest",
+    ]
+    again = load_template(tmp_path / "model-based-fastest" / "R2.json")
+    assert instantiate(again, seed=1) == tests["fastest"][1]
 
 
 def test_a_template_changed_by_hand_is_taken_as_it_is(tmp_path):
