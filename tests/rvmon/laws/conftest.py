@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
 
-from rvmon.session import Spec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences
 from rvmon.testing.drive import drive
+from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.law import judge as oracle
 from rvmon.verdict.report import Report
 
+Law = Callable[[st.DataObject], None]
+
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What a law is tested on: how it judges a case, and which specs it takes."""
+    """What a law is tested on: how it judges a case, which specs it takes, on how many examples."""
 
     judge: Callable[[Case], Report]
     profile: Profile
+    examples: int
 
     @property
     def one(self) -> Profile:
@@ -33,19 +39,65 @@ class Subject:
         return differences(self.judge(left), self.judge(right))
 
 
-def engine(case: Case) -> Report:
-    """The engine that the compiler picks, told the case call by call."""
-    report, _ = drive(Spec(case.spec).monitor(sources=case.names), case)
-    return report
+class Form:
+    """A form that monitors run in, told cases call by call; what it refuses is passed over."""
 
+    def __init__(self, name: str) -> None:
+        self.make = Maker(name)
+
+    def __call__(self, case: Case) -> Report:
+        monitor = self.make(case)
+        assume(monitor is not None)
+        assert monitor is not None
+        return drive(monitor, case)[0]
+
+
+ALL = Profile()
+AHEAD = replace(ALL, mixed=False)
+BARE = replace(AHEAD, captures=False, for_each=False, requirements=1, depth=3)
 
 SUBJECTS = {
-    "oracle": Subject(oracle, Profile()),
-    "engine": Subject(engine, Profile(mixed=False)),
+    "oracle": Subject(oracle, ALL, 40),
+    "auto": Subject(Form("auto"), ALL, 25),
+    "automaton": Subject(Form("automaton"), AHEAD, 20),
+    "progression": Subject(Form("progression"), AHEAD, 25),
+    "network": Subject(Form("network"), ALL, 25),
+    "file": Subject(Form("file"), BARE, 10),
+    "c": Subject(Form("c"), BARE, 3),
 }
 
 
 @pytest.fixture(scope="session", params=SUBJECTS)
 def subject(request: pytest.FixtureRequest) -> Subject:
-    """The oracle, then the engine."""
+    """The oracle, then every form."""
+    if request.param == "c" and shutil.which("gcc") is None:
+        pytest.skip("no gcc")
     return SUBJECTS[request.param]
+
+
+@pytest.fixture
+def holds(subject: Subject) -> Callable[[Law], None]:
+    """Decorates a law: it is tried at once, on as many examples as the subject is worth."""
+
+    def tried(law: Law) -> None:
+        few = settings(
+            max_examples=subject.examples,
+            deadline=None,
+            suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
+        )
+        few(given(st.data())(law))()
+
+    return tried
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Compiled monitors of tests stay in the tests, and are made in little time."""
+    scratch = tmp_path_factory.mktemp("compiled")
+    hasty = scratch / "cc"
+    hasty.write_text('#!/bin/sh\nexec gcc "$@" -O0\n')
+    hasty.chmod(0o755)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CC", str(hasty))
+        patch.setenv("XDG_CACHE_HOME", str(scratch))
+        yield

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from rvmon.spec.checked import (
@@ -100,47 +100,51 @@ def with_consequent(spec: CheckedSpec, consequent: Formula) -> CheckedSpec:
 
 
 @pytest.mark.parametrize("time", TimeModel)
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_equivalent_formulas(subject: Any, time: TimeModel, data: st.DataObject) -> None:
+def test_equivalent_formulas(subject: Any, holds: Any, time: TimeModel) -> None:
     """Formulas that are defined by each other have the same attempts, verdicts and instants."""
-    profile = replace(subject.one, time=time)
-    spec = data.draw(specs(profile))
-    shape = Shape(step=time is not TimeModel.HELD, mixed=profile.mixed)
-    a, b = (data.draw(formulas(shape, depth=2)) for _ in range(2))
-    window: Interval = data.draw(st.builds(interval, st.randoms(), st.just(shape)))
-    pairs = [*anywhere(a, b, window.low, window.high)]
-    pairs += in_ticks(a) if time is TimeModel.HELD else in_steps(a)
-    left, right = data.draw(st.sampled_from(pairs))
-    assume(profile.mixed or not (is_mixed(left) or is_mixed(right)))
-    case = data.draw(traces(spec))
-    given_left, given_right = (
-        replace(case, spec=with_consequent(spec, formula)) for formula in (left, right)
-    )
-    assert subject.differences(given_left, given_right) == []
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        profile = replace(subject.one, time=time)
+        spec = data.draw(specs(profile))
+        shape = Shape(step=time is not TimeModel.HELD, mixed=profile.mixed)
+        a, b = (data.draw(formulas(shape, depth=2)) for _ in range(2))
+        window: Interval = data.draw(st.builds(interval, st.randoms(), st.just(shape)))
+        pairs = [*anywhere(a, b, window.low, window.high)]
+        pairs += in_ticks(a) if time is TimeModel.HELD else in_steps(a)
+        left, right = data.draw(st.sampled_from(pairs))
+        assume(profile.mixed or not (is_mixed(left) or is_mixed(right)))
+        case = data.draw(traces(spec))
+        given_left, given_right = (
+            replace(case, spec=with_consequent(spec, formula)) for formula in (left, right)
+        )
+        assert subject.differences(given_left, given_right) == []
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_negation_exchanges_verdicts(subject: Any, data: st.DataObject) -> None:
+def test_negation_exchanges_verdicts(subject: Any, holds: Any) -> None:
     """`not φ` fails where φ passes, as far as the prefix decides; `weak` and `strong` swap."""
-    spec = data.draw(specs(subject.one))
-    step = spec.time is not TimeModel.HELD
-    formula = data.draw(formulas(Shape(step=step, mixed=subject.profile.mixed)))
-    case = data.draw(traces(spec))
-    swap = {EndPolicy.WEAK: EndPolicy.STRONG, EndPolicy.STRONG: EndPolicy.WEAK}
-    for policy, other in swap.items():
-        reports = []
-        for consequent, at_end in ((formula, policy), (no(formula), other)):
-            changed = with_consequent(spec, consequent)
-            [owed] = changed.requirements.values()
-            upon = requirement(consequent, upon=owed.trigger, at_end=at_end)
-            one = spec_of(upon, time=spec.time, period=spec.period)
-            reports.append(subject.judge(replace(case, spec=replace(one, signals=spec.signals))))
-        exchange = {"P": "F", "F": "P", "I": "I"}
-        wanted = [
-            (a.number, a.decided, exchange[a.verdict.value], a.decision)
-            for a in reports[0].attempts
-        ]
-        got = [(a.number, a.decided, a.verdict.value, a.decision) for a in reports[1].attempts]
-        assert got == wanted
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        spec = data.draw(specs(subject.one))
+        step = spec.time is not TimeModel.HELD
+        formula = data.draw(formulas(Shape(step=step, mixed=subject.profile.mixed)))
+        case = data.draw(traces(spec))
+        swap = {EndPolicy.WEAK: EndPolicy.STRONG, EndPolicy.STRONG: EndPolicy.WEAK}
+        for policy, other in swap.items():
+            reports = []
+            for consequent, at_end in ((formula, policy), (no(formula), other)):
+                changed = with_consequent(spec, consequent)
+                [owed] = changed.requirements.values()
+                upon = requirement(consequent, upon=owed.trigger, at_end=at_end)
+                one = spec_of(upon, time=spec.time, period=spec.period)
+                reports.append(
+                    subject.judge(replace(case, spec=replace(one, signals=spec.signals)))
+                )
+            exchange = {"P": "F", "F": "P", "I": "I"}
+            wanted = [
+                (a.number, a.decided, exchange[a.verdict.value], a.decision)
+                for a in reports[0].attempts
+            ]
+            got = [(a.number, a.decided, a.verdict.value, a.decision) for a in reports[1].attempts]
+            assert got == wanted

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rvmon.spec.checked import TimeModel
@@ -17,79 +16,86 @@ from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_a_longer_trace_overturns_nothing(subject: Any, data: st.DataObject) -> None:
+def test_a_longer_trace_overturns_nothing(subject: Any, holds: Any) -> None:
     """An attempt that the prefix decided stays decided so, at the same instant."""
-    case = data.draw(cases(subject.profile))
-    count = data.draw(st.integers(0, len(case.actions)))
-    prefix = subject.judge(replace(case, actions=case.actions[:count], end=None))
-    later = outcomes(subject.judge(case))
-    for (name, number), outcome in outcomes(prefix).items():
-        if outcome.decision is Decision.PREFIX and not is_upon_end(case.spec.requirements[name]):
-            assert later[name, number] == outcome
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        case = data.draw(cases(subject.profile))
+        count = data.draw(st.integers(0, len(case.actions)))
+        prefix = subject.judge(replace(case, actions=case.actions[:count], end=None))
+        later = outcomes(subject.judge(case))
+        for (name, number), outcome in outcomes(prefix).items():
+            if outcome.decision is Decision.PREFIX and not is_upon_end(
+                case.spec.requirements[name]
+            ):
+                assert later[name, number] == outcome
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_splitting_by_advance(subject: Any, data: st.DataObject) -> None:
+def test_splitting_by_advance(subject: Any, holds: Any) -> None:
     """`advance` between samples, to any instant up to the next, changes nothing."""
-    case = data.draw(cases(subject.profile))
-    actions: list[Sample | int] = []
-    before: int | None = None
-    for action in case.actions:
-        instant = action.t if isinstance(action, Sample) else action
-        if before is not None:
-            middle = st.integers(before, instant)
-            actions += sorted(data.draw(st.lists(middle, max_size=2)))
-        actions.append(action)
-        before = instant
-    assert subject.differences(case, replace(case, actions=tuple(actions))) == []
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        case = data.draw(cases(subject.profile))
+        actions: list[Sample | int] = []
+        before: int | None = None
+        for action in case.actions:
+            instant = action.t if isinstance(action, Sample) else action
+            if before is not None:
+                middle = st.integers(before, instant)
+                actions += sorted(data.draw(st.lists(middle, max_size=2)))
+            actions.append(action)
+            before = instant
+        assert subject.differences(case, replace(case, actions=tuple(actions))) == []
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_empty_samples_in_held_time(subject: Any, data: st.DataObject) -> None:
+def test_empty_samples_in_held_time(subject: Any, holds: Any) -> None:
     """In held time samples that say nothing change nothing: no verdict depends on their rate."""
-    case = data.draw(cases(replace(subject.profile, time=TimeModel.HELD)))
-    if not case.samples:
-        return
-    first, last = case.samples[0].t, case.samples[-1].t
-    said = {sample.t for sample in case.samples}
-    extra = data.draw(st.lists(st.integers(first, last), max_size=5))
-    told = [*case.samples, *(Sample(t, {}) for t in {*extra} - said)]
-    told.sort(key=lambda sample: sample.t)
-    advances = tuple(t for t in case.advances if t > last)
-    assert subject.differences(case, replace(case, actions=(*told, *advances))) == []
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        case = data.draw(cases(replace(subject.profile, time=TimeModel.HELD)))
+        if not case.samples:
+            return
+        first, last = case.samples[0].t, case.samples[-1].t
+        said = {sample.t for sample in case.samples}
+        extra = data.draw(st.lists(st.integers(first, last), max_size=5))
+        told = [*case.samples, *(Sample(t, {}) for t in {*extra} - said)]
+        told.sort(key=lambda sample: sample.t)
+        advances = tuple(t for t in case.advances if t > last)
+        assert subject.differences(case, replace(case, actions=(*told, *advances))) == []
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_order_inside_a_sample(subject: Any, data: st.DataObject) -> None:
+def test_order_inside_a_sample(subject: Any, holds: Any) -> None:
     """The order in which a sample lists its names changes nothing."""
-    case = data.draw(cases(subject.profile))
-    turned = tuple(
-        Sample(action.t, dict(reversed(action.values.items())))
-        if isinstance(action, Sample)
-        else action
-        for action in case.actions
-    )
-    assert subject.differences(case, replace(case, actions=turned)) == []
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        case = data.draw(cases(subject.profile))
+        turned = tuple(
+            Sample(action.t, dict(reversed(action.values.items())))
+            if isinstance(action, Sample)
+            else action
+            for action in case.actions
+        )
+        assert subject.differences(case, replace(case, actions=turned)) == []
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_shifting_in_time(subject: Any, data: st.DataObject) -> None:
+def test_shifting_in_time(subject: Any, holds: Any) -> None:
     """A trace that happens later is judged alike, later (clocked: by multiples of the period)."""
-    case = data.draw(cases(subject.profile))
-    shift = 7 * (case.spec.period or 1)
-    later = tuple(
-        replace(action, t=action.t + shift) if isinstance(action, Sample) else action + shift
-        for action in case.actions
-    )
-    end = None if case.end is None else case.end + shift
-    moved = subject.judge(replace(case, actions=later, end=end))
-    assert differences(subject.judge(case), _back(moved, shift)) == []
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        case = data.draw(cases(subject.profile))
+        shift = 7 * (case.spec.period or 1)
+        later = tuple(
+            replace(action, t=action.t + shift) if isinstance(action, Sample) else action + shift
+            for action in case.actions
+        )
+        end = None if case.end is None else case.end + shift
+        moved = subject.judge(replace(case, actions=later, end=end))
+        assert differences(subject.judge(case), _back(moved, shift)) == []
 
 
 def _back(report: Report, shift: int) -> Report:

@@ -1,19 +1,22 @@
-"""The length of a tick is of no account to an automaton: it steps from event to event."""
+"""The length of a tick is of no account to an engine: it steps from event to event."""
 
 from __future__ import annotations
 
-from hypothesis import assume, given, settings
+import sys
+from types import FrameType
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from rvmon.errors import RvmonError
-from rvmon.session import Spec
 from rvmon.spec.checked import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
 from rvmon.testing.drive import drive
+from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.scale import compact, in_units, scaled
 from rvmon.testing.strategies import cases
-from rvmon.testing.walk import numerics
+from rvmon.testing.walk import numerics, parts_of
 from rvmon.verdict.report import Report
 
 SPARSE = 1_000
@@ -21,35 +24,61 @@ SPARSE = 1_000
 
 FURTHER = 1_000_000
 
+FORMS = ("auto", "automaton", "network", "file")
+"""Progression may have to step at every tick; C is made of the automaton's tables."""
 
-@settings(max_examples=60, deadline=None)
+ENGINE = ("automaton/stretch.py", "automaton/table.py", "/dataflow/", "/runtime/", "<generated")
+"""The code whose calls are the steps of an engine."""
+
+
+@pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
-def test_scaling(data: st.DataObject) -> None:
-    """A million times longer: the same attempts and verdicts, at the same instants and ticks."""
-    case = data.draw(cases(Profile(mixed=False, requirements=1)))
+def test_scaling(form: str, data: st.DataObject) -> None:
+    """A million times longer: the same attempts and verdicts, as many steps, the same instants."""
+    plain = Profile(mixed=False, requirements=1, captures=False, for_each=False)
+    case = data.draw(cases(plain if form == "file" else Profile(mixed=False, requirements=1)))
     parts = [part for r in case.spec.requirements.values() for part in _numbers(r.trigger)]
     parts += [part for r in case.spec.requirements.values() for part in _numbers(r.consequent)]
+    parts += [
+        part.function
+        for r in case.spec.requirements.values()
+        for capture in r.captures
+        for part in parts_of(capture.value)
+        if isinstance(part, UpdateValue)
+    ]
     assume(UpdateFunction.RATE not in parts)  # it is per second
-    short, long = scaled(case, SPARSE), scaled(case, SPARSE * FURTHER)
-    wanted = in_units(by_automaton(short), SPARSE)
-    assert in_units(by_automaton(long), SPARSE * FURTHER) == wanted
+    short, steps = judged(form, scaled(case, SPARSE))
+    long, more_steps = judged(form, scaled(case, SPARSE * FURTHER))
+    assert in_units(long, SPARSE * FURTHER) == in_units(short, SPARSE)
+    assert more_steps == steps
 
 
-def by_automaton(case: Case) -> Report:
-    """The automaton's report; formulas that have none are passed over."""
+def judged(form: str, case: Case) -> tuple[Report, int]:
+    """A form's report and its steps; formulas that it refuses are passed over."""
+    monitor = Maker(form)(case)
+    assume(monitor is not None)
+    assert monitor is not None
+    steps = 0
+
+    def count(frame: FrameType, event: str, _: object) -> None:
+        nonlocal steps
+        steps += event == "call" and any(one in frame.f_code.co_filename for one in ENGINE)
+
+    before = sys.getprofile()
+    sys.setprofile(count)
     try:
-        monitor = Spec(case.spec).monitor(engine="automaton", sources=case.names)
-    except RvmonError as error:
-        assume("no automaton" not in str(error))
-        raise
-    return drive(monitor, case)[0]
+        report, _ = drive(monitor, case)
+    finally:
+        sys.setprofile(before)
+    return report, steps
 
 
 def _numbers(formula: Formula) -> list[UpdateFunction]:
     return [part.function for part in numerics(formula) if isinstance(part, UpdateValue)]
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
 def test_a_case_made_compact_is_judged_the_same(data: st.DataObject) -> None:
     """Brought to few ticks, a case has the same attempts, at the same instants and ticks."""
@@ -58,5 +87,5 @@ def test_a_case_made_compact_is_judged_the_same(data: st.DataObject) -> None:
     assume(small is not None)
     assert small is not None
     assert small.unit <= small.grain
-    wanted = in_units(by_automaton(case), small.grain, small.origin)
-    assert in_units(by_automaton(small.case), small.unit) == wanted
+    wanted = in_units(judged("automaton", case)[0], small.grain, small.origin)
+    assert in_units(judged("automaton", small.case)[0], small.unit) == wanted

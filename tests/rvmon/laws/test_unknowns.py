@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from rvmon.spec.checked import CheckedSpec, EndPolicy, Event, Mode, Probe, ProbeAtom, Type
@@ -54,32 +54,33 @@ def resolved(spec: CheckedSpec, sample: Sample, draw: Callable[..., Scalar]) -> 
     return Sample(sample.t, {name: of(name, value) for name, value in sample.values.items()})
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_resolving_unknowns(subject: Any, data: st.DataObject) -> None:
+def test_resolving_unknowns(subject: Any, holds: Any) -> None:
     """With values for what was unknown, P stays P and F stays F, decided no later.
 
     The trigger is known (`start`), `known(x)` speaks of the unknown itself and is left out.
     """
-    spec = data.draw(specs(subject.one))
-    [first] = spec.requirements.values()
-    probes = [part for part in subformulas(first.consequent) if isinstance(part, ProbeAtom)]
-    assume(not any(part.probe is Probe.KNOWN for part in probes))
-    assume(first.at_end not in (EndPolicy.PASS, EndPolicy.FAIL))
-    owed = replace(first, trigger=start, mode=Mode.UPON, pulse=False)
-    spec = replace(spec, requirements={owed.id: owed})
-    case = data.draw(traces(spec))
-    told = tuple(
-        resolved(spec, action, data.draw) if isinstance(action, Sample) else action
-        for action in case.actions
-    )
-    before = outcomes(subject.judge(case))
-    after = outcomes(subject.judge(replace(case, actions=told)))
-    assert set(before) == set(after)
-    for key, outcome in before.items():
-        if outcome.decided is not None:
-            assert after[key].verdict == outcome.verdict
-            assert after[key].decided is not None
-            assert after[key].decided <= outcome.decided
-            if outcome.decision is Decision.PREFIX:
-                assert after[key].decision is Decision.PREFIX
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        spec = data.draw(specs(subject.one))
+        [first] = spec.requirements.values()
+        probes = [part for part in subformulas(first.consequent) if isinstance(part, ProbeAtom)]
+        assume(not any(part.probe is Probe.KNOWN for part in probes))
+        assume(first.at_end not in (EndPolicy.PASS, EndPolicy.FAIL))
+        owed = replace(first, trigger=start, mode=Mode.UPON, pulse=False)
+        spec = replace(spec, requirements={owed.id: owed})
+        case = data.draw(traces(spec))
+        told = tuple(
+            resolved(spec, action, data.draw) if isinstance(action, Sample) else action
+            for action in case.actions
+        )
+        before = outcomes(subject.judge(case))
+        after = outcomes(subject.judge(replace(case, actions=told)))
+        assert set(before) == set(after)
+        for key, outcome in before.items():
+            if outcome.decided is not None:
+                assert after[key].verdict == outcome.verdict
+                assert after[key].decided is not None
+                assert after[key].decided <= outcome.decided
+                if outcome.decision is Decision.PREFIX:
+                    assert after[key].decision is Decision.PREFIX

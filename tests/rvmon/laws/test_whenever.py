@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from rvmon.spec.checked import Mode
@@ -20,33 +20,34 @@ from rvmon.trace.sample import Sample
 ALL_KNOWN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
 
 
-@settings(max_examples=50, deadline=None)
-@given(data=st.data())
-def test_whenever_is_weak_until(subject: Any, data: st.DataObject) -> None:
+def test_whenever_is_weak_until(subject: Any, holds: Any) -> None:
     """A level that is always known starts and settles the same attempts either way."""
-    spec = data.draw(specs(subject.one))
-    [first] = spec.requirements.values()
-    level = p if is_pulse(first.trigger) or data.draw(st.booleans()) else first.trigger
-    assume(level != end)
-    whenever = replace(first, trigger=level, pulse=False, mode=Mode.WHENEVER)
-    weak = two(first.consequent, "W", no(level))
-    upon = replace(whenever, mode=Mode.UPON, consequent=weak)
-    # Every signal has a value from the first sample on and none is ever lost.
-    spec = replace(spec, signals=signals())
-    case = data.draw(traces(spec, TraceProfile(unknowns=False)))
-    actions = tuple(
-        Sample(action.t, {**ALL_KNOWN, **action.values})
-        if isinstance(action, Sample) and action is case.samples[0]
-        else action
-        for action in case.actions
-    )
-    # A trigger over payloads, `prev` and the like may be unknown all the same.
-    told = [
-        replace(case, spec=replace(spec, requirements={r.id: r}), actions=actions)
-        for r in (whenever, upon)
-    ]
-    assume(_known(subject, told[0]))
-    assert subject.differences(*told) == []
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        spec = data.draw(specs(subject.one))
+        [first] = spec.requirements.values()
+        level = p if is_pulse(first.trigger) or data.draw(st.booleans()) else first.trigger
+        assume(level != end)
+        whenever = replace(first, trigger=level, pulse=False, mode=Mode.WHENEVER)
+        weak = two(first.consequent, "W", no(level))
+        upon = replace(whenever, mode=Mode.UPON, consequent=weak)
+        # Every signal has a value from the first sample on and none is ever lost.
+        spec = replace(spec, signals=signals())
+        case = data.draw(traces(spec, TraceProfile(unknowns=False)))
+        actions = tuple(
+            Sample(action.t, {**ALL_KNOWN, **action.values})
+            if isinstance(action, Sample) and action is case.samples[0]
+            else action
+            for action in case.actions
+        )
+        # A trigger over payloads, `prev` and the like may be unknown all the same.
+        told = [
+            replace(case, spec=replace(spec, requirements={r.id: r}), actions=actions)
+            for r in (whenever, upon)
+        ]
+        assume(_known(subject, told[0]))
+        assert subject.differences(*told) == []
 
 
 def _known(subject: Any, case: Case) -> bool:

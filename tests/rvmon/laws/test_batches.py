@@ -1,0 +1,79 @@
+"""Samples that come in pieces, or out of order, are judged as if they had come whole, in order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rvmon.session import Spec
+from rvmon.testing.build import e, requirement, spec_of
+from rvmon.testing.case import Case
+from rvmon.testing.compare import differences
+from rvmon.testing.drive import drive
+from rvmon.testing.forms import Maker
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.strategies import cases
+from rvmon.trace.sample import Sample
+from rvmon.verdict.report import Report
+
+ENGINES = ("auto", "progression", "network")
+DELAY = 9
+
+
+def whole(engine: str, case: Case) -> Report:
+    """The report of a monitor that gets every sample whole and in order."""
+    monitor = Maker(engine)(case)
+    assert monitor is not None
+    return drive(monitor, case)[0]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_the_order_inside_a_batch(engine: str, data: st.DataObject) -> None:
+    """A sample in pieces with equal stamps, in any order, is the same as the whole sample."""
+    case = data.draw(cases(Profile(mixed=False)))
+    monitor = Spec(case.spec).monitor(engine=engine, settle="next", sources=case.names)
+    for action in case.actions:
+        if not isinstance(action, Sample):
+            monitor.advance_ns(action)
+            continue
+        pieces = data.draw(st.permutations([{name: x} for name, x in action.values.items()]))
+        for piece in pieces or [{}]:
+            monitor.step_ns(action.t, piece)
+    report = monitor.finish_ns(case.end)
+    assert differences(whole(engine, case), report) == []
+    assert report.health == whole(engine, case).health
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_the_order_within_the_delay(engine: str, data: st.DataObject) -> None:
+    """Samples that come late, but within `max delay`, are judged at their instants."""
+    case = data.draw(cases(Profile(mixed=False)))
+    case = replace(case, actions=case.samples)
+    late = [(s.t + data.draw(st.integers(0, DELAY)), s) for s in case.samples]
+    spec = replace(case.spec, max_delay=DELAY)
+    monitor = Spec(spec).monitor(engine=engine, sources=case.names)
+    for _, sample in sorted(late, key=lambda entry: entry[0]):
+        monitor.step_ns(sample.t, sample.values)
+    report = monitor.finish_ns(case.end)
+    assert differences(whole(engine, case), report) == []
+    assert report.health == whole(engine, case).health
+
+
+def test_what_comes_after_the_delay_is_left_out() -> None:
+    """A sample below the watermark is not judged; one within it is, whatever came between."""
+    spec = replace(spec_of(requirement(e, upon=e)), max_delay=3)
+    monitor = Spec(spec).monitor()
+    for t in (10, 6, 7, 20, 17, 16):
+        monitor.step_ns(t, {"e": True})
+    report = monitor.finish_ns()
+    assert [attempt.triggered for attempt in report.attempts] == [7, 10, 17, 20]
+    assert [(h.kind.value, h.count, h.first) for h in report.health if h.count > 1] == [
+        ("late", 2, 6)
+    ]
