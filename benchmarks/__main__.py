@@ -15,9 +15,10 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
+from itertools import groupby
 from pathlib import Path
 
-from benchmarks.agreement import Agreement, check
+from benchmarks.agreement import Agreement, Referee
 from benchmarks.attempts import OpenAttempts, measure_open
 from benchmarks.contenders import contenders
 from benchmarks.findings import Findings
@@ -115,17 +116,21 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
     results: list[Result] = []
     agreements: list[Agreement] = []
     absent = dict(environment.missing)
-    for workload in workloads(size, sections):
-        say(f"{workload.section}: {workload.name}, {workload.form}")
-        taking_part = list(contenders(environment, native, workload.section))
-        results.append(measure(workload, taking_part, size.plan))
-        agreements += check(workload, environment, traces=size.traces)
-    for workload in suite.processed(size.columns) if "process" in sections else ():
-        say(f"process: {workload.name}")
-        with tempfile.TemporaryDirectory() as folder:
-            place = Path(folder)
-            results.append(measure_process(workload, size.repeats, environment, native, place))
-        agreements += check(workload, environment, traces=size.traces)
+    with Referee(environment, size.traces) as referee:
+        for section, group in groupby(workloads(size, sections), lambda one: one.section):
+            taking_part = list(contenders(environment, native, section))
+            for workload in group:
+                say(f"{section}: {workload.name}, {workload.form}")
+                results.append(measure(workload, taking_part, size.plan))
+                agreements += referee.check(workload)
+            for contender in taking_part:
+                contender.close()
+        for workload in suite.processed(size.columns) if "process" in sections else ():
+            say(f"process: {workload.name}")
+            with tempfile.TemporaryDirectory() as folder:
+                place = Path(folder)
+                results.append(measure_process(workload, size.repeats, environment, native, place))
+            agreements += referee.check(workload)
     open_attempts: list[OpenAttempts] = []
     if "open" in sections:
         say("open attempts")

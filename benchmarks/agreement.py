@@ -58,14 +58,35 @@ class Agreement:
     remark: str = ""
 
 
-def check(workload: Workload, environment: Environment, *, traces: int) -> list[Agreement]:
-    """Compare ours with each peer that can be asked.
+class Referee:
+    """Asks the peers for verdicts; a context manager, as it keeps their processes.
 
     Args:
-        workload: its first formula is judged.
         environment: of the peers.
-        traces: so many damaged traces.
+        traces: so many damaged traces are judged per workload.
     """
+
+    def __init__(self, environment: Environment, traces: int) -> None:
+        self._traces = traces
+        self._peers = {
+            label: Peer(environment.python, CONTESTS[name].way.worker)
+            for label, name in CONTEST_OF.items()
+            if CONTESTS[name].way.package in environment.versions
+        }
+
+    def __enter__(self) -> Referee:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for peer in self._peers.values():
+            peer.close()
+
+    def check(self, workload: Workload) -> list[Agreement]:
+        """Compare ours on the workload's first formula with each peer that can be asked."""
+        return _check(workload, self._peers, self._traces)
+
+
+def _check(workload: Workload, peers: Mapping[str, Peer], traces: int) -> list[Agreement]:
     questions = [_damaged(workload, seed) for seed in range(traces)]
     try:
         ours = [answers(question, ask_engine) for question in questions]
@@ -74,16 +95,13 @@ def check(workload: Workload, environment: Environment, *, traces: int) -> list[
         remark = str(error).splitlines()[0]
         return [Agreement("rvmon", workload.name, workload.form, remark=remark)]
     found = []
-    for label, contest_name in CONTEST_OF.items():
-        contest = CONTESTS[contest_name]
-        if contest.way.package not in environment.versions:
-            continue
+    for label, peer in peers.items():
         if label == "rtamt" and _bound(workload) > RTAMT_BOUND:
             remark = f"not asked: its offline evaluation takes too long above {RTAMT_BOUND} rows"
             found.append(Agreement(label, workload.name, workload.form, remark=remark))
             continue
-        with Peer(environment.python, contest.way.worker) as peer:
-            found.append(_compare(workload, label, contest, peer, questions, ours, failures))
+        contest = CONTESTS[CONTEST_OF[label]]
+        found.append(_compare(workload, label, contest, peer, questions, ours, failures))
     return found
 
 

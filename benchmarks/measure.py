@@ -76,7 +76,7 @@ class Result:
 
 
 def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> Result:
-    """Give the workload to all contenders and let them pass over it in turn."""
+    """Give the workload to all contenders and let them pass over it in turn; they stay open."""
     ready: list[tuple[Contender, int]] = []
     refusals: list[tuple[str, str]] = []
     for contender in contenders:
@@ -103,8 +103,6 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
         )
         for contender, rows in ready
     )
-    for contender in contenders:
-        contender.close()
     return Result(
         workload.section,
         workload.name,
