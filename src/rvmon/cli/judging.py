@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.progress import shown_while_reading
 from rvmon.errors import TraceError
+from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec, load
 from rvmon.trace.health import Health, HealthKind
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from rvmon.trace.sample import Recording
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
+    from rvmon.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +138,7 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(trace, None, tuple(before), place + message)
-    report = replace(report, misses=_misses(spec, trace, report, recording.names))
+    report = _second_look(spec, trace, report, recording.names, goals=options.only is None)
     return Judged(trace, _named(report, trace, recording.health()))
 
 
@@ -170,20 +172,40 @@ def in_order(recording: Recording) -> list[Sample]:
     return [merged[t] for t in sorted(merged)]
 
 
-def _misses(spec: Spec, trace: str, report: Report, names: frozenset[str] | None) -> dict[str, str]:
-    """What the triggers lacked that never came true; standard input cannot be read again."""
+def _second_look(
+    spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
+) -> Report:
+    """What is asked of the samples when the verdicts are known.
+
+    What the triggers lacked that never came true, and whether the cover goals were shown; standard
+    input cannot be read again.
+    """
     silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
+    wanted = goals and bool(spec.checked.covers)
     end = report.end
-    if trace == "-" or not silent or end is None:
-        return {}
+    if trace == "-" or end is None or not (silent or wanted):
+        return report
+    samples = [sample for sample in in_order(spec.recording(trace)) if sample.t <= end]
+    if wanted:
+        report = replace(report, goals=_goals(spec, samples, end, names))
+    if not silent:
+        return report
     from rvmon.explain.miss import nearest_miss
 
-    samples = [sample for sample in in_order(spec.recording(trace)) if sample.t <= end]
     found = {
         name: nearest_miss(spec.checked, spec.requirements[name], samples, end, names)
         for name in silent
     }
-    return {name: miss for name, miss in found.items() if miss}
+    return replace(report, misses={name: miss for name, miss in found.items() if miss})
+
+
+def _goals(
+    spec: Spec, samples: Sequence[Sample], end: int, names: frozenset[str] | None
+) -> Mapping[str, Verdict]:
+    monitor = Spec(goals_as_requirements(spec.checked)).monitor(sources=names)
+    for sample in samples:
+        monitor.step_ns(sample.t, sample.values)
+    return goal_verdicts(monitor.finish_ns(end))
 
 
 def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:

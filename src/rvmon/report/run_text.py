@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.report.forecast import forecast_sentence
@@ -35,6 +35,10 @@ def print_reports(reports: Sequence[Report], spec: CheckedSpec) -> None:
         print_report(report, spec, console)
     if len(reports) > 1:
         console.print(_runs_table(reports))
+        for name in reports[0].goals:
+            count = sum(report.goals[name] is Verdict.PASS for report in reports)
+            state = f"met, shown by {count} of {len(reports)}" if count else "open"
+            console.print(f"cover goal {name}: {state}")
 
 
 def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
@@ -58,6 +62,8 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
             if len(attempts) > SHOWN_PER_REQUIREMENT:
                 rest = len(attempts) - SHOWN_PER_REQUIREMENT
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")
+    if report.goals:
+        console.print(_goals_text(report.goals))
     for line in _health_lines(report):
         console.print(line)
 
@@ -92,6 +98,19 @@ def _least_robustness(report: Report) -> dict[str, str]:
             known = least.get(attempt.requirement, attempt.robustness)
             least[attempt.requirement] = min(known, attempt.robustness)
     return {name: f"{value:.4g}" for name, value in least.items()}
+
+
+def _goals_text(goals: Mapping[str, Verdict]) -> Text:
+    from rich.text import Text
+
+    from rvmon.report.style import MARKS
+
+    words = {Verdict.PASS: "shown", Verdict.INCONCLUSIVE: "not shown, still possible at the end"}
+    text = Text("cover goals:\n")
+    for name, verdict in goals.items():
+        sign = MARKS[verdict].sign
+        text.append(f"  {name}  {verdict} {sign}  {words.get(verdict, 'not shown')}\n")
+    return text
 
 
 def _miss_text(name: str, miss: str) -> Text:

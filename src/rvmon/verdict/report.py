@@ -25,6 +25,8 @@ class Report:
         end: the last instant of the trace, ticks; `None` if it has no position.
         misses: by requirement that was not triggered, what its trigger lacked when it was nearest;
             where somebody looked.
+        goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
+            else `NT`; where somebody looked.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -35,6 +37,7 @@ class Report:
     origin: int = 0
     end: int | None = None
     misses: Mapping[str, str] = field(default_factory=dict)
+    goals: Mapping[str, Verdict] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """The report as JSON text, in the shape that `rvmon run --format json` prints.

@@ -14,6 +14,7 @@ from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
 
 _ALWAYS = ("number", "triggered", "decided", "verdict", "decision", "reason")
 """Keys that every attempt has in JSON; the others are left out where they are empty."""
@@ -30,6 +31,7 @@ class _ReportJson(msgspec.Struct):
     trace: str = ""
     origin: int = 0
     end: int | None = None
+    goals: dict[str, Verdict] = {}
 
 
 def encode(report: Report) -> str:
@@ -55,6 +57,7 @@ def encode(report: Report) -> str:
             for name, verdict in report.verdicts.items()
         },
         "health": report.health,
+        **({"goals": report.goals} if report.goals else {}),
     }
     return msgspec.json.encode(document).decode()
 
@@ -102,7 +105,8 @@ def decode(text: str | bytes) -> Report:
         end=document.end,
     )
     found = {name: entry.nearest_miss for name, entry in document.requirements.items()}
-    return replace(report, misses={name: miss for name, miss in found.items() if miss})
+    misses = {name: miss for name, miss in found.items() if miss}
+    return replace(report, misses=misses, goals=document.goals)
 
 
 def _attempt(attempt: Attempt) -> dict[str, object]:
