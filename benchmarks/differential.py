@@ -39,6 +39,7 @@ def run_part(
         seeds,
         profile,
         traces,
+        each=options.traces,
         online_every=0 if options.engine == "c" else options.online_every,
         shrunk=0 if options.fail_fast else options.show,
     )
@@ -48,6 +49,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--pairs", type=int, default=1_000)
+    parser.add_argument("--traces", type=int, default=1, help="of the pairs with one spec")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
     parser.add_argument("--engine", choices=FORMS, default="auto")
@@ -75,7 +77,7 @@ def main(argv: list[str]) -> int:
     options = parse(argv)
     profile = profile_of(options)
     traces = TraceProfile(unknowns=not options.known)
-    seeds = [f"{options.seed}/{number}" for number in range(options.pairs)]
+    seeds = [f"{options.seed}/{number}" for number in range(options.pairs // options.traces)]
     size = 20 if options.fail_fast else 250
     parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]
     work = partial(run_part, options, profile, traces)

@@ -37,8 +37,7 @@ _RUNTIME = tuple(
 )
 
 ENGINES: dict[str, tuple[str, ...]] = {
-    "auto": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA),
-    "automaton": (*_AUTOMATA, "monitor/judge.py", "monitor/lane.py", *_INPUTS),
+    "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA),
     "progression": (
         *_FORMULAS,
         "automaton/progression.py",

@@ -4,6 +4,12 @@ EQUIVALENT = {
     "stretch.py off by one: `position - 1` => `position`": (
         "time passes up to the position before its letter is read, here or in the step itself"
     ),
+    "table.py off by one: `position - 1` => `position`": (
+        "the same in generated code, which has its own `run`"
+    ),
+    "python_source.py dropped operand: `name in uses and uses[name].history` => `name in uses`": (
+        "what was before is kept of more signals, and nobody asks for it"
+    ),
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
         "`true and x` is only not made smaller; it still means x"
     ),

@@ -60,7 +60,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--pairs", type=int, default=1_000)
-    parser.add_argument("--engine", choices=ENGINES, default="auto")
+    parser.add_argument("--engine", choices=ENGINES, default="automaton")
     parser.add_argument("--time", choices=("held", "sampled", "clocked"))
     parser.add_argument("--without", nargs="*", default=[], metavar="FEATURE")
     return parser.parse_args(argv)
@@ -72,7 +72,16 @@ def _python_files(path: Path) -> list[Path]:
 
 def _command(options: argparse.Namespace, pairs: int) -> list[str]:
     command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
-    command += ["--pairs", str(pairs), "--seed", str(options.seed), "--engine", options.engine]
+    command += [
+        "--traces",
+        "4",
+        "--pairs",
+        str(pairs),
+        "--seed",
+        str(options.seed),
+        "--engine",
+        options.engine,
+    ]
     if options.time:
         command += ["--time", options.time]
     if options.without:

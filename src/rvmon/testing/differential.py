@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 from rvmon.errors import RvmonError
-from rvmon.monitor import Monitor
 from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
@@ -18,7 +17,7 @@ from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.health import health_differences
 from rvmon.testing.law import judge, word
-from rvmon.testing.online import online_differences
+from rvmon.testing.online import Watched, online_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
 from rvmon.testing.walk import intervals
@@ -61,14 +60,23 @@ class Tally:
         self.disagreements += other.disagreements
 
 
+def cases_of(
+    seed: object, profile: Profile, traces: TraceProfile, number: int = 1
+) -> Iterator[Case]:
+    """The random cases of a seed, the same for ever: one specification, so many traces."""
+    dice = random.Random(str(seed))  # noqa: S311 - a seed is meant to be repeated
+    spec = random_spec(dice, profile)
+    for _ in range(number):
+        yield random_trace(dice, spec, traces)
+
+
 def case_of(seed: object, profile: Profile, traces: TraceProfile) -> Case:
-    """The random case of a seed; the same for ever.
+    """The first random case of a seed.
 
     >>> case_of(1, Profile(), TraceProfile()) == case_of(1, Profile(), TraceProfile())
     True
     """
-    dice = random.Random(str(seed))  # noqa: S311 - a seed is meant to be repeated
-    return random_trace(dice, random_spec(dice, profile), traces)
+    return next(cases_of(seed, profile, traces))
 
 
 def disagreements(case: Case, make: MakeMonitor, *, online: bool = False) -> list[str]:
@@ -92,7 +100,7 @@ def _found(case: Case, make: MakeMonitor, online: bool) -> list[str] | None:
             return None
         actual, _ = drive(monitor, case)
         found = differences(expected, actual)
-        if isinstance(monitor, Monitor):
+        if isinstance(monitor, Watched):
             found += frame_differences(expected, actual)
             found += health_differences(case, word(case), actual.health)
         again = make(case) if online and not found else None
@@ -109,23 +117,25 @@ def campaign(
     profile: Profile,
     traces: TraceProfile,
     *,
+    each: int = 1,
     online_every: int = 10,
     shrunk: int = 3,
 ) -> Tally:
-    """Judge the case of each seed with an engine and the oracle.
+    """Judge the cases of each seed with an engine and the oracle.
 
     Args:
         make: gives a fresh monitor.
         seeds: whatever tells cases apart.
         profile: of the specs.
         traces: of the traces.
+        each: so many traces for the specification of each seed, which is compiled once.
         online_every: in every so many-th case the return values of all calls are checked too;
             0 for none.
         shrunk: so many disagreements are shrunk and shown, the others only named.
     """
     tally = Tally()
-    for index, seed in enumerate(seeds):
-        case = case_of(seed, profile, traces)
+    cases = ((seed, case) for seed in seeds for case in cases_of(seed, profile, traces, each))
+    for index, (seed, case) in enumerate(cases):
         online = online_every > 0 and index % online_every == 0
         found = _found(case, make, online)
         if found is None:
