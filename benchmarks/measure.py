@@ -89,7 +89,12 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
     for number in range(plan.repeats):
         turn = number % max(len(ready), 1)
         for contender, rows in [*ready[turn:], *ready[:turn]]:
-            done = contender.run()
+            try:
+                done = contender.run()
+            except PeerError as error:
+                refusals.append((contender.label, str(error).splitlines()[0]))
+                ready.remove((contender, rows))
+                continue
             spent[contender.label].append(done.cpu_ns / rows)
             violated[contender.label] = done.violated
     figures = tuple(

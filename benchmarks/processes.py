@@ -55,6 +55,7 @@ def measure_process(
     pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
     stem = folder / "trace"
     programs = [*_ours(spec, stem, workload), *_peers(stem, pattern, workload, environment, native)]
+    figures, refusals = _figures(programs, repeats)
     return Result(
         workload.section,
         workload.name,
@@ -62,7 +63,8 @@ def measure_process(
         1,
         workload.rows,
         workload.changing,
-        tuple(_figures(programs, repeats)),
+        tuple(figures),
+        tuple(refusals),
     )
 
 
@@ -176,28 +178,35 @@ def _reelay_violated(printed: str) -> int | None:
     return None if row < 0 else row
 
 
-def _figures(programs: list[Program], repeats: int) -> Iterator[Figure]:
+def _figures(programs: list[Program], repeats: int) -> tuple[list[Figure], list[tuple[str, str]]]:
+    """Figures of the programs that work, and what the others said."""
     spent: dict[str, list[float]] = {program.label: [] for program in programs}
     violated: dict[str, int | None] = {}
+    refusals: list[tuple[str, str]] = []
     for number in range(-1, repeats):  # the first round fills caches and does not count
-        for program in programs:
+        for program in list(programs):
             before = _children()
             done = subprocess.run(program.command, capture_output=True, text=True, check=False)
             if done.returncode not in (0, 1):
-                raise RuntimeError(f"{program.label}: {done.stderr[:500]}")
+                said = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+                refusals.append((program.label, said[-1]))
+                programs.remove(program)
+                continue
             if number >= 0:
                 spent[program.label].append((_children() - before) * 1e9 / program.rows)
             violated[program.label] = program.violated(done.stdout)
-    for program in programs:
-        times = spent[program.label]
-        yield Figure(
+    figures = [
+        Figure(
             program.label,
             program.rows,
-            statistics.median(times),
-            min(times),
-            max(times),
+            statistics.median(spent[program.label]),
+            min(spent[program.label]),
+            max(spent[program.label]),
             (violated[program.label],),
         )
+        for program in programs
+    ]
+    return figures, refusals
 
 
 def _children() -> float:

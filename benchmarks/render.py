@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -43,7 +44,7 @@ def render(findings: Findings) -> str:
     for section, title in TITLES.items():
         results = [result for result in findings.results if result.section == section]
         if results:
-            lines += ["", f"## {title}", "", *_results(results)]
+            lines += ["", f"## {title}", "", *_results(results), *_refusals(results)]
     if findings.open_attempts:
         lines += ["", "## Open attempts", "", *_open_attempts(findings)]
     if findings.agreements:
@@ -223,6 +224,14 @@ def _results(results: Sequence[Result]) -> Iterator[str]:
             + " | ".join(cells)
             + " |"
         )
+
+
+def _refusals(results: Sequence[Result]) -> Iterator[str]:
+    """Who did not take part in how many workloads, and why."""
+    counts = Counter(f"{label}: {why}" for result in results for label, why in result.refusals)
+    if counts:
+        yield ""
+        yield "Not measured: " + "; ".join(f"{text} ({n})" for text, n in counts.items()) + "."
 
 
 def _cell(figure: Figure | None, result: Result) -> str:

@@ -7,6 +7,7 @@ from benchmarks.measure import Plan, measure
 from benchmarks.workload import Workload
 
 from rvmon.testing.build import p
+from rvmon.testing.peers.client import PeerError
 from rvmon.testing.peers.core import UntranslatableError
 
 WORKLOAD = Workload("online", "a workload", "past", (p,), {"p": [True, True, False, True] * 50})
@@ -68,3 +69,19 @@ def test_refusal() -> None:
 def test_changing() -> None:
     """The share of changing rows counts each row at which some column changes."""
     assert WORKLOAD.changing == 100 / 199
+
+
+class Dying(Fake):
+    """A contender that dies at its third pass."""
+
+    def run(self) -> Pass:
+        if len(self.calls) == 2:
+            raise PeerError("its process ended")
+        return super().run()
+
+
+def test_death() -> None:
+    """Who dies is left out with the reason; the others are measured on."""
+    result = measure(WORKLOAD, [Dying("a", 10, []), Fake("b", 20, [])], Plan(3, 1.0))
+    assert [figure.label for figure in result.figures] == ["b"]
+    assert result.refusals == (("a", "its process ended"),)
