@@ -70,16 +70,18 @@ class BatchLibrary:
 
     Args:
         plan: of requirements that all have automata.
+        optimised: whether it is to be fast; otherwise it is compiled sooner.
 
     Raises:
         RvmonError: there is no C compiler, or a requirement has no automaton.
     """
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, *, optimised: bool = True) -> None:
         self.names = Names(plan)
         self.plan = plan
         made = c_files(plan)
-        path = built(made.texts, [f"{made.prefix}_batch.c"], ".so", ["-O3", "-shared", "-fPIC"])
+        flags = ["-O3" if optimised else "-O0", "-shared", "-fPIC"]
+        path = built(made.texts, [f"{made.prefix}_batch.c"], ".so", flags)
         library = ctypes.CDLL(str(path))
         address, number = ctypes.c_void_p, ctypes.c_int64
 

@@ -72,7 +72,7 @@ class Maker:
         if not all(can_generate(one) for one in requirements):
             return None
         plan = plan_alone(compiled)
-        return BatchLibrary(plan) if self.form == "c" else _module_of(plan)
+        return BatchLibrary(plan, optimised=False) if self.form == "c" else _module_of(plan)
 
 
 def _module_of(plan: Plan) -> ModuleType:
