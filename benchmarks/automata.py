@@ -1,0 +1,127 @@
+"""Automata of random formulas: how many close, how large they get, how long they take.
+
+    python -m benchmarks.automata --formulas 600 --depth 3
+
+Formulas are drawn until so many temporal operators are nested in each as was asked for; every other
+is owed from the start, the others `whenever p`. CPU times are of construction and reduction
+together. Exits 1 if one takes longer than the budget of `--most` seconds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import statistics
+import sys
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
+from rvmon.automaton.reduce import reduce
+from rvmon.formula.alphabet import alphabet_of
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import lower
+from rvmon.monitor.wording import Words
+from rvmon.spec.checked import Binary, Formula, Unary
+from rvmon.testing.build import p, requirement, start
+from rvmon.testing.generate_formula import Shape, formula
+from rvmon.testing.show import show
+
+SHAPE = Shape(mixed=False, past=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How large an automaton is."""
+
+    locations: int
+    clocks: int
+    rows: int
+
+    @classmethod
+    def of(cls, automaton: Automaton) -> Size:
+        """Of one automaton; its rows are its locations times their regions of age."""
+        return cls(len(automaton.locations), automaton.clocks, len(automaton.time_values))
+
+
+def nesting(part: Formula) -> int:
+    """How many temporal operators are nested at most."""
+    match part:
+        case Unary(operand=operand, interval=interval):
+            return (interval is not None) + nesting(operand)
+        case Binary(left=left, right=right, interval=interval):
+            return (interval is not None) + max(nesting(left), nesting(right))
+        case _:
+            return 0
+
+
+def main(argv: Sequence[str]) -> int:
+    """Draw, build, measure, print."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--formulas", type=int, default=600)
+    parser.add_argument("--depth", type=int, default=3)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--most", type=float, default=2.0, help="seconds for one formula")
+    options = parser.parse_args(argv)
+    seconds: list[tuple[float, str]] = []
+    sizes: list[tuple[Size, Size, Size]] = []
+    refused: Counter[str] = Counter()
+    drawn = 0
+    while len(seconds) < options.formulas:
+        dice = random.Random(f"{options.seed}/{drawn}")
+        drawn += 1
+        owed = formula(dice, SHAPE, options.depth)
+        if nesting(owed) < options.depth:
+            continue
+        mode = {"upon": start} if len(seconds) % 2 else {"whenever": p}
+        began = time.process_time()
+        try:
+            sizes.append(_built(owed, mode))
+        except DoesNotCloseError as error:
+            refused[str(error)] += 1
+        seconds.append((time.process_time() - began, show(owed)))
+    _print(options, sizes, refused, seconds)
+    return int(max(seconds)[0] > options.most)
+
+
+def _built(owed: Formula, mode: dict[str, Formula]) -> tuple[Size, Size, Size]:
+    """As constructed, as people are told of it, and as verdicts alone want it."""
+    factory = Factory()
+    obligation = lower(
+        requirement(owed, upon=mode.get("upon"), whenever=mode.get("whenever")), factory
+    )
+    whole = construct(factory.next(obligation.owed), alphabet_of(obligation.owed), Budget())
+    told = reduce(whole, Words(obligation.origins).told)
+    return Size.of(whole), Size.of(told), Size.of(reduce(told))
+
+
+def _print(
+    options: argparse.Namespace,
+    sizes: Sequence[tuple[Size, Size, Size]],
+    refused: Counter[str],
+    seconds: Sequence[tuple[float, str]],
+) -> None:
+    count = len(seconds)
+    print(f"{count} formulas, {options.depth} temporal operators nested, seed {options.seed}")
+    print(f"  automata {len(sizes)} ({100 * len(sizes) / count:.0f} %), the rest by the network:")
+    for reason, number in refused.most_common():
+        print(f"    {number} {reason}")
+    for place, name in enumerate(("constructed", "reduced", "for verdicts alone")):
+        own = [size[place] for size in sizes]
+        for what in ("locations", "clocks", "rows"):
+            values = [getattr(size, what) for size in own]
+            middle = statistics.median(values)
+            print(f"  {name}: {what} median {middle:g}, largest {max(values)}, sum {sum(values)}")
+    ordered = sorted(seconds)
+    shown = {
+        f"p{share}": ordered[min(count * share // 100, count - 1)][0] for share in (50, 90, 99)
+    }
+    print("  CPU s:", ", ".join(f"{name} {value:.3f}" for name, value in shown.items()), end="")
+    print(f", longest {ordered[-1][0]:.3f}: {ordered[-1][1]}")
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
