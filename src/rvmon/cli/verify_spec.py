@@ -45,8 +45,11 @@ def _binding(text: str) -> tuple[str, str]:
 
 def _print_observation(one: Observation, spec: Spec) -> None:
     from rvmon.timed.describe import run_lines
+    from rvmon.timed.observe import UNDECIDED_IN_THE_END
 
     word = {True: "holds on all runs", False: "fails on some run", None: ""}[one.holds]
+    if one.remark == UNDECIDED_IN_THE_END:
+        word = "holds on all finite runs"
     print(f"{one.requirement}: {'; '.join(filter(None, (word, one.remark)))}")
     if one.text:
         print(f'    "{one.text}"')

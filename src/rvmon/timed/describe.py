@@ -66,6 +66,8 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
         if number == run.loop:
             yield f"{'':>9}  from here for ever:"
         now += step.delay
+        if step.action is None and step.window.high == 0 and number + 1 < len(run.steps):
+            continue  # an instant that matters for the query only, and nothing is seen of it
         text = f"{time_text(network, now):>9}  {action_text(network, step.action)}"
         if step.window.low or step.window.high != 0:
             text += f"   (after {window_text(network, step.window)})"

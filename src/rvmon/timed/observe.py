@@ -37,6 +37,9 @@ from rvmon.timed.search import UNLIMITED, Budget, Node, Watch
 from rvmon.timed.start import check_start
 from rvmon.trace.time import TICKS_PER_UNIT
 
+UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
+"""What is said of a requirement without deadline that no finite run fails."""
+
 _Node = Node[ObservedSite, ObservedLink]
 
 
@@ -125,7 +128,7 @@ def _observe(
     elif holds and "triggered" not in first:
         remark = "vacuous: no run triggers it"
     elif holds and horizon(obligation.owed) is None:
-        remark = "no run fails it in finite time; that it is met in the end is a query's question"
+        remark = UNDECIDED_IN_THE_END
     return Observation(
         requirement.id,
         requirement.text,
