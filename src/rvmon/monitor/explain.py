@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.automaton.stretch import run
+from rvmon.formula.horizon import horizon
 from rvmon.formula.progress import after, value
 from rvmon.formula.state import UNKNOWN
-from rvmon.monitor.bench import Open
+from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.cause import CauseFinder
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.wording import deadline
@@ -72,15 +73,17 @@ def explain_open(judge: Judge, attempt: Open, end: int | None = None) -> Explana
     owed = judge.compiled.words.owed(residual, anchors)
     last = deadline(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    return Explanation(f"still owed: {owed}{longer(last, end)}{doubt}", owed, last)
+    return Explanation(f"still owed: {owed}{longer(judge, attempt, end)}{doubt}", owed, last)
 
 
-def longer(last: int | None, end: int | None) -> str:
-    """How much longer it may take to decide what can be met up to `last`."""
+def longer(judge: Bench, attempt: Open, end: int | None) -> str:
+    """How much longer a trace that has ended would decide an attempt, whatever it brings."""
     if end is None:
         return ""
-    if last is None:
-        return "; no time bounds it"
-    if last <= end:
+    reach = horizon(judge.compiled.obligation.owed)
+    if reach is None:
+        return "; no time bounds all of it"
+    latest = attempt.triggered + reach
+    if latest <= end:
         return "; a tick longer would decide it"
-    return f"; more than {format_ticks(last - end)} longer would decide it"
+    return f"; more than {format_ticks(latest - end)} longer would decide it"

@@ -43,8 +43,8 @@ def network_open(judge: NetworkJudge, attempt: Open, end: int | None = None) -> 
     owed = _owed_now(judge, network, token[1][0], end)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
     if owed is None:
-        return Explanation(f"still owed: what lies ahead{longer(None, end)}{doubt}")
-    reason = f"still owed: {owed.text}{longer(owed.deadline, end)}{doubt}"
+        return Explanation(f"still owed: what lies ahead{longer(judge, attempt, end)}{doubt}")
+    reason = f"still owed: {owed.text}{longer(judge, attempt, end)}{doubt}"
     return Explanation(reason, owed.text, owed.deadline)
 
 

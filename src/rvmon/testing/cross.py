@@ -19,11 +19,15 @@ from rvmon.testing.peers.core import UntranslatableError
 from rvmon.testing.peers.judged import Unfit, disagreements
 from rvmon.testing.peers.ways import WAYS
 from rvmon.testing.scale import Compact, compact, in_units
+from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.report import Report
 
 BASELINE = "auto"
 """What the others are compared with: the engine that `rvmon run` takes."""
+
+SNAPSHOTS = 20
+"""How often a run is frozen, evenly over its samples."""
 
 MOST_TICKS = 3_000
 MOST_WORK = 60_000
@@ -86,6 +90,7 @@ def _crossing(name: str, case: Case, peers: Mapping[str, Peer]) -> Crossing:
     for form in FORMS:
         if form != BASELINE:
             answers[form] = _answer(form, case, report)
+    answers["snapshot"] = _snapshot(case, report)
     answers["columns"] = _columns(case, report)
     for way in WAYS.values():
         peer = peers.get(way.worker)
@@ -106,6 +111,24 @@ def _answer(form: str, case: Case, baseline: Report) -> Answer:
         return Answer(_first_line(error))
     if report is None:
         return Answer("does not judge such requirements")
+    return Answer(differences=tuple(differences(baseline, report)))
+
+
+def _snapshot(case: Case, baseline: Report) -> Answer:
+    """A monitor that is frozen and made anew again and again on the way."""
+    from rvmon.session import Spec
+
+    spec = Spec(case.spec)
+    monitor = spec.monitor(sources=case.names)
+    every = max(len(case.actions) // SNAPSHOTS, 1)
+    for number, action in enumerate(case.actions):
+        if number % every == 0:
+            monitor = spec.restore(monitor.snapshot())
+        if isinstance(action, Sample):
+            monitor.step_ns(action.t, action.values)
+        else:
+            monitor.advance_ns(action)
+    report = spec.restore(monitor.snapshot()).finish_ns(case.end)
     return Answer(differences=tuple(differences(baseline, report)))
 
 
