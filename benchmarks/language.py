@@ -10,23 +10,34 @@ anything went wrong.
 from __future__ import annotations
 
 import argparse
+import math
 import random
 import re
 import sys
 import time
 from collections import Counter
+from collections.abc import Hashable, Sequence
 from pathlib import Path
 
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.render import render_concise, render_full, render_json
 from rvmon.errors import SpecError
+from rvmon.explain.analysed import analyse
+from rvmon.explain.codes import every_rule
+from rvmon.monitor import compile_spec
 from rvmon.spec import compile_text
 from rvmon.spec.formatter import format_text
 from rvmon.spec.rules.registry import all_rules
 from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate_text import random_text, syntax_of
 from rvmon.testing.spec_text import meaning, scribbled, spec_text
 
 ROOT = Path(__file__).parents[1]
+TIMELINE = re.compile(r"\b(?:P|F|NT|I) (everywhere|before r|after q until r|after q|between q r):")
 WORD = re.compile(r"\w+|[^\w\s]+|\s+")
+GRAMMATICAL = 0.3
+"""Of the texts so many are made by the grammar; the others are mutants."""
+
 STRANGE = ("->", "E<>", "A[]", "[0, 3 s)", "inf", "`x y`", "age(", "1e999", "\x00", "é", "(" * 50)
 
 
@@ -38,46 +49,94 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--texts", type=int, default=100_000)
     parser.add_argument("--layouts", type=int, default=10_000)
     parser.add_argument("--requirements", type=int, default=1_000)
+    parser.add_argument("--analysed", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args(argv)
+    catalogue()
     compile_text("event a")  # the parser is built once, which is no part of what is measured
     accidents = texts(options.texts, random.Random(options.seed))
     accidents += layouts(options.layouts, options.seed)
     large_file(options.requirements, random.Random(options.seed))
+    analysis(options.analysed, random.Random(options.seed))
     return int(accidents > 0)
 
 
+def catalogue() -> None:
+    """What there is: codes with pages and kept messages, patterns by scopes, FRET's translation."""
+    rules = every_rule()
+    pages = sum((ROOT / "docs" / "codes" / f"{code}.md").exists() for code in rules)
+    kept = ROOT / "tests" / "rvmon" / "explain" / "golden"
+    messages = sum((kept / f"{code}.txt").exists() for code in rules)
+    print(f"diagnostic codes: {len(rules)}, with a page {pages}, with a kept message {messages}")
+    patterns = timelines = 0
+    scopes: set[str] = set()
+    for path in ROOT.glob("src/rvmon/spec/patterns/*.rv"):
+        text = path.read_text(encoding="utf-8")
+        patterns += len(re.findall(r"^define ", text, re.MULTILINE))
+        found = TIMELINE.findall(text)
+        timelines += len(found)
+        scopes |= set(found)
+    print(f"patterns: {patterns}, scopes: {len(scopes)}, timelines that are tests: {timelines}")
+    page = (ROOT / "docs" / "reference" / "fret.md").read_text(encoding="utf-8")
+    tables = [re.findall(r"^\| [`(].*$", part, re.MULTILINE) for part in page.split("## ")]
+    rows = [len(table) for table in tables if table]
+    sizes = " x ".join(map(str, rows))
+    print(f"FRET: {sizes} = {math.prod(rows)} combinations of scope, condition and timing")
+
+
 def texts(count: int, dice: random.Random) -> int:
-    """Mutate specifications, by words and by characters; every answer has to be orderly."""
+    """Specifications mutated by words and by characters, and texts by the grammar.
+
+    Every answer has to be orderly, and what can be read has to say the same when it is laid out.
+    """
     paths = [*ROOT.glob("specs/*.rv"), *ROOT.glob("src/rvmon/spec/patterns/*.rv")]
     seeds = [path.read_text(encoding="utf-8") for path in paths]
     seeds += [text for rule in all_rules().values() for text in (rule.example, rule.instead)]
     words = [*sorted({word for seed in seeds for word in WORD.findall(seed)}), *STRANGE]
     codes: Counter[str] = Counter()
-    accidents = read = 0
+    counts: Counter[str] = Counter()
     slowest = 0.0
     for number in range(count):
-        text = mutated(dice.choice(seeds), words, dice)
-        started = time.process_time()
+        by_grammar = dice.random() < GRAMMATICAL
+        text = random_text(dice) if by_grammar else mutated(dice.choice(seeds), words, dice)
         try:
-            _, findings = compile_text(text)
-            read += 1
-        except SpecError as error:
-            findings = error.diagnostics
+            started = time.process_time()
+            findings = answer(text)
+            slowest = max(slowest, (time.process_time() - started) / max(len(text), 1_000))
+            syntax = syntax_of(text)
+            counts["parsed"] += syntax is not None
+            if syntax is not None and not kept_by_layout(text, syntax):
+                counts["changed"] += 1
+                print(f"text {number} says something else when it is laid out:\n{text}\n")
         except Exception as error:  # noqa: BLE001 - that none occurs is what is measured
-            accidents += 1
+            counts["accidents"] += 1
             print(f"text {number}: {type(error).__name__}: {error}\n{text}\n")
             continue
-        slowest = max(slowest, (time.process_time() - started) / max(len(text), 1_000))
+        counts["read"] += not any(found.severity is Severity.ERROR for found in findings)
         codes.update(finding.code for finding in findings)
-        render_full(findings)
-        render_concise(findings)
-        render_json(findings)
-    print(f"texts: {count:,}, read {read:,}, refused {count - read - accidents:,}")
-    print(f"accidents: {accidents}")
+    print(f"texts: {count:,}, parsed {counts['parsed']:,}, without errors {counts['read']:,}")
+    print(f"accidents: {counts['accidents']}, changed by their layout: {counts['changed']}")
     print(f"codes seen: {len(codes)} of {len(all_rules())}")
     print(f"slowest: {slowest * 10_000:.2f} s of CPU per 10 kB")
-    return accidents
+    return counts["accidents"] + counts["changed"]
+
+
+def answer(text: str) -> Sequence[Diagnostic]:
+    """What is found in a text, rendered in all forms."""
+    try:
+        _, findings = compile_text(text)
+    except SpecError as error:
+        findings = tuple(error.diagnostics)
+    render_full(findings)
+    render_concise(findings)
+    render_json(findings)
+    return findings
+
+
+def kept_by_layout(text: str, syntax: Hashable) -> bool:
+    """Whether a text says the same when it is laid out, and then keeps its form."""
+    once = format_text(text)
+    return syntax_of(once) == syntax and format_text(once) == once
 
 
 def mutated(text: str, words: list[str], dice: random.Random) -> str:
@@ -126,6 +185,20 @@ def large_file(count: int, dice: random.Random) -> None:
         compile_text(text)
         seconds = time.process_time() - started
         print(f"check of {name}: {seconds:.2f} s of CPU, {len(text):,} characters")
+
+
+def analysis(count: int, dice: random.Random) -> None:
+    """CPU time of analysing a file, without a limit, and what remains undecided."""
+    compiled = compile_spec(compile_text(many(count, dice))[0])
+    started = time.process_time()
+    found = analyse(compiled, seconds=3600).examination
+    seconds = time.process_time() - started
+    print(
+        f"analysis of {count:,} requirements: {seconds:.1f} s of CPU; {found.pairs} pairs, "
+        f"undecided {found.pairs_undecided}; sets of up to {found.whole_sets}, "
+        f"undecided {found.sets_undecided}; {len(found.conflicts)} conflicts, "
+        f"{len(found.implications)} implied"
+    )
 
 
 def many(count: int, dice: random.Random) -> str:
