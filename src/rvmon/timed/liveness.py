@@ -9,16 +9,16 @@ Fahrenberg, Larsen, Markey, Ouaknine, Worrell, Model Checking Real-Time Systems,
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rvmon.timed.deadlock import Deadlocks, blurred, is_time_bounded
 from rvmon.timed.federation import before, negated, subtract_all, universe
+from rvmon.timed.loops import time_passes
 from rvmon.timed.meter import Meter
 from rvmon.timed.paths import stride_path
 from rvmon.timed.run import Ending
 from rvmon.timed.stay import Crossing, Inside, Stand, StaySite, Stride
-from rvmon.timed.timing import TimedStep, timing_of
 from rvmon.timed.zones import Zone, cut
 
 
@@ -128,7 +128,9 @@ class Staying:
     def _loop(self, way: list[_Frame], first: int) -> Escape | None:
         """The loop whose first and last symbolic states are equal."""
         strides = _strides(way)
-        if time_passes(way[first].stand, strides[first:], self._dim):
+        head = way[first].stand
+        steps = [step.timed for step in stride_path(head.site, strides[first:])]
+        if time_passes(steps, head.zone, self._dim):
             return Escape(way[0].stand.site, strides, (), Ending.LOOP, first)
         return self._improper(Escape(way[0].stand.site, strides, (), Ending.ZENO_LOOP, first))
 
@@ -165,43 +167,3 @@ class Staying:
 
 def _strides(way: list[_Frame]) -> tuple[tuple[Stride, StaySite], ...]:
     return tuple(frame.link for frame in way if frame.link is not None)
-
-
-def time_passes(head: Stand, strides: Sequence[tuple[Stride, StaySite]], dim: int) -> bool:
-    """Whether time passes without bound on a loop: going round more often can take longer.
-
-    Args:
-        head: the symbolic state in which the loop starts and ends.
-        strides: the moves of the loop.
-        dim: of the zones.
-    """
-    once = [step.timed for step in stride_path(head.site, strides)]
-    sure = _surely_passes(once)
-    if sure is not None:
-        return sure
-    rounds = dim + 1
-    return _longest(head, once * rounds) < _longest(head, once * (2 * rounds))
-
-
-def _surely_passes(loop: Sequence[TimedStep]) -> bool | None:
-    """Whether time passes without bound on a loop, where its bounds alone say so.
-
-    Source: Tripakis, Verifying Progress in Timed Systems, 1999 (strong non-Zenoness).
-    """
-    highest: dict[int, float] = {}
-    for step in loop:
-        for clock, value in step.resets:
-            highest[clock] = max(value, highest.get(clock, 0.0))
-    bounds = [bound for step in loop for bound in (*step.leave, *step.enter)]
-    if any(x == 0 and y not in highest for x, y, _ in bounds):
-        return False  # a clock that is never set stays below a number
-    if any(y == 0 and x in highest and -bound >= highest[x] + 1 for x, y, bound in bounds):
-        return True  # between being set and the bound each round takes a unit of time
-    return None
-
-
-def _longest(head: Stand, steps: Sequence[TimedStep]) -> float:
-    """The longest time that steps can take, rounded up to whole units."""
-    timing = timing_of(steps, head.zone)
-    assert timing is not None  # noqa: S101 - a loop of symbolic states can be gone round
-    return -(-float(timing.bounds[0, len(steps)]) // timing.scale)

@@ -58,26 +58,27 @@ class Timing:
     scale: int
 
 
-def timing_of(steps: Sequence[TimedStep], start: Zone | None = None) -> Timing | None:
+def timing_of(
+    steps: Sequence[TimedStep], start: Zone | None = None, *, rounds: int = 1
+) -> Timing | None:
     """The timed runs along a path; `None` if there are none.
 
     Args:
         steps: of the path.
         start: the valuations it may start from; `None`: all clocks are 0. If given, the last rows
             and columns of the result are the instants at which each clock was 0 before.
+        rounds: how often the path will be put together with itself: the grid is as much finer.
     """
     import numpy as np
 
     dim = 1 if start is None else isqrt(len(start))
     size = len(steps) + dim
-    scale = size + 1
+    scale = rounds * size + 1
     bounds = np.full((size, size), inf)
     np.fill_diagonal(bounds, 0.0)
 
     def limit(p: int, q: int, bound: float) -> None:
-        whole = ceil(bound)
-        grid = whole * scale - (bound != whole)
-        bounds[p, q] = min(bounds[p, q], grid)
+        bounds[p, q] = min(bounds[p, q], on_grid(bound, scale))
 
     reset_at: dict[int, tuple[int, float]] = {}
     if start is not None:
@@ -106,9 +107,22 @@ def timing_of(steps: Sequence[TimedStep], start: Zone | None = None) -> Timing |
         for clock, value in step.resets:
             reset_at[clock] = now, value
         apply(step.enter, now)
-    for middle in range(size):
-        np.minimum(bounds, bounds[:, middle, None] + bounds[None, middle, :], out=bounds)
+    close(bounds)
     return None if bool((np.diagonal(bounds) < 0).any()) else Timing(bounds, scale)
+
+
+def on_grid(bound: float, scale: int) -> float:
+    """A finite bound in grid steps, a strict one short of one."""
+    whole = ceil(bound)
+    return whole * scale - (bound != whole)
+
+
+def close(bounds: NDArray[np.float64]) -> None:
+    """Tighten all bounds to those that they imply together, in place."""
+    import numpy as np
+
+    for middle in range(len(bounds)):
+        np.minimum(bounds, bounds[:, middle, None] + bounds[None, middle, :], out=bounds)
 
 
 def windows(timing: Timing) -> list[Window]:
