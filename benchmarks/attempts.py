@@ -42,17 +42,34 @@ class OpenAttempts:
 
 
 def measure_open(
-    repeats: int, counts: Sequence[int] = (1, 10, 100, 1_000, 10_000, 100_000), samples: int = 2_000
+    repeats: int,
+    counts: Sequence[int] = (1, 10, 100, 1_000, 10_000, 100_000),
+    samples: int = 2_000,
+    seconds: float = 10,
 ) -> Iterator[OpenAttempts]:
-    """Measure for each count, each time in a new process."""
+    """Measure for each count, each time in a new process.
+
+    Args:
+        repeats: of each count.
+        counts: of open attempts.
+        samples: measured with so many open.
+        seconds: which opening them may take.
+
+    Raises:
+        PeerError: it takes longer; what was measured before has been given out.
+    """
     for count in counts:
         spent: list[float] = []
         sizes: list[float] = []
         for _ in range(repeats):
             with Peer(Path(sys.executable), OURS) as peer:
-                answer = peer.ask("hold_open", spec=SPEC, attempts=count, samples=samples)
+                answer = peer.ask(
+                    "hold_open", spec=SPEC, attempts=count, samples=samples, seconds=seconds
+                )
             if answer["open"] != count:
-                raise PeerError(f"{answer['open']} attempts are open, not {count}")
+                raise PeerError(
+                    f"{answer['open']:,} of {count:,} were open after {seconds:g} seconds"
+                )
             spent.append(answer["cpu_ns"] / samples)
             sizes.append(answer["bytes"])
         yield OpenAttempts(

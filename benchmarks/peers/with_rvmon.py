@@ -83,13 +83,14 @@ class Peer:
         spent = time.process_time_ns() - began
         return {"cpu_ns": spent, "violated": self._violated(failed)}
 
-    def hold_open(self, spec: str, attempts: int, samples: int) -> dict[str, Any]:
+    def hold_open(self, spec: str, attempts: int, samples: int, seconds: float) -> dict[str, Any]:
         """Open so many attempts, then pass over samples that decide none.
 
         Args:
             spec: reads the event `asked` and the signals `answered` and `other`.
             attempts: opened one per sample.
             samples: measured after that.
+            seconds: which opening them may take; after that there are fewer.
 
         Returns:
             CPU ns of the measured samples, bytes of memory per open attempt.
@@ -98,8 +99,11 @@ class Peer:
         monitor.step_ns(0, {"answered": False, "other": False})
         gc.collect()
         before = _resident()
+        latest = time.monotonic() + seconds
         for t in range(1, attempts + 1):
             monitor.step_ns(t, {"asked": True})
+            if t % 100 == 0 and time.monotonic() > latest:
+                return {"cpu_ns": 0, "bytes": 0, "open": t}
         gc.collect()
         grown = _resident() - before
         rows = [(attempts + 1 + i, {"other": i % 2 == 0}) for i in range(samples)]

@@ -1,0 +1,72 @@
+"""Columns in memory against the oracle on random specs and traces, by NumPy or compiled C.
+
+    python -m benchmarks.columns --pairs 10000 --engine c
+
+Traces are filled up, as each row of a column holds a value; prints every disagreement with its
+seed, and exits with 1 if there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Sequence
+
+from rvmon.errors import RvmonError
+from rvmon.monitor import compile_spec
+from rvmon.testing.compare import differences
+from rvmon.testing.differential import cases_of
+from rvmon.testing.filled import filled, judge_columns
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.law import judge
+
+
+def judge_seed(seed: str, engine: str, each: int, count: Counter[str]) -> None:
+    """Judge the cases of a seed, counting pairs, attempts and disagreements."""
+    profile = Profile(captures=False, for_each=False)
+    compiled = None
+    for case in cases_of(seed, profile, TraceProfile(), each):
+        whole = filled(case)
+        try:
+            compiled = compiled or compile_spec(whole.spec)
+            report = judge_columns(compiled, whole, engine)
+        except RvmonError as error:
+            print(f"seed {seed}: {error}")
+            count["disagreements"] += 1
+            continue
+        if report is None:
+            count["refused"] += 1
+            continue
+        expected = judge(whole)
+        count["pairs"] += 1
+        count["attempts"] += len(expected.attempts)
+        found = differences(expected, report)
+        count["disagreements"] += bool(found)
+        for line in found:
+            print(f"seed {seed}: {line}")
+
+
+def main(argv: Sequence[str]) -> int:
+    """Judge until there are so many pairs, and print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--pairs", type=int, default=1_000)
+    parser.add_argument("--each", type=int, default=10, help="traces per specification")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--engine", choices=("auto", "c"), default="auto")
+    options = parser.parse_args(argv)
+    count: Counter[str] = Counter()
+    number = 0
+    while count["pairs"] < options.pairs:
+        judge_seed(f"{options.seed}/{number}", options.engine, options.each, count)
+        number += 1
+    shown = ", ".join(
+        f"{name} {count[name]}" for name in ("pairs", "refused", "attempts", "disagreements")
+    )
+    print(f"columns, engine {options.engine}, seed {options.seed}: {shown}")
+    return 1 if count["disagreements"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,86 @@
+"""Random cases as columns: every sample updates every signal, as rows of arrays do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rvmon.codegen.c_batch import BatchLibrary
+from rvmon.monitor import CompiledSpec
+from rvmon.monitor.batch import can_batch, evaluate_blocks
+from rvmon.monitor.batch_c import evaluate_c_blocks
+from rvmon.monitor.generated import can_generate, plan_alone
+from rvmon.testing.case import Case
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.schema import Kind
+from rvmon.verdict.report import Report
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_BEFORE: dict[Kind, Scalar] = {Kind.BOOL: False, Kind.INT: 0, Kind.REAL: float("nan")}
+"""What a signal is until it is known."""
+
+
+def filled(case: Case) -> Case:
+    """The case with whole samples; labels and payloads, which arrays do not hold, never come."""
+    spec = case.spec
+    arriving = [n for n in (*spec.signals, *spec.events) if case.names is None or n in case.names]
+    kinds = {name: spec.signals[name].type.kind for name in arriving if name in spec.signals}
+    signals = [name for name, kind in kinds.items() if kind is not Kind.LABEL]
+    events = [n for n in arriving if n in spec.events and not spec.events[n].fields]
+    now: dict[str, Value] = {name: _BEFORE[kinds[name]] for name in signals}
+    samples = []
+    for sample in case.samples:
+        for name in signals:
+            if name in sample.values:
+                value = sample.values[name]
+                known = value is not None and value == value
+                now[name] = value if known else _BEFORE[kinds[name]]
+        occurring = {name: sample.values.get(name) is True for name in events}
+        samples.append(Sample(sample.t, {**now, **occurring}))
+    return replace(case, actions=tuple(samples), names=frozenset((*signals, *events)))
+
+
+def judge_columns(compiled: CompiledSpec, case: Case, engine: str) -> Report | None:
+    """Judge a filled case as `Spec.evaluate` judges arrays.
+
+    Args:
+        compiled: the case's specification.
+        case: from `filled`.
+        engine: `auto` or `c`.
+
+    Returns:
+        `None` if the specification, or a trace without samples, is not judged by columns.
+    """
+    import numpy as np
+
+    names = sorted(case.names or ())
+    if not case.samples or not _judges(compiled, engine):
+        return None
+    types = {Kind.BOOL: np.bool_, Kind.INT: np.int64, Kind.REAL: np.float64}
+
+    def column(name: str) -> NDArray[Any]:
+        signal = compiled.checked.signals.get(name)
+        kind = Kind.BOOL if signal is None else signal.type.kind
+        return np.array([sample.values[name] for sample in case.samples], types[kind])
+
+    times = np.array([sample.t for sample in case.samples], np.int64)
+    blocks = [(times, {name: column(name) for name in names})]
+    if engine == "c":
+        return evaluate_c_blocks(compiled, names, blocks, only=None, until=case.end)
+    return evaluate_blocks(compiled, names, blocks, only=None, engine=engine, until=case.end)
+
+
+def _judges(compiled: CompiledSpec, engine: str) -> bool:
+    if engine != "c":
+        return can_batch(compiled, None)
+    requirements = compiled.requirements.values()
+    if compiled.checked.max_delay is not None or not all(
+        one.automaton is not None and can_generate(one) for one in requirements
+    ):
+        return False
+    key = ("c", None)
+    if key not in compiled.forms:
+        compiled.forms[key] = BatchLibrary(plan_alone(compiled), optimised=False)
+    return True
