@@ -10,6 +10,9 @@ EQUIVALENT = {
     "python_source.py dropped operand: `name in uses and uses[name].history` => `name in uses`": (
         "what was before is kept of more signals, and nobody asks for it"
     ),
+    "judge.py constant: `self.restless = False` => `self.restless = (True)`": (
+        "a restless judge is only visited more often"
+    ),
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
         "`true and x` is only not made smaller; it still means x"
     ),

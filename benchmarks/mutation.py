@@ -94,7 +94,14 @@ def _mutants_at(path: Path, source: str, node: ast.AST) -> Iterator[Mutant]:
         if before != after:
             text = f"({after})" if isinstance(new, ast.expr) else after
             changed = _replaced(source, target, text)
+            if isinstance(target, ast.Constant):
+                # A constant says nothing by itself.
+                before, after = (_line(code, target.lineno) for code in (source, changed))
             yield Mutant(path, target.lineno, kind, before, after, changed)
+
+
+def _line(source: str, number: int) -> str:
+    return source.splitlines()[number - 1].strip()
 
 
 def _replaced(source: str, node: ast.expr | ast.stmt, text: str) -> str:

@@ -306,8 +306,6 @@ class IntakeWriter:
                 names = inputs_of(left, right)
                 if len(names) != 1:
                     return False
-                name = next(iter(names))
-                uses = self.plan.uses[name]
-                return name in self.plan.signals and not uses.history
+                return not self.plan.uses[next(iter(names))].history
             case _:
                 return False

@@ -31,7 +31,17 @@ from rvmon.spec.checked import (
     UpdateValue,
 )
 from rvmon.testing.dice import Dice, chance, pick, weighted
-from rvmon.testing.vocabulary import BOOLS, CARRIER, EVENTS, FIELD, LABEL, LABELS, NUMBERS
+from rvmon.testing.vocabulary import (
+    BOOLS,
+    CARRIER,
+    EVENTS,
+    FIELD,
+    FURTHER,
+    LABEL,
+    LABELS,
+    NUMBERS,
+    SIZE,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +94,7 @@ def atom(dice: Dice, shape: Shape) -> Formula:
         case "signal":
             return SignalAtom(pick(dice, BOOLS))
         case "event":
-            return EventAtom(pick(dice, (*EVENTS, CARRIER)))
+            return EventAtom(pick(dice, (*EVENTS, CARRIER, FURTHER)))
         case "compare":
             return comparison(dice, shape)
         case "probe":
@@ -103,14 +113,14 @@ def comparison(dice: Dice, shape: Shape) -> Formula:
     op = pick(dice, tuple(CompareOp))
     left: Numeric = SignalValue(pick(dice, NUMBERS))
     if chance(dice, 30):
-        left = FieldValue(CARRIER, FIELD)
+        left = field_value(dice)
     elif chance(dice, 40):
         left = arithmetic(dice, shape)
     right: Numeric = Literal(dice.randint(-1, 2))
     if shape.captured and chance(dice, 60):
         right = Captured(pick(dice, shape.captured))
-    elif chance(dice, 15):
-        right = SignalValue(pick(dice, NUMBERS))
+    elif chance(dice, 20):
+        right = _input(dice, shape)
     return Compare(op, right, left) if chance(dice, 10) else Compare(op, left, right)
 
 
@@ -126,9 +136,14 @@ def arithmetic(dice: Dice, shape: Shape) -> Numeric:
     return Arithmetic(op, (second, first) if chance(dice, 40) else (first, second))
 
 
+def field_value(dice: Dice) -> Numeric:
+    """A field of one of the events that carry some."""
+    return FieldValue(FURTHER, SIZE) if chance(dice, 35) else FieldValue(CARRIER, FIELD)
+
+
 def _input(dice: Dice, shape: Shape) -> Numeric:
-    if chance(dice, 10):
-        return FieldValue(CARRIER, FIELD)
+    if chance(dice, 15):
+        return field_value(dice)
     if shape.captured and chance(dice, 20):
         return Captured(pick(dice, shape.captured))
     return SignalValue(pick(dice, NUMBERS))
@@ -136,7 +151,7 @@ def _input(dice: Dice, shape: Shape) -> Numeric:
 
 def _probe(dice: Dice) -> Formula:
     probe = pick(dice, tuple(Probe))
-    names = (*BOOLS, *NUMBERS, *((*EVENTS, CARRIER) if probe is Probe.UPDATED else ()))
+    names = (*BOOLS, *NUMBERS, *((*EVENTS, CARRIER, FURTHER) if probe is Probe.UPDATED else ()))
     return ProbeAtom(probe, pick(dice, names))
 
 

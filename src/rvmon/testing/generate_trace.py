@@ -46,7 +46,7 @@ def random_trace(dice: Dice, spec: CheckedSpec, profile: TraceProfile) -> Case:
     names = None
     if profile.unknowns and chance(dice, 8):
         names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(dice, 20))
-    values = _Values(spec, numbers, names, profile.unknowns, _has_for_each(spec))
+    values = _Values(spec, numbers, names, profile.unknowns, _several(spec))
     time = start = pick(dice, (0, 1, 5, -3))
     actions: list[Sample | int] = []
     for index in range(dice.randint(0 if chance(dice, 5) else 1, profile.samples)):
@@ -105,8 +105,10 @@ def _numbers(spec: CheckedSpec) -> list[int | float]:
     return sorted(found)
 
 
-def _has_for_each(spec: CheckedSpec) -> bool:
-    return all(requirement.for_each is not None for requirement in spec.requirements.values())
+def _several(spec: CheckedSpec) -> frozenset[str]:
+    """The events that may occur more than once at an instant: every requirement is `for each`."""
+    found = [requirement.for_each for requirement in spec.requirements.values()]
+    return frozenset() if None in found else frozenset(one.value.event for one in found if one)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +119,7 @@ class _Values:
     numbers: Sequence[int | float]
     names: frozenset[str] | None
     unknowns: bool
-    several: bool
+    several: frozenset[str]
 
     def sample(self, dice: Dice, *, first: bool) -> dict[str, Value]:
         """Random updates; most signals get a value in the first sample."""
@@ -127,7 +129,7 @@ class _Values:
                 values[name] = self._scalar(dice, signal.type, 5)
         for name, event in self.spec.events.items():
             if self._has_source(name) and chance(dice, 30):
-                values[name] = self._occurrence(dice, event.fields)
+                values[name] = self._occurrence(dice, name, event.fields)
         return values
 
     def _has_source(self, name: str) -> bool:
@@ -146,7 +148,7 @@ class _Values:
             case Kind.REAL:
                 return pick(dice, self.numbers)
 
-    def _occurrence(self, dice: Dice, fields: Mapping[str, Type]) -> Value:
+    def _occurrence(self, dice: Dice, name: str, fields: Mapping[str, Type]) -> Value:
         if self.unknowns and chance(dice, 5):
             return None
         if chance(dice, 5):
@@ -154,6 +156,6 @@ class _Values:
         if not fields or chance(dice, 5):
             return True
         payload = {name: self._scalar(dice, type_, 6) for name, type_ in fields.items()}
-        if self.several and chance(dice, 25):
+        if name in self.several and chance(dice, 25):
             return (payload, {name: self._scalar(dice, t, 6) for name, t in fields.items()})
         return payload

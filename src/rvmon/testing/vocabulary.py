@@ -16,6 +16,9 @@ EVENTS = ("e", "f")
 CARRIER = "g"
 """The event with a payload."""
 FIELD = "k"
+FURTHER = "h"
+"""Another event with a payload."""
+SIZE = "m"
 
 
 def signals(stale: Mapping[str, int] | None = None) -> dict[str, Signal]:
@@ -31,5 +34,5 @@ def signals(stale: Mapping[str, int] | None = None) -> dict[str, Signal]:
 
 def events() -> dict[str, Event]:
     """The events."""
-    carrier = Event(CARRIER, {FIELD: Type(Kind.INT)})
-    return {**{name: Event(name) for name in EVENTS}, CARRIER: carrier}
+    fields = {CARRIER: {FIELD: Type(Kind.INT)}, FURTHER: {SIZE: Type(Kind.REAL)}}
+    return {name: Event(name, fields.get(name, {})) for name in (*EVENTS, CARRIER, FURTHER)}
