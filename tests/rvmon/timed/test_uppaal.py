@@ -42,7 +42,13 @@ def finding(text):
 
 @pytest.mark.parametrize(
     ("model", "constants"),
-    [("fischer", {"N": 3}), ("train_gate", {"N": 3}), ("bridge", {}), ("csma_cd", {"N": 2})],
+    [
+        ("fischer", {"N": 3}),
+        ("train_gate", {"N": 3}),
+        ("train_gate_queue", {}),
+        ("bridge", {}),
+        ("csma_cd", {"N": 2}),
+    ],
 )
 def test_textbook_models_load_and_have_the_known_answers(model, constants):
     """Fischer, train gate, bridge and CSMA/CD: all that their queries ask holds."""
