@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import TYPE_CHECKING
 
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -26,6 +26,9 @@ def check_spec(
 
     spec = load(arguments.spec)
     bindings = dict(_binding(text) for text in arguments.bind)
+    for name in bindings.keys() - spec.checked.signals.keys():
+        known = ", ".join(spec.checked.signals) or "none"
+        raise UnknownNameError(f"--bind {name}: no signal of that name is declared: {known}")
     observations = []
     for one in observe(network, spec.checked, bindings=bindings, budget=budget, watch=watch):
         observations.append(one)

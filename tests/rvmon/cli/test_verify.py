@@ -184,6 +184,12 @@ def test_a_drawing_needs_graphviz(lamp, tmp_path, monkeypatch, capsys):
     assert "install Graphviz" in capsys.readouterr().err
 
 
+def test_a_binding_needs_a_signal(lamp, capsys):
+    """A name that the specification does not declare is told with those that it does."""
+    assert main(["verify", lamp[0], "--spec", lamp[1], "--bind", "light=Lamp.on"]) == 2
+    assert "no signal of that name is declared: lit" in capsys.readouterr().err
+
+
 def test_runs_are_drawn_as_timelines(lamp, capsys):
     """What a requirement reads along each run stands below it, judged as a recording would be."""
     model, spec = lamp
