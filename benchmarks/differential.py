@@ -78,7 +78,7 @@ def main(argv: list[str]) -> int:
     profile = profile_of(options)
     traces = TraceProfile(unknowns=not options.known)
     seeds = [f"{options.seed}/{number}" for number in range(options.pairs // options.traces)]
-    size = 20 if options.fail_fast else 250
+    size = 5 if options.fail_fast else 250
     parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]
     work = partial(run_part, options, profile, traces)
     began = time.perf_counter()

@@ -59,6 +59,15 @@ ENGINES: dict[str, tuple[str, ...]] = {
 }
 """By engine, patterns of files below the package; what does not exist (yet) is passed over."""
 
+RELATED = {
+    "automaton": ("auto", "progression"),
+    "progression": ("auto", "automaton"),
+    "network": ("auto",),
+    "python": ("auto", "file"),
+    "file": ("python",),
+}
+"""By engine, others that have files in common with it, but run other parts of them."""
+
 _ELSEWHERE = (
     "codegen/c_build.py",
     "codegen/c_program.py",

@@ -13,6 +13,11 @@ EQUIVALENT = {
     "judge.py constant: `self.restless = False` => `self.restless = (True)`": (
         "a restless judge is only visited more often"
     ),
+    "residual.py and/or: `left == right or not right` => `left == right and (not right)`": (
+        "only a short cut to what the reduction finds"
+    ),
+    "flow.py dropped operand: `reads.momentary and (not self._is_never(place))` => "
+    "`not self._is_never(place)`": "what stays as it is is worked out again at the next position",
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
         "`true and x` is only not made smaller; it still means x"
     ),

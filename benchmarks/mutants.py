@@ -5,7 +5,8 @@
 Changes are drawn evenly over their kinds, from the lines of the engine's files that the test
 executes (of C, from all lines). Each is tried in a copy of the package. A mutant is killed if the
 test finds a disagreement, hangs or breaks, or if the engine refuses other specifications than it
-did; one that survives is tried again with five times the pairs. Those listed in `EQUIVALENT` change
+did; one that survives is tried again with four times the pairs, then with the engines that have its
+files in common. Those listed in `EQUIVALENT` change
 no behaviour, for the reason given there; others are drawn in their place. Exits 1 if one survives.
 """
 
@@ -23,7 +24,7 @@ import time
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from benchmarks.engines import ENGINES, PACKAGE, files_of
+from benchmarks.engines import ENGINES, PACKAGE, RELATED, files_of
 from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
@@ -31,7 +32,7 @@ from benchmarks.mutation_c import c_mutants
 ROOT = Path(__file__).resolve().parent.parent
 
 MOST_MEMORY = 4 << 30
-MORE = 5
+MORE = 4
 
 
 def main(argv: Sequence[str]) -> int:
@@ -70,7 +71,7 @@ def _python_files(path: Path) -> list[Path]:
     return [file.resolve() for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
 
 
-def _command(options: argparse.Namespace, pairs: int) -> list[str]:
+def _command(options: argparse.Namespace, engine: str, pairs: int) -> list[str]:
     command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
     command += [
         "--traces",
@@ -101,7 +102,13 @@ def _executed_lines(files: Sequence[Path], options: argparse.Namespace) -> dict[
 
     with tempfile.TemporaryDirectory() as directory:
         data = Path(directory) / "coverage"
-        run = ["-m", "coverage", "run", f"--data-file={data}", *_command(options, options.pairs)]
+        run = [
+            "-m",
+            "coverage",
+            "run",
+            f"--data-file={data}",
+            *_command(options, options.engine, options.pairs),
+        ]
         subprocess.run(
             [sys.executable, *run],
             cwd=ROOT,
@@ -143,27 +150,29 @@ class Trial:
         self.package = scratch / "src" / "rvmon"
         self.environment = _environment(scratch, scratch / "src")
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
-        self.known: dict[int, tuple[str, float]] = {}
-        self._as_it_is(options.pairs)
+        self.stages = [(options.engine, options.pairs), (options.engine, MORE * options.pairs)]
+        self.stages += [(engine, options.pairs) for engine in RELATED.get(options.engine, ())]
+        self.known: dict[tuple[str, int], tuple[str, float]] = {}
 
-    def _as_it_is(self, pairs: int) -> tuple[str, float]:
-        """What the engine refuses without a change, and how many seconds the test takes."""
-        if pairs not in self.known:
+    def _as_it_is(self, engine: str, pairs: int) -> tuple[str, float]:
+        """What an engine refuses without a change, and how many seconds the test takes."""
+        key = (engine, pairs)
+        if key not in self.known:
             began = time.perf_counter()
-            verdict, refused = self._run(pairs, 3_600)
-            self.known[pairs] = refused, time.perf_counter() - began
+            verdict, refused = self._run(engine, pairs, 3_600)
+            self.known[key] = refused, time.perf_counter() - began
             if verdict != "survived":
-                sys.exit(f"the engine as it is does not pass the test: {verdict}")
-        return self.known[pairs]
+                sys.exit(f"the engine {engine} as it is does not pass the test: {verdict}")
+        return self.known[key]
 
     def kills(self, mutant: Mutant) -> bool:
         """Try a mutant, and print what became of it."""
         place = self.package / mutant.path.relative_to(PACKAGE)
         verdict = "survived"
-        for pairs in (self.options.pairs, MORE * self.options.pairs):
-            wanted, seconds = self._as_it_is(pairs)
+        for engine, pairs in self.stages:
+            wanted, seconds = self._as_it_is(engine, pairs)
             place.write_text(mutant.source, encoding="utf-8")
-            verdict, refused = self._run(pairs, 10 + 5 * seconds)
+            verdict, refused = self._run(engine, pairs, 10 + 5 * seconds)
             shutil.copy2(mutant.path, place)
             if verdict == "survived" and refused != wanted:
                 verdict = "refuses"
@@ -172,11 +181,11 @@ class Trial:
         print(f"{verdict:9}  {mutant}", flush=True)
         return verdict != "survived"
 
-    def _run(self, pairs: int, most: float) -> tuple[str, str]:
+    def _run(self, engine: str, pairs: int, most: float) -> tuple[str, str]:
         """The test on the copy: `survived`, `killed` or `hung`; how many specs were refused."""
         try:
             done = subprocess.run(
-                [sys.executable, *_command(self.options, pairs)],
+                [sys.executable, *_command(self.options, engine, pairs)],
                 cwd=ROOT,
                 env=self.environment,
                 check=False,

@@ -78,10 +78,13 @@ def mutants(path: Path, lines: set[int]) -> Iterator[Mutant]:
 
 
 def _executed(node: ast.AST) -> Iterator[ast.AST]:
-    """The node and all below it but for annotations and functions (they are met by themselves)."""
+    """The node and all below it that can matter, but for functions: they are met by themselves.
+
+    Annotations do not matter, nor whether `zip` looks at lengths that are equal.
+    """
     yield node
     for name, field in ast.iter_fields(node):
-        if name in ("annotation", "returns"):
+        if name in ("annotation", "returns") or getattr(node, "arg", "") == "strict":
             continue
         for child in field if isinstance(field, list) else [field]:
             if isinstance(child, ast.AST) and not isinstance(child, ast.FunctionDef):

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.case import Case
-from rvmon.testing.compare import outcomes
+from rvmon.testing.compare import Key, outcomes
 from rvmon.testing.drive import Monitored, tell
 from rvmon.testing.law import judge
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
 
 
 @runtime_checkable
@@ -33,22 +34,27 @@ def online_differences(case: Case, monitor: Monitored) -> list[str]:
     """What is wrong with what a monitor says at each action of a case; empty if all is right.
 
     Each call has to return what could be decided by then, no sooner and no later; what is open is
-    what no prefix has decided; before it is due, time alone decides nothing; a wrong sample is
-    refused and changes nothing. Costs one run of the oracle per action.
+    what no prefix has decided; before it is due, time alone decides nothing; what was forecast
+    does not come out otherwise; a wrong sample is refused and changes nothing. Costs one run of the
+    oracle per action.
 
     Args:
         case: what to tell.
         monitor: fresh, for the spec and the sources of the case.
     """
-    told: set[tuple[str, int]] = set()
+    told: set[Key] = set()
     due: int | None = None
+    forecast: dict[Key, Verdict] = {}
     for count, action in enumerate(case.actions, start=1):
         attempts = tell(monitor, action)
         report = judge(Case(case.spec, case.actions[:count], None, case.names))
         found = [*_returned(case, report, attempts, told)]
         if isinstance(monitor, Watched):
             found += _early(attempts, due, action) if count > 1 else ()
-            found += _open(case, report, monitor.open)
+            open_ = monitor.open
+            found += _open(case, report, open_)
+            found += _unforeseen(report, forecast)
+            forecast |= {(a.requirement, a.number): a.forecast for a in open_ if a.forecast}
             due = monitor.next_due
         found += _taken(monitor, action)
         if found:
@@ -58,7 +64,7 @@ def online_differences(case: Case, monitor: Monitored) -> list[str]:
 
 
 def _returned(
-    case: Case, report: Report, attempts: Sequence[Attempt], told: set[tuple[str, int]]
+    case: Case, report: Report, attempts: Sequence[Attempt], told: set[Key]
 ) -> Iterator[str]:
     at_end = _at_end(case)
     due = {
@@ -87,6 +93,14 @@ def _open(case: Case, report: Report, found: Sequence[Attempt]) -> Iterator[str]
     got = {(a.requirement, a.number, a.triggered) for a in found}
     if got != wanted or len(found) != len(got):
         yield f"leaves open {sorted(wanted)}, shown are {sorted(got)}"
+
+
+def _unforeseen(report: Report, forecast: Mapping[Key, Verdict]) -> Iterator[str]:
+    """What was decided otherwise than a forecast said."""
+    for (name, number), outcome in outcomes(report).items():
+        said = forecast.get((name, number), outcome.verdict)
+        if outcome.decision is Decision.PREFIX and said is not outcome.verdict:
+            yield f"decides {name} #{number}: {outcome}; {said.value} was forecast"
 
 
 def _early(attempts: Sequence[Attempt], due: int | None, action: Sample | int) -> Iterator[str]:

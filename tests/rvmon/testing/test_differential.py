@@ -175,6 +175,25 @@ def test_open_attempts_and_their_dues_are_looked_at() -> None:
     assert "but due was None" in found
 
 
+def test_forecasts_have_to_come_true() -> None:
+    """What is said to fail for sure must not pass."""
+
+    class Prophet(Echo):
+        next_due = 1
+
+        @property
+        def open(self) -> Sequence[Attempt]:
+            return [
+                replace(a, forecast=Verdict.FAIL)
+                for a in judge(self.case).attempts
+                if a.decided is None
+            ]
+
+    case = Case(spec_of(requirement(eventually(p, 0, 3))), timeline(p="01"))
+    [found] = disagreements(case, Prophet, online=True)
+    assert found.endswith("F was forecast")
+
+
 def test_input_health_is_compared() -> None:
     """Unknown, missing and stale values are counted, with the requirements that read them."""
     spec = spec_of(requirement(probe("known", "x"), upon=e), stale={"x": 2})
