@@ -73,16 +73,8 @@ def _python_files(path: Path) -> list[Path]:
 
 def _command(options: argparse.Namespace, engine: str, pairs: int) -> list[str]:
     command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
-    command += [
-        "--traces",
-        "4",
-        "--pairs",
-        str(pairs),
-        "--seed",
-        str(options.seed),
-        "--engine",
-        options.engine,
-    ]
+    command += ["--traces", "4", "--pairs", str(pairs), "--seed", str(options.seed)]
+    command += ["--engine", engine]
     if options.time:
         command += ["--time", options.time]
     if options.without:
