@@ -1,6 +1,6 @@
 """Measure our monitors beside the peers and write the page of results.
 
-    python -m benchmarks [--quick] [--only SECTION …] [--rows N] [--repeats N] [--out FILE]
+    python -m benchmarks [--quick] [--only SECTION …] [--out FILE]
 
 Peers run in their own environment beside this file, made from the package index on the first run.
 """
@@ -51,6 +51,7 @@ class Size:
         attempts: held open.
         traces: damaged ones per agreement.
         repeats: passes of each contender.
+        processes: of each program, beside a first one that does not count.
         pass_seconds: what one pass may take.
     """
 
@@ -63,6 +64,7 @@ class Size:
     attempts: tuple[int, ...] = (1, 10, 100, 1_000, 10_000, 100_000)
     traces: int = 2
     repeats: int = 5
+    processes: int = 3
     pass_seconds: float = 0.1
 
     @property
@@ -71,7 +73,7 @@ class Size:
         return Plan(self.repeats, self.pass_seconds)
 
 
-QUICK = Size(5_000, 100_000, 20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 1, 3, 0.05)
+QUICK = Size(5_000, 100_000, 20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 1, 3, 2, 0.05)
 
 
 def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
@@ -129,7 +131,9 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
             say(f"process: {workload.name}")
             with tempfile.TemporaryDirectory() as folder:
                 place = Path(folder)
-                results.append(measure_process(workload, size.repeats, environment, native, place))
+                results.append(
+                    measure_process(workload, size.processes, environment, native, place)
+                )
             agreements += referee.check(workload)
     open_attempts: list[OpenAttempts] = []
     if "open" in sections:
