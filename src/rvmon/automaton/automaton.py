@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from dataclasses import dataclass
 
+from rvmon.automaton.letters import LetterClasses
 from rvmon.automaton.location import Location
 from rvmon.formula.alphabet import Alphabet
 
@@ -37,7 +38,7 @@ class Automaton:
     locations: tuple[Location, ...]
     initial: int
     classes: int
-    class_of: array[int]
+    class_of: LetterClasses
     bases: tuple[int, ...]
     strides: tuple[tuple[int, ...], ...]
     edges: array[int]

@@ -32,7 +32,6 @@ class Budget:
         clocks: at most so many in one location.
         rows: locations times their age regions.
         clauses: of one residual.
-        letters: the size of the alphabet.
         table: rows times classes of letters.
     """
 
@@ -40,7 +39,6 @@ class Budget:
     clocks: int = 6
     rows: int = 600
     clauses: int = 60
-    letters: int = 1 << 16
     table: int = 1 << 17
 
 
@@ -61,8 +59,6 @@ def construct(owed: Temporal, alphabet: Alphabet, budget: Budget) -> Automaton:
 
     Source: AUTOMATA 2; regions after Alur and Dill 1994.
     """
-    if alphabet.size > budget.letters:
-        raise DoesNotCloseError(f"{alphabet.size} letters, more than {budget.letters}")
     return _Construction(alphabet, budget).run(owed)
 
 

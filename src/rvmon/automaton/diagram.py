@@ -9,12 +9,17 @@ from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from rvmon.automaton.letters import LetterClasses, LetterDiagram, Tree, joined
 from rvmon.formula.alphabet import Alphabet, holds
 from rvmon.formula.core import Literal, Sense
 from rvmon.formula.residual import FAILS, HOLDS, Atom, Residual, substitute
 
 Edge = tuple[int, tuple[int, ...]]
 """Target location and the sources of its clocks."""
+
+
+MOST_TABLED = 1 << 16
+"""Letters of which the classes stand in a table; of more, in a diagram."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,7 +97,7 @@ class Diagrams:
 
     def classes(
         self, roots: Sequence[Node], limit: int
-    ) -> tuple[array[int], int, list[tuple[Edge, ...]]]:
+    ) -> tuple[LetterClasses, int, list[tuple[Edge, ...]]]:
         """Letters that no root tells apart form a class.
 
         Args:
@@ -106,8 +111,11 @@ class Diagrams:
             TooManyClassesError: the limit was exceeded.
         """
         product = _Product(self.alphabet, limit)
-        blocks = product.block(tuple(roots), len(self.alphabet.propositions) - 1)
-        return blocks, len(product.leaves), [_edges(nodes) for nodes in product.leaves]
+        diagram = LetterDiagram(product.tree(tuple(roots), len(self.alphabet.propositions) - 1))
+        found: LetterClasses = diagram
+        if self.alphabet.size <= MOST_TABLED:
+            found = array("H", map(diagram.__getitem__, range(self.alphabet.size)))
+        return found, len(product.leaves), [_edges(nodes) for nodes in product.leaves]
 
 
 class TooManyClassesError(Exception):
@@ -119,25 +127,27 @@ class _Product:
         self.alphabet = alphabet
         self.limit = limit
         self.leaves: dict[tuple[Node, ...], int] = {}
-        self.made: dict[tuple[tuple[Node, ...], int], array[int]] = {}
+        self.made: dict[tuple[tuple[Node, ...], int], Tree] = {}
 
-    def block(self, nodes: tuple[Node, ...], level: int) -> array[int]:
+    def tree(self, nodes: tuple[Node, ...], level: int) -> Tree:
         """The classes of all letters over the propositions up to `level`."""
+        while level >= 0 and all(node.level != level for node in nodes):
+            level -= 1
         if level < 0:
             found = self.leaves.setdefault(nodes, len(self.leaves))
             if len(self.leaves) * len(nodes) > self.limit:
                 raise TooManyClassesError
-            return array("H", [found])
+            return found
         key = (nodes, level)
         known = self.made.get(key)
-        if known is not None:
-            return known
-        result = array("H")
-        for digit in range(len(self.alphabet.cells[level])):
-            lower = tuple(node.children[digit] if node.level == level else node for node in nodes)
-            result += self.block(lower, level - 1)
-        self.made[key] = result
-        return result
+        if known is None:
+            lower = (
+                tuple(node.children[digit] if node.level == level else node for node in nodes)
+                for digit in range(len(self.alphabet.cells[level]))
+            )
+            children = tuple([self.tree(own, level - 1) for own in lower])
+            known = self.made[key] = joined(self.alphabet.strides[level], children)
+        return known
 
 
 def _edges(leaves: tuple[Node, ...]) -> tuple[Edge, ...]:

@@ -7,13 +7,14 @@ Source: partition refinement after Moore 1956; clocks that are not read again af
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.end import end_clauses
 from rvmon.automaton.layout import layout_of
+from rvmon.automaton.letters import LetterClasses, LetterDiagram
 from rvmon.automaton.location import PASSED, Location
 from rvmon.formula.residual import NO_CLOCK, Residual
 
@@ -251,7 +252,7 @@ class _Draft:
             locations,
             self.initial,
             len(columns),
-            array("H", map(new_class.__getitem__, source.class_of)),
+            _renamed(source.class_of, new_class),
             bases,
             strides,
             edges,
@@ -260,6 +261,12 @@ class _Draft:
             bytes(time_value for _, time_value, _ in rows),
             bytes(end_value for _, _, end_value in rows),
         )
+
+
+def _renamed(class_of: LetterClasses, classes: Sequence[int]) -> LetterClasses:
+    if isinstance(class_of, LetterDiagram):
+        return class_of.renamed(classes)
+    return array("H", map(classes.__getitem__, class_of))
 
 
 def _vectors(cuts: tuple[tuple[int, ...], ...]) -> Iterator[Regions]:

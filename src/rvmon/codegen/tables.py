@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from array import array
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.end import EndClause, end_clauses
+from rvmon.automaton.letters import LetterClasses, LetterDiagram
 
 Edge = tuple[int, tuple[int, ...]]
 """Target, and for each of its clocks the old clock it is, or −1 for one started now."""
@@ -26,7 +28,7 @@ class TableData:
 
 
 def tables_of(automaton: Automaton) -> TableData:
-    """Lay an automaton out."""
+    """Lay an automaton out; the classes of its letters have to stand in a table."""
     edges = [
         None if number < 0 else (automaton.targets[number], automaton.sources[number])
         for number in automaton.edges
@@ -37,8 +39,14 @@ def tables_of(automaton: Automaton) -> TableData:
         tuple(location.cuts for location in automaton.locations),
         automaton.bases,
         automaton.strides,
-        tuple(automaton.class_of),
+        tuple(_table(automaton.class_of)),
         tuple(tuple(edges[row : row + width]) for row in range(0, len(edges), width)),
         tuple(automaton.time_values),
         tuple(end_clauses(location.residual) for location in automaton.locations),
     )
+
+
+def _table(class_of: LetterClasses) -> array[int]:
+    if isinstance(class_of, LetterDiagram):
+        raise TypeError("too many letters for a table: the plan should have refused them")
+    return class_of

@@ -6,6 +6,7 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from rvmon.automaton.letters import LetterDiagram
 from rvmon.automaton.machine import INFINITY, Token
 from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.planning import plan_of
@@ -29,8 +30,20 @@ Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 
 def can_generate(requirement: CompiledRequirement) -> bool:
     """Whether a requirement can be judged by generated code in this process."""
-    own = not requirement.requirement.captures and requirement.requirement.for_each is None
-    return own and requirement.automaton is not None
+    return not _beyond(requirement)
+
+
+def _beyond(requirement: CompiledRequirement) -> str:
+    """Why generated code cannot judge a requirement; empty if it can."""
+    if requirement.requirement.for_each:
+        return "uses `for each`"
+    if requirement.requirement.captures:
+        return "uses `let`"
+    if requirement.automaton is None:
+        return f"has no automaton: {requirement.refusal}"
+    if isinstance(requirement.automaton.class_of, LetterDiagram):
+        return f"tells {requirement.alphabet.size:,} combinations of its propositions apart"
+    return ""
 
 
 def plan_requirements(
@@ -82,9 +95,7 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
     if compiled.checked.max_delay is not None:
         raise RvmonError("generated code cannot sort samples: leave out `max delay`")
     for one in chosen:
-        what = "for each" if one.requirement.for_each else "let" if one.requirement.captures else ""
-        reason = f"uses `{what}`" if what else f"has no automaton: {one.refusal}"
-        if what or one.automaton is None:
+        if reason := _beyond(one):
             raise RvmonError(
                 f"{one.requirement.id} {reason}; generated code cannot judge it: "
                 "leave it out with --only, or use `rvmon run`"

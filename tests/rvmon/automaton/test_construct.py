@@ -1,10 +1,15 @@
 """Automata: how large they get, and that they do the work they should."""
 
+from random import Random
+
 import pytest
 
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
+from rvmon.automaton.letters import LetterDiagram
+from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import INFINITY
 from rvmon.automaton.progression import Progression
+from rvmon.automaton.reduce import reduce
 from rvmon.automaton.stretch import run
 from rvmon.automaton.table import TableMachine
 from rvmon.formula.alphabet import alphabet_of
@@ -124,3 +129,27 @@ def test_a_stretch_is_due_when_a_kept_clock_crosses():
     machine = TableMachine(construct(owed, alphabet, Budget()))
     _, due = run(machine, machine.start, 1, 10, 20, 1)
     assert due == INFINITY
+
+
+def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
+    """Eighteen propositions have an automaton where they collapse, and it steps as it should."""
+    names = [SignalAtom(f"s{number}") for number in range(18)]
+    formula = eventually(names[0], 0, 1)
+    for number, name in enumerate(names[1:], 2):
+        formula = two(formula, "or", eventually(name, 0, number))
+    owed, alphabet = core(formula)
+    automaton = reduce(construct(owed, alphabet, Budget()))
+    assert alphabet.size == 2**18
+    assert isinstance(automaton.class_of, LetterDiagram)
+    assert automaton.classes == 19
+    dice = Random(1)
+    table, worked_out = TableMachine(automaton), Progression(owed, alphabet)
+    for _ in range(40):
+        tokens = table.start, worked_out.start
+        for t in range(20):
+            letter = 1 << dice.randrange(18) if dice.random() < 0.1 else 0
+            tokens = table.step(tokens[0], t, letter), worked_out.step(tokens[1], t, letter)
+            decided = [token[0] if token[0] <= PASSED else None for token in tokens]
+            assert decided[0] == decided[1]
+            if decided[0] is not None:
+                break

@@ -92,3 +92,18 @@ def test_the_command_writes_a_file(tmp_path, capsys):
     )
     assert main(["compile", str(spec), "--to", "python"]) == 2
     assert "D4" in capsys.readouterr().err
+
+
+def test_too_many_combinations_for_a_table_are_refused():
+    """Generated code has tables; the message says what else judges the requirement."""
+    names = [f"s{number}" for number in range(18)]
+    owed = " or ".join(f"(within {number} s {name})" for number, name in enumerate(names, 1))
+    spec = rvmon.loads(
+        f"spec s\nsignal {', '.join(names)} : bool\nrequirement R1\n  upon start\n  then {owed}\n"
+    )
+    with pytest.raises(rvmon.RvmonError, match="262,144 combinations of its propositions"):
+        spec.plan()
+    monitor = spec.monitor()
+    monitor.step(0, dict.fromkeys(names, False))
+    [passed] = monitor.step(17.5, {"s17": True})
+    assert (passed.verdict, passed.decided) == ("P", 17_500_000_000)
