@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind
 
-_RUNTIME = ("past", "table", "rule", "nodes", "unit", "alone")
+_RUNTIME = ("past", "table", "rule", "bulk", "nodes", "unit", "alone")
 
 _HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 and nothing else.
 
@@ -26,6 +26,7 @@ _HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.
 from __future__ import annotations
 
 import math
+from array import array
 from bisect import bisect_right
 from collections import deque, namedtuple
 from heapq import heapify, heappop, heappush

@@ -8,6 +8,7 @@ these two tables, and nothing is executed.
 
 from __future__ import annotations
 
+from array import array
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import fields
@@ -15,6 +16,7 @@ from enum import Enum
 from typing import Any
 
 from rvmon.codegen.runtime import past as generated
+from rvmon.codegen.runtime.bulk import Run
 from rvmon.codegen.runtime.nodes import MISSING
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
@@ -62,7 +64,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     GeneratedLanes: ("unit", "_counts", *_LANES),
     Unit: _UNIT,
     Rule: (
-        *("attempts", "due", "restless", "slides", "position", "letter", "other"),
+        *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
         *("before", "known", "running"),
     ),
     Lane: (
@@ -87,7 +89,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
 _MADE: Mapping[str, type] = {
     one.__name__: one
     for one in (
-        *(Attempt, Blame, Open, Network, Positions),
+        *(Attempt, Blame, Open, Network, Positions, Run),
         *(generated.History, generated.Since, generated.Stretches, flowing._Run),
     )
 }
@@ -150,6 +152,8 @@ class Freezer:
             if isinstance(value, set | frozenset):
                 value = sorted(value, key=repr)
             return [name, *(self.freeze(one) for one in value)]
+        if isinstance(value, array):
+            return ["array", value.typecode, *value.tolist()]
         if isinstance(value, Plan):
             return ["plan", self._plans[id(value)]]
         return self._object(value)
@@ -223,6 +227,8 @@ class Thawer:
             return _PLAIN[tag](self.thaw(one) for one in rest)
         if tag == "choice":
             return _CHOICES[rest[0]](rest[1])
+        if tag == "array":
+            return array(rest[0], rest[1:])
         if tag == "missing":
             return MISSING
         if tag == "same":

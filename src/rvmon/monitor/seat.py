@@ -47,6 +47,7 @@ class Seat:
         self.seen = _picking(leaves)
         """Gives the values of what it reads, from those of all nodes."""
         self._leaves = leaves
+        self.leaf_count = len(leaves)
         self._places = places
         self._values_of = _picking(places)
         self._since_of = _picking(places)
@@ -58,7 +59,7 @@ class Seat:
         unit = self._unit
         flow = _Stood(self._plan, unit.v, unit.since, unit.until)
         flow.origin, flow.position = unit.origin, unit.position
-        return self._judge(flow, (rule.letter, rule.other), rule.position, rule.attempts)
+        return self._judge(flow, (rule.letter, rule.other), rule.position, rule.undecided())
 
     def _judge(
         self, flow: Flow, letters: tuple[int, int], position: int, attempts: list[Open]
@@ -141,3 +142,24 @@ def _picking(places: tuple[int, ...]) -> Pick:
         (place,) = places
         return lambda values: (values[place],)
     return itemgetter(*places)
+
+
+def packed(truths: tuple[int, ...]) -> int:
+    """Truth values as one number.
+
+    >>> unpacked(packed((2, 0, 1)), 3)
+    (2, 0, 1)
+    """
+    number = 0
+    for truth in truths:
+        number = 3 * number + truth
+    return number
+
+
+def unpacked(number: int, count: int) -> tuple[int, ...]:
+    """So many truth values that `packed` made one number of."""
+    truths = []
+    for _ in range(count):
+        number, truth = divmod(number, 3)
+        truths.append(truth)
+    return tuple(reversed(truths))

@@ -54,7 +54,8 @@ def test_it_is_python_3_8_and_imports_the_standard_library_only():
         if isinstance(node, ast.Import | ast.ImportFrom)
     }
     assert imported <= {
-        "__future__", "bisect", "collections", "heapq", "itertools", "math", "operator", "typing"
+        "__future__", "array", "bisect", "collections", "heapq", "itertools", "math", "operator",
+        "typing",
     }  # fmt: skip
     assert not any(
         isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("eval", "exec")

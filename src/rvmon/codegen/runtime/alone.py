@@ -70,6 +70,15 @@ class Monitor:
         self.counts[rule.index] += 1
         return Open(self.counts[rule.index], triggered, token)
 
+    def entered(self, rule: Rule) -> tuple[int, int]:
+        """The number of a new attempt, and nothing that was seen."""
+        self.counts[rule.index] += 1
+        return self.counts[rule.index], 0
+
+    def reopened(self, _: Rule, number: int, triggered: int, token: Any, __: int) -> Open:
+        """An attempt that was moved together with others, by itself."""
+        return Open(number, triggered, token)
+
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
 
@@ -192,7 +201,7 @@ class Monitor:
         self.unit.through(end)
         self.unit.close(end, reached)
         for rule in self.unit.rules:
-            for attempt in rule.attempts:
+            for attempt in rule.undecided():
                 held = rule.machine.holds_at_end(attempt.token, end, reached)
                 state = 1 if held else 0
                 state += 2 if attempt.token[0] == FAILED else 0

@@ -30,7 +30,8 @@ class Rule:
         clerk: makes attempts and hears of decisions.
 
     Attributes:
-        attempts: the undecided ones, oldest first.
+        attempts: the undecided ones, oldest first, but for those in runs.
+        runs: by location the attempts that move together.
         due: an instant before which, the letters staying, no attempt can be decided.
         restless: whether attempts may move at the next position though the letters stay.
         slides: whether a clock moves along while an attempt loops.
@@ -53,6 +54,7 @@ class Rule:
         "pulse",
         "restless",
         "running",
+        "runs",
         "slides",
         "values",
     )
@@ -77,6 +79,7 @@ class Rule:
         self.values = values
         self.clerk = clerk
         self.attempts: list[Any] = []
+        self.runs: dict[int, Any] = {}
         self.due = NEVER
         self.restless = False
         self.slides = False
@@ -108,12 +111,20 @@ class Rule:
         """Start an attempt at the position `t`, at which the values are."""
         if self.position < t:
             self.visit(t)
+        self.begin_alone(t, triggered)
+
+    def begin_alone(self, t: int, triggered: int) -> None:
+        """Start an attempt that is driven by itself, at the position visited last."""
         attempt = self.clerk.opened(self, triggered, self.machine.start)
         due = self.stepped(attempt, t)
         if due is not None:
             self.attempts.append(attempt)
             if due < self.due:
                 self.due = due
+
+    def undecided(self) -> list[Any]:
+        """The open attempts, oldest first."""
+        return self.attempts
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, at which the values are."""

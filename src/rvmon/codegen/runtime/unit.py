@@ -5,6 +5,7 @@ from __future__ import annotations
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING, Any
 
+from rvmon.codegen.runtime.bulk import BulkRule
 from rvmon.codegen.runtime.nodes import LIMIT, Nodes
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.table import NEVER
@@ -33,8 +34,8 @@ class Unit(Nodes):
         dues: when requirements are due; `due_at` says which entries still hold.
     """
 
-    RULES: tuple[tuple[Callable[[list[int]], tuple[int, int]], int, bool, bool], ...] = ()
-    """Per requirement: the letters, the node of its trigger, pulse, episodic."""
+    RULES: tuple[tuple[Callable[[list[int]], tuple[int, int]], int, bool, bool, bool], ...] = ()
+    """Per requirement: the letters, the node of its trigger, pulse, episodic, moved in runs."""
 
     step: Callable[[int, Mapping[str, Any]], Sequence[Any]]
     """Take one sample; returns what it decided."""
@@ -57,8 +58,10 @@ class Unit(Nodes):
         self.clerk = clerk
         self.began: int | None = None
         self.rules = [
-            Rule(index, machine, letters, pulse, episodic, self.GAP, self.v, clerk)
-            for index, ((letters, _, pulse, episodic), machine) in enumerate(
+            (BulkRule if bulk else Rule)(
+                index, machine, letters, pulse, episodic, self.GAP, self.v, clerk
+            )
+            for index, ((letters, _, pulse, episodic, bulk), machine) in enumerate(
                 zip(self.RULES, self.machines)  # noqa: B905
             )
         ]
@@ -132,7 +135,7 @@ class Unit(Nodes):
             bit = letters & -letters
             letters ^= bit
             rule = rules[bit.bit_length() - 1]
-            if rule.attempts:
+            if rule.attempts or rule.runs:
                 rule.visit(t)
                 self.note(rule)
         triggers |= self.repeating
@@ -258,7 +261,7 @@ class Unit(Nodes):
         """Come to the end of the trace; time has come to `end` before."""
         for rule in self.rules:
             rule.pass_to(end)
-        for rule, (_, place, _, _) in zip(self.rules, self.RULES):  # noqa: B905
+        for rule, (_, place, *_) in zip(self.rules, self.RULES):  # noqa: B905
             if place < 0 and self.origin is not None:
                 rule.begin(self.last_position(end), end)
         for rule in self.rules:
