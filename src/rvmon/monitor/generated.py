@@ -20,7 +20,7 @@ from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
-from rvmon.monitor.seat import Seat
+from rvmon.monitor.seat import Seat, packed, unpacked
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -176,6 +176,18 @@ class GeneratedLanes(Lanes):
         attempt.number = self._counts[rule.index]
         return attempt
 
+    def entered(self, rule: Rule) -> tuple[int, int]:
+        """The number of a new attempt, and what it sees at its trigger."""
+        self._counts[rule.index] += 1
+        return self._counts[rule.index], packed(self._seats[rule.index].seen(self.unit.v))
+
+    def reopened(self, rule: Rule, number: int, triggered: int, token: Token, seen: int) -> Open:
+        """An attempt that was moved together with others, by itself."""
+        seat = self._seats[rule.index]
+        attempt = Open(triggered, token, unpacked(seen, seat.leaf_count))
+        attempt.number = number
+        return attempt
+
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
         attempt.doubt = self._seats[rule.index].judge_now(rule)._doubt()
@@ -225,9 +237,10 @@ class GeneratedLanes(Lanes):
         self.unit.close(end, reached)
         for seat, rule in zip(self._seats, self.unit.rules, strict=True):
             judge = seat.judge_now(rule)
-            for attempt in rule.attempts:
+            for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts = judge.attempts = []
+            rule.runs = {}
         super().finish(end, reached)
         if self.alone:
             self._show_inputs()
