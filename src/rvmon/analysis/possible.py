@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.letters import combinations_of
+from rvmon.analysis.regions import after_edge, row_of
 from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.location import FAILED, NOW, PASSED
+from rvmon.automaton.location import FAILED, PASSED
 from rvmon.formula.state import FALSE, TRUE, State
 from rvmon.spec.checked import CheckedSpec, EndPolicy
 
@@ -99,7 +100,7 @@ class _Reach:
         while waiting:
             location, regions = waiting.pop()
             for later in self._later(location, regions):
-                row = self._row(location, later)
+                row = row_of(self.automaton, location, later)
                 self.rows.add(row)
                 self.failed |= self.automaton.time_values[row] == FALSE
                 self.passed |= self.automaton.time_values[row] == TRUE
@@ -112,15 +113,11 @@ class _Reach:
         cuts = self.automaton.locations[location].cuts
         return product(*(range(r, len(own) + 1) for r, own in zip(regions, cuts, strict=True)))
 
-    def _row(self, location: int, regions: tuple[int, ...]) -> int:
-        strides = self.automaton.strides[location]
-        return self.automaton.bases[location] + sum(map(int.__mul__, regions, strides))
-
     def _step(
         self, location: int, regions: tuple[int, ...], letters: Iterable[int]
     ) -> Iterator[tuple[int, tuple[int, ...]]]:
         automaton = self.automaton
-        row = self._row(location, regions)
+        row = row_of(automaton, location, regions)
         for letter in letters:
             edge = automaton.edges[row * automaton.classes + letter]
             if edge < 0:
@@ -130,4 +127,4 @@ class _Reach:
                 self.failed |= target == FAILED
                 self.passed |= target == PASSED
                 continue
-            yield target, tuple(0 if s == NOW else regions[s] for s in automaton.sources[edge])
+            yield target, after_edge(automaton, location, regions, edge)

@@ -14,6 +14,7 @@ from itertools import product
 
 from rvmon.analysis.letters import Letters, Table, Truths
 from rvmon.analysis.possible import automaton_letter
+from rvmon.analysis.regions import after_edge, row_of
 from rvmon.analysis.subject import Subject
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
@@ -22,7 +23,7 @@ from rvmon.spec.checked import CheckedSpec, EndPolicy, TimeModel
 MOST_STATES = 4000
 
 Spot = tuple[int, tuple[int, ...]]
-"""Where one attempt is: its location, and the regions of its clocks."""
+"""Where one attempt is: its location, and the regions of clocks that do not tell the time."""
 
 State = tuple[int, tuple[Spot | None, ...]]
 """The cell, and each attempt; `None` before its trigger."""
@@ -233,10 +234,10 @@ class _Search:
             yield spot
             return
         for at in self._regions(index, location, regions, age):
-            row = automaton.bases[location] + sum(map(int.__mul__, at, automaton.strides[location]))
+            row = row_of(automaton, location, at)
             edge = automaton.edges[row * automaton.classes + class_]
             if edge >= 0:
-                kept = tuple(0 if s == NOW else at[s] for s in automaton.sources[edge])
+                kept = () if self.tied[index] else after_edge(automaton, location, at, edge)
                 yield automaton.targets[edge], kept
 
     def _regions(
@@ -266,8 +267,6 @@ class _Search:
             return policy in (EndPolicy.WEAK, EndPolicy.PASS)
         automaton, age = self.automata[index], self.starts[cell] - self.offsets[index]
         return any(
-            automaton.end_values[
-                automaton.bases[location] + sum(map(int.__mul__, at, automaton.strides[location]))
-            ]
+            automaton.end_values[row_of(automaton, location, at)]
             for at in self._regions(index, location, regions, age)
         )

@@ -14,7 +14,7 @@ from rvmon.formula.core import Core, Literal, Sense
 from rvmon.formula.residual import Clause
 from rvmon.formula.state import FALSE, TRUE, Elapsed, State
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Mode
+from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Constant, Mode, Requirement
 from rvmon.spec.printer import format_duration, format_formula
 
 MOST_PROPOSITIONS = 8
@@ -114,8 +114,18 @@ def _in_order(clause: Clause) -> list[tuple[int, int, Core]]:
 
 
 def _obligation(compiled: CompiledRequirement, node: Core) -> str:
-    episode = compiled.requirement.mode is Mode.WHENEVER and node is compiled.obligation.owed
-    return "what the episode brings" if episode else compiled.words.text(node)
+    requirement = compiled.requirement
+    if requirement.mode is not Mode.WHENEVER or node is not compiled.obligation.owed:
+        return compiled.words.text(node)
+    owed = format_formula(requirement.consequent)
+    if always(requirement):
+        return f"always {owed if ' ' not in owed else f'({owed})'}"
+    return f"{owed}, as long as {format_formula(requirement.trigger)}"
+
+
+def always(requirement: Requirement) -> bool:
+    """Whether it is owed at every instant."""
+    return isinstance(requirement.trigger, Constant) and requirement.trigger.value
 
 
 class _Reader:
@@ -199,7 +209,8 @@ def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
         if isinstance(node, Literal):
             negative = origin.positive is (node.sense is not Sense.TRUE)
             formula = origin.formula
-            if formula is requirement.consequent and requirement.mode is Mode.WHENEVER:
+            episode = requirement.mode is Mode.WHENEVER and not always(requirement)
+            if formula is requirement.consequent and episode:
                 # What an episode owes at each instant is the whole implication.
                 formula = Binary(BinaryOp.IMPLIES, requirement.trigger, formula)
             text = format_formula(formula)

@@ -101,7 +101,8 @@ def _starts(requirement: Requirement) -> str:
 
 def _owed(requirement: Requirement) -> str:
     text = in_words(requirement.consequent)
-    return f"at that very instant, {text}" if not _is_temporal(requirement.consequent) else text
+    at_once = requirement.mode is Mode.UPON and not _is_temporal(requirement.consequent)
+    return f"at that very instant, {text}" if at_once else text
 
 
 def _is_temporal(formula: Formula) -> bool:

@@ -8,11 +8,14 @@ from dataclasses import replace
 
 from rvmon.errors import TraceError
 from rvmon.readers.recording import FileRecording
-from rvmon.starter.column import Column, Profile, Shape
+from rvmon.starter.column import Column, Profile, Shape, Shapes
 from rvmon.starter.shapes import shapes_of
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.time import TICKS_PER_SECOND
+
+MOST_NAMED = 3
+"""Names that a message lists; the rest is counted."""
 
 MOST_INSTANTS = 10_000
 """Occurrences that are kept of one name."""
@@ -32,9 +35,7 @@ def profile_of(path: str) -> Profile:
     """
     shapes = shapes_of(path)
     if not shapes.declared:
-        reasons = ", ".join(f"`{name}`: {why}" for name, why in shapes.left_out.items())
-        found = f" ({reasons})" if reasons else ""
-        raise TraceError(f"{path}: nothing but time: expected signals or events{found}")
+        raise TraceError(f"{path}: no signal or event is found ({_reasons(shapes)})")
     schema = Schema(
         {name: shape.kind for name, shape in shapes.declared.items() if shape.kind is not None},
         {name: shape.fields for name, shape in shapes.declared.items() if shape.kind is None},
@@ -52,6 +53,20 @@ def profile_of(path: str) -> Profile:
             one.take(sample.t, sample.values.get(name, _NOTHING), first=samples == 1)
     columns = tuple(one.column(name, end) for name, one in followed.items())
     return Profile(path, columns, shapes.left_out, start, end, samples, lateness)
+
+
+def _reasons(shapes: Shapes) -> str:
+    """Why nothing can be declared, each reason with the first of its names."""
+    if not shapes.left_out:
+        return "there is only time"
+    by_reason: dict[str, list[str]] = {}
+    for name, why in shapes.left_out.items():
+        by_reason.setdefault(why, []).append(f"`{name}`")
+    listed = []
+    for why, names in by_reason.items():
+        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+        listed.append(f"{', '.join(names[:MOST_NAMED])}{more}: {why}")
+    return "; ".join(listed)
 
 
 _NOTHING: Mapping[str, bool] = {}

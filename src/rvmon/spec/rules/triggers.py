@@ -260,7 +260,7 @@ def never_read(span: Span, kind: str) -> Diagnostic:
     """A declared name that nothing reads; `kind` is `signal` or `event`."""
     return finding(
         NEVER_READ,
-        f"{kind} `{span.text}` is read by no requirement",
+        f"{kind} `{span.text.strip('`')}` is read by no requirement",
         span,
         mend="remove it, or look for the requirement that should read it",
     )
