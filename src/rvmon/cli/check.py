@@ -19,7 +19,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "check",
         help="find what is wrong in specifications",
         description="Find what is wrong in specifications: all errors and warnings of each file.",
-        epilog="example: rvmon check specs/*.rv --format concise",
+        epilog="examples: rvmon check specs/*.rv --format concise; rvmon check door.rv --engines",
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
     parser.add_argument(
@@ -38,6 +38,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="look for requirements that can never trigger, fail or pass, that conflict, or that "
         "others imply",
+    )
+    parser.add_argument(
+        "--engines",
+        action="store_true",
+        help="say which engine judges each requirement, why, and what it remembers",
     )
     parser.add_argument(
         "--seconds", metavar="S", type=float, default=8.0, help="budget of --analyse per file"
@@ -62,6 +67,8 @@ def run(arguments: argparse.Namespace) -> int:
             continue
         checked, found = _checked(text, name, constants)
         findings += found
+        if arguments.engines and checked is not None:
+            remarks += _engines(checked)
         broken += checked is None
         if arguments.analyse and checked is not None:
             more, remark = _analysed(checked, arguments.seconds)
@@ -102,6 +109,18 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
     analysis = analyse(compile_spec(checked), seconds=seconds)
     return analysis.findings, analysis_lines(analysis, checked)
+
+
+def _engines(checked: CheckedSpec) -> list[str]:
+    """Which engine judges each requirement, and at what cost."""
+    from rvmon.explain.facts import facts_of
+    from rvmon.monitor import compile_spec
+
+    lines = []
+    for name, compiled in compile_spec(checked).requirements.items():
+        facts = facts_of(compiled)
+        lines += [f"{name}: {facts['engine']}", f"    remembers {facts['memory']}"]
+    return lines
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:

@@ -1,40 +1,38 @@
 """The delay network: what is known of each node at each position, and since when.
 
-Each node keeps two functions of the position: from which stamp on it is known to be true there, and
-to be false. As long as the letter stays, all that will become known is in them already, with its
-stamp, as if the letter went on for ever. A new letter drops what lies ahead of it, and only that is
-worked out anew. Positions that nothing above can ask for again are dropped.
+Each node keeps two functions of the position: the stamp from which on it is known to be true there,
+and to be false. They only grow. What becomes known of a node is worked out where something became
+known of its operands, and nowhere else; each stretch in one piece, however long it is. Positions
+that nothing above can ask for again are dropped.
 
 Source: AUTOMATA 4.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Iterator, Sequence
-from operator import itemgetter
+from collections.abc import Sequence
 from typing import assert_never
 
-from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window
+from rvmon.dataflow.evaluate import Range, evaluated
+from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window, operands_of
 from rvmon.dataflow.pieces import (
     FAR,
     PAST,
-    Pieces,
-    all_of_window,
-    clip,
-    known_by,
-    latest,
-    not_before,
-    shift,
-    some_of_window,
-    soonest,
+    Piece,
+    append,
+    as_past,
+    insert,
     stamp,
+    up_to,
+    without,
 )
 from rvmon.dataflow.positions import Positions
-from rvmon.dataflow.sweep import Carried, Known, since, until
+from rvmon.dataflow.ranges import drop, end_of, holds, merged, stretch
+from rvmon.dataflow.sweep import Carried, Known
 from rvmon.formula.core import Core
 
-NOTHING: Known = ((), ())
+_FEW = 64
+"""So many pieces are never tidied up."""
 
 
 class Network:
@@ -48,33 +46,47 @@ class Network:
         plan: its nodes.
         positions: those of the word.
         known: per node, where it is true and where it is false.
+        grown: the stamp as of which that is.
+        fresh: where the formula became known since somebody looked, in the order of that.
+        pending: per node, the first position that is wanted and not known.
+        swept: per `until`, up to where its operands only lead on; per `since`, where it is known.
+        carried: per `since`, what it is just before that.
     """
 
     def __init__(self, plan: Plan, gap: int | None) -> None:
         count = len(plan.nodes)
         self.plan = plan
         self.positions = Positions(gap)
-        self.known: list[Known] = [NOTHING] * count
-        self._pending = [-FAR] * count
-        """Per node, the first position that is wanted and not known."""
-        self._swept = [-FAR] * count
-        """Per `until`, up to where its operands only lead on; per `since`, what is known of it."""
-        self._carried: list[Carried] = [
+        self.known: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in range(count)]
+        self.grown = -FAR
+        self.fresh: list[Range] = []
+        self._letter: Sequence[bool] = ()
+        self._position = -FAR
+        self.pending = [-FAR] * count
+        self.swept = [-FAR] * count
+        self.carried: list[Carried] = [
             (isinstance(node, Sweep) and node.dual, PAST) for node in plan.nodes
         ]
+        self._tidy = _FEW
 
     def copy(self) -> Network:
         """The same, independent from now on."""
-        made = Network(self.plan, None)
+        made = Network.__new__(Network)
+        made.plan = self.plan
         made.positions = self.positions.copy()
-        made.known = list(self.known)
-        made._pending = list(self._pending)
-        made._swept = list(self._swept)
-        made._carried = list(self._carried)
+        made.known = [(list(true), list(false)) for true, false in self.known]
+        made.grown = self.grown
+        made.fresh = list(self.fresh)
+        made._letter = self._letter
+        made._position = self._position
+        made.pending = list(self.pending)
+        made.swept = list(self.swept)
+        made.carried = list(self.carried)
+        made._tidy = self._tidy
         return made
 
     def visit(self, t: int, letter: Sequence[bool], wanted: int | None) -> None:
-        """Come to a position with a letter, which from now on is taken to stay.
+        """Come to a position with a letter, which stays until the next visit.
 
         Args:
             t: its instant.
@@ -83,37 +95,44 @@ class Network:
         """
         gap = self.positions.gap
         position = t // gap
-        self.settle(2 * t)
+        self.grow(2 * t)
+        first = self.positions.first == FAR
         behind = self.positions.visit(position)
+        self._tidy_up()
         self._want(position if wanted is None else wanted // gap)
-        self._read(letter, behind, position)
-        for place, node in enumerate(self.plan.nodes):
-            if not isinstance(node, Leaf):
-                operands = [self.known[operand] for operand in operands_of(node)]
-                true, false = self._value(place, node, operands)
-                # What a `since` is, is asked for by itself as well, at the next position.
-                is_since = isinstance(node, Sweep) and not node.future
-                start = -FAR if is_since else self._pending[place]
-                old_true, old_false = self.known[place]
-                self.known[place] = (
-                    soonest(old_true, clip(true, start)),
-                    soonest(old_false, clip(false, start)),
-                )
+        self._letter = letter
+        self._position = position
+        before, self.grown = self.grown, 2 * t + 1
+        if first:
+            self._begin()
+        slope = self.positions.slope
+        line = (2 * position + 1, 0) if self.positions.sparse else (1, slope)
+        self._read((behind, position, *line), before)
 
-    def settle(self, limit: int) -> None:
-        """Keep what is known at a stamp, and drop what would become known later."""
-        self.known = [(known_by(true, limit), known_by(false, limit)) for true, false in self.known]
-        for place, node in enumerate(self.plan.nodes):
-            if isinstance(node, Sweep) and not node.future:
-                self._take_over(place)
+    def grow(self, limit: int) -> None:
+        """Let time come to a stamp, the letter staying at the positions up to there."""
+        if limit <= self.grown:
+            return
+        before, self.grown = self.grown, limit
+        if self.positions.first == FAR:
+            return
+        slope = self.positions.slope
+        first, last = self._position + 1, (limit - 1) // slope
+        if self.positions.sparse or first > last:
+            self._spread({}, before)
+        else:
+            self._position = last
+            self._read((first, last, 1, slope), before)
 
     def truth(self, t: int) -> Carried:
         """What is known of the formula at the position at `t`, and its stamp."""
-        position = t // self.positions.gap
-        true, false = self.known[-1]
-        if (found := stamp(true, position)) is not None:
+        return self._truth_at(len(self.plan.nodes) - 1, t // self.positions.gap)
+
+    def _truth_at(self, place: int, integer: int) -> Carried:
+        true, false = self.known[place]
+        if (found := stamp(true, integer)) is not None:
             return True, found
-        if (found := stamp(false, position)) is not None:
+        if (found := stamp(false, integer)) is not None:
             return False, found
         return None
 
@@ -123,11 +142,8 @@ class Network:
 
     def value_at(self, core: Core, position: int, limit: int) -> bool | None:
         """What is known of a part of the formula at a stamp."""
-        for pieces, value in zip(self.known_of(core), (True, False), strict=True):
-            at = stamp(pieces, position)
-            if at is not None and at <= limit:
-                return value
-        return None
+        found = self._truth_at(self.plan.places[core], position)
+        return found[0] if found is not None and found[1] <= limit else None
 
     def first_unknown(self, core: Core, first: int, limit: int) -> int | None:
         """The first position from `first` on of which a part of the formula is not known.
@@ -137,58 +153,16 @@ class Network:
             first: where to begin.
             limit: the stamp as of which; later positions do not count.
         """
-        true, false = (known_by(pieces, limit) for pieces in self.known_of(core))
-        while True:
-            first = self.positions.following(first)
-            end = max(_end_of_run(true, first), _end_of_run(false, first))
-            if end < first:
-                return first if self.positions.slope * first < limit else None
-            first = end + 1
-
-    def held_at_end(self, end: int, reached: int) -> Pieces:
-        """The positions at which the rule for the end of a trace makes the formula true.
-
-        To be asked last: what lies behind the end is dropped.
-
-        Args:
-            end: the last instant of the trace.
-            reached: the instant that time has come to.
-        """
-        limit = max(2 * reached, 2 * end + 1)
-        self.settle(limit)
-        self.positions.end(end // self.positions.gap)
-        held: list[Pieces] = []
-        for place, node in enumerate(self.plan.nodes):
-            true, _ = self.known[place]
-            if not isinstance(node, Leaf):
-                operands: list[Known] = [(held[operand], ()) for operand in operands_of(node)]
-                found = self._value(place, node, operands, at_end=True)[0]
-                if isinstance(node, Shift):
-                    found = clip(found, -FAR, (end - node.opens) // self.positions.gap)
-                true = soonest(true, clip(known_by(found, limit), self._pending[place]))
-            held.append(true)
-        return held[-1]
-
-    def cuts(self, t: int) -> Iterator[int]:
-        """The instants after `t` at which something becomes known otherwise than just before."""
-        for pieces in (side for known in self.known for side in known):
-            for left, right, at, slope in pieces:
-                for end in (left, right):
-                    if -FAR < end < FAR and (at + slope * end) // 2 > t:
-                        yield (at + slope * end) // 2
+        found = self._unknown_from(self.known_of(core), first, skips=True)
+        return found if self.positions.slope * found < limit else None
 
     def relative(self, t: int) -> object:
         """All that is known, as seen from `t`."""
         gap = self.positions.gap
         return tuple(
             tuple(
-                (
-                    left if left <= -FAR else left * gap - t,
-                    right if right >= FAR else right * gap - t,
-                    at if at == PAST else at - 2 * t + slope * (t // gap),
-                    slope,
-                )
-                for left, right, at, slope in side
+                (left if left <= -FAR else left * gap - t, right * gap - t)
+                for left, right, _, _ in as_past(side)
             )
             for known in self.known
             for side in known
@@ -198,34 +172,36 @@ class Network:
 
     def _want(self, position: int) -> None:
         """Drop what nothing can ask for, from the root down."""
-        wanted = [FAR] * len(self.plan.nodes)
+        nodes = self.plan.nodes
+        wanted = [FAR] * len(nodes)
         wanted[-1] = position
-        for place in range(len(wanted) - 1, -1, -1):
-            base = wanted[place]
-            true, false = self.known[place]
-            self.known[place] = true, false = clip(true, base), clip(false, base)
-            pending = self._pending[place] = self._unknown_from(place, base)
-            for operand, start in self._asks(place, pending):
-                wanted[operand] = min(wanted[operand], start)
+        for place in range(len(nodes) - 1, -1, -1):
+            node, base = nodes[place], wanted[place]
+            if isinstance(node, Sweep) and not node.future:
+                base = min(base, self._take_over(place))
+            for pieces in self.known[place]:
+                drop(pieces, base)
+            start = max(base, self.pending[place])
+            pending = self._unknown_from(
+                self.known[place], start, skips=not isinstance(node, Sweep)
+            )
+            self.pending[place] = pending
+            for operand, first in self._asks(place, node, pending):
+                wanted[operand] = min(wanted[operand], first)
         self.positions.forget(min(wanted))
 
-    def _unknown_from(self, place: int, integer: int) -> int:
-        """The first position from `integer` on of which a node is not known.
-
-        Of an `until` or `since`, what it is at an integer between positions is asked for as well.
-        """
-        true, false = self.known[place]
-        skips = not isinstance(self.plan.nodes[place], Sweep)
+    def _unknown_from(self, known: Known, integer: int, *, skips: bool) -> int:
+        """The first integer from one on that is in neither; if `skips`, the first position."""
+        true, false = known
         while True:
             integer = self.positions.following(integer) if skips else integer
-            end = max(_end_of_run(true, integer), _end_of_run(false, integer))
+            end = max(end_of(true, integer), end_of(false, integer))
             if end < integer:
                 return integer
             integer = end + 1
 
-    def _asks(self, place: int, pending: int) -> Sequence[tuple[int, int]]:
-        """The operands of a node, each with the first position at which it matters."""
-        node = self.plan.nodes[place]
+    def _asks(self, place: int, node: Node, pending: int) -> Sequence[tuple[int, int]]:
+        """The operands of a node, each with the first integer at which it matters."""
         match node:
             case Leaf():
                 return ()
@@ -238,141 +214,162 @@ class Network:
             case Sweep(left=left, right=right):
                 if node.future:
                     self._lead_on(place, node, pending)
-                return [(left, self._swept[place]), (right, self._swept[place])]
+                return [(left, self.swept[place]), (right, self.swept[place])]
             case _:
                 assert_never(node)
 
     def _lead_on(self, place: int, node: Sweep, pending: int) -> None:
         """Pass the positions whose operands are known and only lead on to the next one."""
         stays, meets = self.known[node.left][node.dual], self.known[node.right][not node.dual]
-        start = max(self._swept[place], pending)
+        start = max(self.swept[place], pending)
         while True:
             start = self.positions.following(start)
-            end = min(_end_of_run(stays, start), _end_of_run(meets, start))
+            end = min(end_of(stays, start), end_of(meets, start))
             if end < start:
                 break
             start = end + 1
-        self._swept[place] = start
+        self.swept[place] = start
 
-    def _take_over(self, place: int) -> None:
-        """Pass the integers at which a `since` is known."""
-        if self.positions.first == FAR:
-            return
-        start = max(self._swept[place], self.positions.first)
-        for_sure = self.known[place]
-        while True:
-            ends = [_end_of_run(pieces, start) for pieces in for_sure]
-            if max(ends) < start:
-                break
-            self._carried[place] = (ends[0] >= start, PAST)
-            start = max(ends) + 1
-        self._swept[place] = start
+    def _take_over(self, place: int) -> int:
+        """Pass the integers at which a `since` is known; returns the first one behind."""
+        start = max(self.swept[place], self.positions.first)
+        while (found := self._truth_at(place, start)) is not None:
+            self.carried[place] = (found[0], PAST)
+            start = end_of(self.known[place][not found[0]], start) + 1
+        self.swept[place] = start
+        return start
+
+    def _tidy_up(self) -> None:
+        """Join pieces whose stamps are of no account any more, when there are many."""
+        if sum(len(true) + len(false) for true, false in self.known) > self._tidy:
+            self.known = [(as_past(true), as_past(false)) for true, false in self.known]
+            count = sum(len(true) + len(false) for true, false in self.known)
+            self._tidy = max(_FEW, 2 * count)
 
     # What becomes known.
 
-    def _read(self, letter: Sequence[bool], behind: int, position: int) -> None:
-        last, at, slope = FAR, 1, self.positions.slope
-        if self.positions.sparse:
-            last, at, slope = position, 2 * position + 1, 0
-        new = ((behind, last, at, slope),)
-        for (place, _), value in zip(self.plan.leaves, letter, strict=True):
-            true, false = self.known[place]
-            self.known[place] = (
-                (soonest(true, new), false) if value else (true, soonest(false, new))
-            )
+    def _begin(self) -> None:
+        """Before the first position, nothing has been met."""
+        before = (-FAR, self.positions.first - 1, PAST, 0)
+        for place, node in enumerate(self.plan.nodes):
+            if isinstance(node, Sweep) and not node.future:
+                insert(self.known[place][not node.dual], [before])
 
-    def _value(
-        self, place: int, node: Node, operands: Sequence[Known], *, at_end: bool = False
-    ) -> Known:
-        """What is known of a node, given that of its operands."""
-        match node:
-            case Leaf():
-                raise ValueError("leaves are read")
-            case Junction(every=every):
-                result = operands[0]
-                for operand in operands[1:]:
-                    if every:
-                        result = latest(result[0], operand[0]), soonest(result[1], operand[1])
-                    else:
-                        result = soonest(result[0], operand[0]), latest(result[1], operand[1])
-                return result
-            case Window(every=every):
-                return _turned(self._window(node, _turned(operands[0], every)), every)
-            case Shift(offset=offset):
-                (true, false) = operands[0]
-                moved = shift(true, offset), shift(false, offset)
-                return self._not_early(moved) if offset < 0 else moved
-            case Sweep(dual=dual):
-                left, right = (_turned(operand, dual) for operand in operands)
-                only, besides = self.positions.only, self.positions.besides
-                stays = besides(left[0]), only(left[1])
-                meets = only(right[0]), besides(right[1])
-                if node.future:
-                    beyond = (False, PAST) if at_end and node.kept else None
-                    found = self._until(place, stays, meets, beyond)
+    def _read(self, piece: Piece, before: int) -> None:
+        """Learn the letter of a stretch of integers."""
+        changed: dict[int, list[Range]] = {}
+        for (place, _), value in zip(self.plan.leaves, self._letter, strict=True):
+            append(self.known[place][not value], *piece)
+            changed[place] = [piece[:2]]
+        self._spread(changed, before, piece[:2] if self.positions.sparse else None)
+
+    def _spread(
+        self, changed: dict[int, list[Range]], before: int, arrived: Range | None = None
+    ) -> None:
+        """Let what became known of the leaves become known of the nodes above.
+
+        Args:
+            changed: per leaf, where.
+            before: the stamp as of which all is known.
+            arrived: of sparse positions, the integers behind the last one up to a new one.
+        """
+        for place, node in enumerate(self.plan.nodes):
+            if isinstance(node, Leaf):
+                continue
+            candidates = self._candidates(node, changed, before)
+            if arrived is not None and isinstance(node, Sweep) and not node.future:
+                candidates.append(arrived)
+            if candidates:
+                ranges = merged(candidates)
+                if not isinstance(node, Sweep):
+                    fresh = self._extend(place, node, ranges)
+                elif node.future:
+                    fresh = self._extend_back(place, node, ranges)
                 else:
-                    found = self._since(place, stays, meets, dual)
-                return _turned(found, dual)
-            case _:
-                assert_never(node)
+                    fresh = self._extend_on(place, node, ranges)
+                if fresh:
+                    changed[place] = fresh
+        self.fresh += changed.get(len(self.plan.nodes) - 1, ())
 
-    def _window(self, node: Window, operand: Known) -> Known:
-        """The operand at some position of a window."""
-        true = some_of_window(self.positions.only(operand[0]), node.low, node.high)
-        false = all_of_window(self.positions.besides(operand[1]), node.low, node.high)
-        if node.over is None:
-            return self._not_early((true, false))
-        return true, not_before(false, 2 * node.over, self.positions.slope)
+    def _candidates(self, node: Node, changed: dict[int, list[Range]], before: int) -> list[Range]:
+        """Where something new may be known of a node: its operands changed, or time came."""
+        due: int | None
+        if isinstance(node, Window):
+            low, high = node.low, node.high
+            due = 1 if node.over is None else 2 * node.over
+        elif isinstance(node, Shift):
+            low = high = node.offset
+            due = 1 if low < 0 else None
+        else:
+            return [span for operand in operands_of(node) for span in changed.get(operand, ())]
+        found = [(first - high, last - low) for first, last in changed.get(node.operand, ())]
+        if due is not None:
+            slope = self.positions.slope
+            found.append(((before - due) // slope + 1, (self.grown - due) // slope))
+        return found
 
-    def _not_early(self, known: Known) -> Known:
-        """What is known of a position is so when that has come."""
-        slope = self.positions.slope
-        return not_before(known[0], 1, slope), not_before(known[1], 1, slope)
+    def _extend(self, place: int, node: Node, ranges: Sequence[Range]) -> list[Range]:
+        operands = [self.known[operand] for operand in operands_of(node)]
+        fresh: list[Range] = []
+        for first, last in ranges:
+            first = max(first, self.pending[place])
+            if first <= last:
+                found = evaluated(node, operands, self.positions, (first, last), None)
+                fresh += self._keep(place, found)
+        return fresh
 
-    def _until(self, place: int, stays: Known, meets: Known, beyond: Carried) -> Known:
-        start, pending = self._swept[place], self._pending[place]
-        true, false = until(stays, meets, start, beyond)
-        if pending < start:
-            # What lies between only leads on to `start`.
-            at_start = stamp(true, start), stamp(false, start)
-            ways = [() if at is None else ((pending, start - 1, at, 0),) for at in at_start]
-            true, false = soonest(true, ways[0]), soonest(false, ways[1])
-        return true, false
+    def _extend_back(self, place: int, node: Sweep, ranges: Sequence[Range]) -> list[Range]:
+        """Extend an `until` from where its operands changed back to where that matters no more."""
+        operands = self.known[node.left], self.known[node.right]
+        bottom, fresh = self.swept[place], list[Range]()
+        covered = FAR
+        for first, last in reversed(ranges):
+            first, last = max(first, bottom), min(last, covered - 1)
+            while first <= last:
+                edge = self._truth_at(place, last + 1)
+                found = evaluated(node, operands, self.positions, (first, last), edge)
+                new = self._keep(place, found)
+                fresh += new
+                covered = first
+                if not holds(new, first):
+                    break
+                last = first - 1
+                first = max(bottom, *(stretch(operand, last)[0] for operand in operands))
+        known, pending = self._truth_at(place, bottom), self.pending[place]
+        if known is not None and pending < bottom and self._truth_at(place, pending) is None:
+            # What lies between only leads on to `bottom`.
+            insert(self.known[place][not known[0]], [(pending, bottom - 1, known[1], 0)])
+            fresh.append((pending, bottom - 1))
+        return fresh
 
-    def _since(self, place: int, stays: Known, meets: Known, dual: bool) -> Known:
-        value, at = self._carried[place] or (dual, PAST)
-        start = self._swept[place]
-        true, false = since(stays, meets, start, (value is not dual, at))
-        if self.positions.sparse:
-            true, false = (
-                clip(true, start, self.positions.last),
-                clip(false, start, self.positions.last),
-            )
-        before = ((-FAR, self.positions.first - 1, PAST, 0),)
-        return true, soonest(false, before)
+    def _extend_on(self, place: int, node: Sweep, ranges: Sequence[Range]) -> list[Range]:
+        """Extend a `since` from where its operands changed on to where that matters no more."""
+        operands = self.known[node.left], self.known[node.right]
+        fresh: list[Range] = []
+        sparse = self.positions.sparse
+        top = self.positions.last if sparse else (self.grown - 1) // self.positions.slope
+        covered = self.swept[place] - 1
+        for first, last in ranges:
+            first, last = max(first, covered + 1), min(last, top)
+            while first <= last:
+                start = first == self.swept[place]
+                edge = self.carried[place] if start else self._truth_at(place, first - 1)
+                found = evaluated(node, operands, self.positions, (first, last), edge)
+                new = self._keep(place, found)
+                fresh += new
+                covered = last
+                if not holds(new, last):
+                    break
+                first = last + 1
+                if first <= top:
+                    last = min(top, *(stretch(operand, first)[1] for operand in operands))
+        return fresh
 
-
-def operands_of(node: Node) -> tuple[int, ...]:
-    """The places of a node's operands."""
-    match node:
-        case Leaf():
-            return ()
-        case Junction(operands=operands):
-            return operands
-        case Window(operand=operand) | Shift(operand=operand):
-            return (operand,)
-        case Sweep(left=left, right=right):
-            return left, right
-        case _:
-            assert_never(node)
-
-
-def _turned(known: Known, dual: bool) -> Known:
-    """Negated if `dual`."""
-    return (known[1], known[0]) if dual else known
-
-
-def _end_of_run(pieces: Pieces, integer: int) -> int:
-    """The end of the stretch that holds an integer, of pieces that are all `PAST`."""
-    index = bisect_right(pieces, integer, key=itemgetter(0)) - 1
-    return pieces[index][1] if index >= 0 and pieces[index][1] >= integer else integer - 1
+    def _keep(self, place: int, found: Known) -> list[Range]:
+        """Add what is new of what was found, as far as it is known by now; returns where."""
+        fresh: list[Range] = []
+        for pieces, own in zip(found, self.known[place], strict=True):
+            new = without(up_to(pieces, self.grown), own)
+            insert(own, new)
+            fresh += [(left, right) for left, right, _, _ in new]
+        return fresh

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import assert_never
 
 from rvmon.formula.core import Constant, Core, Literal
 
@@ -87,9 +88,26 @@ class Plan:
         places: the place of each formula.
         leaves: the places of those that read a letter, with what they read.
         looks_back: whether something speaks of what was before an attempt began.
+        settles: ticks after which nothing more comes of a letter that stays.
     """
 
     nodes: tuple[Node, ...]
     places: dict[Core, int]
     leaves: tuple[tuple[int, Literal | Constant], ...]
     looks_back: bool
+    settles: int
+
+
+def operands_of(node: Node) -> tuple[int, ...]:
+    """The places of a node's operands."""
+    match node:
+        case Leaf():
+            return ()
+        case Junction(operands=operands):
+            return operands
+        case Window(operand=operand) | Shift(operand=operand):
+            return (operand,)
+        case Sweep(left=left, right=right):
+            return left, right
+        case _:
+            assert_never(node)

@@ -57,13 +57,40 @@ def append(pieces: list[Piece], left: int, right: int, at: int, slope: int) -> N
 
 def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
     """What lies between two positions, both included."""
-    if not pieces or (pieces[0][0] >= left and pieces[-1][1] <= right):
-        return pieces
-    return [
-        (max(first, left), min(last, right), at, slope)
-        for first, last, at, slope in pieces
-        if first <= right and last >= left
-    ]
+    start, end = _span(pieces, left, right)
+    found = list(pieces[start:end])
+    if found:
+        first, last, at, slope = found[0]
+        found[0] = (max(first, left), last, at, slope)
+        first, last, at, slope = found[-1]
+        found[-1] = (first, min(last, right), at, slope)
+    return found
+
+
+def _span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
+    """The indices of the pieces between two positions: the first, and that behind the last."""
+    start = max(bisect_right(pieces, left, key=_left) - 1, 0)
+    if start < len(pieces) and pieces[start][1] < left:
+        start += 1
+    return start, max(bisect_right(pieces, right, key=_left), start)
+
+
+def without(pieces: Pieces, known: Pieces) -> Pieces:
+    """What is not known already."""
+    made: list[Piece] = []
+    for left, right, at, slope in pieces:
+        start = left
+        for first, last, _, _ in clip(known, left, right):
+            append(made, start, first - 1, at, slope)
+            start = last + 1
+        append(made, start, right, at, slope)
+    return made
+
+
+def insert(pieces: list[Piece], fresh: Pieces) -> None:
+    """Add pieces in place that lie where there are none."""
+    for piece in fresh:
+        pieces.insert(bisect_right(pieces, piece[0], key=_left), piece)
 
 
 def shift(pieces: Pieces, offset: int) -> Pieces:
@@ -81,14 +108,22 @@ def shift(pieces: Pieces, offset: int) -> Pieces:
     ]
 
 
-def known_by(pieces: Pieces, limit: int) -> list[Piece]:
-    """What is known at the stamp `limit`, as known before."""
+def up_to(pieces: Pieces, limit: int) -> Pieces:
+    """What is known at the stamp `limit`."""
     found: list[Piece] = []
     for left, right, at, slope in pieces:
         if slope:
-            append(found, left, min(right, (limit - at) // slope), PAST, 0)
+            append(found, left, min(right, (limit - at) // slope), at, slope)
         elif at <= limit:
-            append(found, left, right, PAST, 0)
+            append(found, left, right, at, slope)
+    return found
+
+
+def as_past(pieces: Pieces) -> list[Piece]:
+    """The same, as known before."""
+    found: list[Piece] = []
+    for left, right, _, _ in pieces:
+        append(found, left, right, PAST, 0)
     return found
 
 

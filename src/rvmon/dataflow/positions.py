@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 
-from rvmon.dataflow.pieces import FAR, PAST, Piece, Pieces, append, clip, filled
+from rvmon.dataflow.pieces import FAR, PAST, Piece, Pieces, append, clip
 
 
 class Positions:
@@ -79,52 +79,55 @@ class Positions:
         stamps = self._stamps or []
         return stamps[bisect_left(stamps, left) : bisect_right(stamps, right)]
 
-    def only(self, pieces: Pieces) -> Pieces:
-        """Known at positions alone: for what has to be met at one of them."""
+    def only(self, pieces: Pieces, left: int, right: int) -> Pieces:
+        """Known at positions alone, for what has to be met at one of them.
+
+        Args:
+            pieces: what is known.
+            left: the first integer that matters.
+            right: the last one.
+        """
+        found = clip(pieces, max(left, self.first), min(right, self.last))
         if self._stamps is None:
-            return clip(pieces, self.first, self.last)
+            return found
         made: list[Piece] = []
-        for left, right, at, slope in pieces:
-            for position in self.within(left, right):
+        for first, last, at, slope in found:
+            for position in self.within(first, last):
                 append(made, position, position, at + slope * position, 0)
         return made
 
-    def besides(self, pieces: Pieces) -> Pieces:
-        """Known at all integers that are no positions as well: for what has to hold at each."""
-        if self._stamps is None:
-            return filled_outside(pieces, self.first, self.last)
-        points: list[Piece] = []
-        behind = -FAR
+    def besides(self, pieces: Pieces, left: int, right: int) -> Pieces:
+        """Known at all integers that are no positions as well, for what has to hold at each.
+
+        Args:
+            pieces: what is known.
+            left: the first integer that matters.
+            right: the last one.
+        """
         made: list[Piece] = []
-        for left, right, at, slope in pieces:
-            self._fill(made, behind, left - 1)
-            if at == PAST:
-                append(made, left, right, PAST, 0)
+        append(made, left, min(right, self.first - 1), PAST, 0)
+        behind = max(left, self.first)
+        for first, last, at, slope in clip(pieces, behind, min(right, self.last)):
+            self._fill(made, behind, first - 1)
+            if self._stamps is None or at == PAST:
+                append(made, first, last, at, slope)
             else:
-                points.clear()
-                for position in self.within(left, right):
-                    append(points, position, position, at + slope * position, 0)
-                for piece in clip(filled(points), left, right):
-                    append(made, *piece)
-            behind = right + 1
-        self._fill(made, behind, FAR)
+                start = first
+                for position in self.within(first, last):
+                    append(made, start, position - 1, PAST, 0)
+                    append(made, position, position, at + slope * position, 0)
+                    start = position + 1
+                append(made, start, last, PAST, 0)
+            behind = last + 1
+        self._fill(made, behind, min(right, self.last))
+        append(made, max(left, self.last + 1, behind), right, PAST, 0)
         return made
 
     def _fill(self, made: list[Piece], left: int, right: int) -> None:
         """Append the integers from `left` to `right` that are no positions."""
+        if self._stamps is None:
+            return
         for position in self.within(left, right):
             append(made, left, position - 1, PAST, 0)
             left = position + 1
         append(made, left, right, PAST, 0)
-
-
-def filled_outside(pieces: Pieces, first: int, last: int) -> Pieces:
-    """Known as given from `first` to `last`, and everywhere else."""
-    if first <= -FAR and last >= FAR:
-        return pieces
-    made: list[Piece] = []
-    append(made, -FAR, first - 1, PAST, 0)
-    for piece in clip(pieces, first, last):
-        append(made, *piece)
-    append(made, last + 1, FAR, PAST, 0)
-    return made

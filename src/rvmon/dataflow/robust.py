@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import assert_never
 
-from rvmon.dataflow.network import operands_of
-from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window
+from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window, operands_of
 from rvmon.dataflow.pieces import FAR
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.steps import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from heapq import merge
 
-from rvmon.dataflow.pieces import FAR, Line, Piece, Pieces, append, latest, soonest, stamp
+from rvmon.dataflow.pieces import Line, Piece, Pieces, append, clip, latest, soonest, stamp
 
 Known = tuple[Pieces, Pieces]
 """Where something is known to be true, and where to be false."""
@@ -17,8 +17,8 @@ _Side = tuple[bool, Line] | None
 """What is known of an operand all over a stretch."""
 
 
-def until(left: Known, right: Known, start: int, beyond: Carried = None) -> Known:
-    """`left U right` at all integers from `start` on.
+def until(left: Known, right: Known, start: int, end: int, beyond: Carried = None) -> Known:
+    """`left U right` at all integers from `start` to `end`.
 
     U(i) = right(i) or (left(i) and U(i + 1)). As stamps do not fall within a stretch, its first
     position is the best witness it has, and its last one speaks for the way through it.
@@ -26,12 +26,13 @@ def until(left: Known, right: Known, start: int, beyond: Carried = None) -> Know
     Args:
         left: operand that has to hold on the way; known to at integers that are no positions.
         right: operand to be met; false at integers that are no positions.
-        start: the first integer wanted; the operands are complete from there on.
-        beyond: the value at infinity.
+        start: the first integer wanted.
+        end: the last one.
+        beyond: the value at the integer behind.
     """
     found: list[tuple[Pieces, Pieces]] = []
     carried = beyond
-    for first, last, stays, meets in reversed(list(_stretches(left, right, start))):
+    for first, last, stays, meets in reversed(list(_stretches(left, right, start, end))):
         true = _whole(first, last, meets, True)
         false = latest(_whole(first, last, stays, False), _whole(first, last, meets, False))
         if carried is not None:
@@ -45,18 +46,19 @@ def until(left: Known, right: Known, start: int, beyond: Carried = None) -> Know
     return _joined(reversed(found))
 
 
-def since(left: Known, right: Known, start: int, before: Carried) -> Known:
-    """`left S right` at all integers from `start` on; see `until`, whose mirror image it is.
+def since(left: Known, right: Known, start: int, end: int, before: Carried) -> Known:
+    """`left S right` at all integers from `start` to `end`; the mirror image of `until`.
 
     Args:
         left: operand that has held ever since; known to at integers that are no positions.
         right: operand that was met; false at integers that are no positions.
         start: the first integer wanted.
+        end: the last one.
         before: the value at the integer before.
     """
     found: list[tuple[Pieces, Pieces]] = []
     carried = before
-    for first, last, stays, meets in _stretches(left, right, start):
+    for first, last, stays, meets in _stretches(left, right, start, end):
         # True: met at the first position of the stretch or before, and so all the way since.
         # False: cut there or before, and not met all the way since.
         true = latest(_whole(first, last, stays, True), _from(first, last, meets, carried, True))
@@ -106,37 +108,35 @@ def _joined(parts: Iterator[tuple[Pieces, Pieces]] | list[tuple[Pieces, Pieces]]
     return true, false
 
 
-def _stretches(left: Known, right: Known, start: int) -> Iterator[tuple[int, int, _Side, _Side]]:
-    """What is known of both operands, in stretches on which neither changes, up to `FAR`."""
-    ones, others = _sides(left, start), _sides(right, start)
-    one = next(ones)
-    other = next(others)
+def _stretches(
+    left: Known, right: Known, start: int, end: int
+) -> Iterator[tuple[int, int, _Side, _Side]]:
+    """What is known of both operands, in stretches on which neither changes."""
+    ones, others = _sides(left, start, end), _sides(right, start, end)
+    one = next(ones, None)
+    other = next(others, None)
     first = start
-    while True:
+    while one is not None and other is not None:
         last = min(one[1], other[1])
         yield first, last, one[2], other[2]
-        if last >= FAR:
-            return
         first = last + 1
         if one[1] == last:
-            one = next(ones)
+            one = next(ones, None)
         if other[1] == last:
-            other = next(others)
+            other = next(others, None)
 
 
-def _sides(known: Known, start: int) -> Iterator[tuple[int, int, _Side]]:
-    """An operand from `start` to `FAR` without gaps."""
-    true, false = known
+def _sides(known: Known, start: int, end: int) -> Iterator[tuple[int, int, _Side]]:
+    """An operand from `start` to `end` without gaps."""
+    true, false = (clip(pieces, start, end) for pieces in known)
     at = start
     for left, right, side in merge(
         ((piece[0], piece[1], (True, piece[2:])) for piece in true),
         ((piece[0], piece[1], (False, piece[2:])) for piece in false),
     ):
-        if right < at:
-            continue
         if left > at:
             yield at, left - 1, None
-        yield max(left, at), right, side
+        yield left, right, side
         at = right + 1
-    if at <= FAR:
-        yield at, FAR, None
+    if at <= end:
+        yield at, end, None

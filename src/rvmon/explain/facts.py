@@ -18,7 +18,7 @@ def facts_of(compiled: CompiledRequirement) -> Facts:
     facts = {
         "engine": _engine(compiled, automaton),
         "decided": _decided(compiled),
-        "memory": _memory(automaton),
+        "memory": _memory(compiled, automaton),
     }
     past = _past(compiled)
     return {**facts, "looks back": past} if past else facts
@@ -26,7 +26,7 @@ def facts_of(compiled: CompiledRequirement) -> Facts:
 
 def _engine(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
     if automaton is None:
-        return f"progression, step by step: as an automaton it would have {compiled.refusal}"
+        return f"delay network: as an automaton it would have {compiled.refusal}"
     clocks = automaton.clocks
     return (
         f"automaton of {_counted(len(automaton.locations), 'location')}, "
@@ -41,9 +41,11 @@ def _decided(compiled: CompiledRequirement) -> str:
     return f"{format_duration(reach)} after its trigger at the latest" if reach else "at once"
 
 
-def _memory(automaton: Automaton | None) -> str:
+def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
     if automaton is None:
-        return "per open attempt what it still owes, with a stamp for each part"
+        reach = horizon(compiled.obligation.owed)
+        span = "while an attempt is open" if reach is None else f"over {format_duration(reach)}"
+        return f"where its parts are known to hold or not, a stretch per change, {span}"
     stamps = f", {_counted(automaton.clocks, 'time stamp')}" if automaton.clocks else ""
     return f"per open attempt its location{stamps}"
 

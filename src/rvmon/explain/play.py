@@ -79,7 +79,7 @@ def _cuts(lanes: Lanes, end: int) -> Iterator[int]:
                 for token in _tokens(attempt.token, attempt.better):
                     yield next_cut(judge.machine, token, end)
         if isinstance(judge, NetworkJudge):
-            yield from judge.cuts(end)
+            yield judge.next_due
 
 
 def _tokens(*tokens: Token | None) -> Iterator[Token]:

@@ -74,7 +74,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Starter: ("trigger",),
     Trigger: ("before", "known", "running"),
     Judge: (*_BENCH, "letters"),
-    NetworkJudge: (*_BENCH, "worse", "better", "_letters", "_held"),
+    NetworkJudge: (*_BENCH, "worse", "better", "now", "_letters", "_held", "_stayed"),
     Flow: (
         *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
         *("_dirty", "_fading", "_wakes", "_left"),
@@ -109,7 +109,10 @@ def _fields_of(class_: type) -> tuple[str, ...]:
     if class_ in (Attempt, Blame):
         return tuple(one.name for one in fields(class_))
     if class_ is Network:
-        return ("plan", "positions", "known", "_pending", "_swept", "_carried")
+        return (
+            *("plan", "positions", "known", "grown", "fresh", "pending", "swept", "carried"),
+            *("_letter", "_position", "_tidy"),
+        )
     if class_ is Positions:
         return ("gap", "slope", "first", "last", "_stamps")
     return tuple(class_.__slots__)  # type: ignore[attr-defined]

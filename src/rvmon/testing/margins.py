@@ -42,8 +42,11 @@ OF_TRUTH = {Truth.FALSE: BOTTOM, Truth.UNKNOWN: ANY, Truth.TRUE: TOP}
 
 
 def margins(case: Case) -> dict[tuple[str, int], tuple[float, float, float]]:
-    """Of each attempt, by requirement and number: least, greatest, and least if all that has begun
-    and only has to be kept up is well behind the end.
+    """The robustness of each attempt, by requirement and number.
+
+    Returns:
+        The least it can be, the greatest, and the least if all is well behind the end that has
+        begun and only has to be kept up.
 
     Source: SEMANTICS, sections 2, 3 and 5.
     """

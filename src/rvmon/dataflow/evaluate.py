@@ -1,0 +1,88 @@
+"""What is known of a node on a stretch of integers, given what is known of its operands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import assert_never
+
+from rvmon.dataflow.nodes import Junction, Leaf, Node, Shift, Sweep, Window
+from rvmon.dataflow.pieces import (
+    FAR,
+    all_of_window,
+    clip,
+    latest,
+    not_before,
+    shift,
+    some_of_window,
+    soonest,
+)
+from rvmon.dataflow.positions import Positions
+from rvmon.dataflow.sweep import Carried, Known, since, until
+
+Range = tuple[int, int]
+"""First and last integer."""
+
+
+def evaluated(
+    node: Node, operands: Sequence[Known], positions: Positions, on: Range, edge: Carried
+) -> Known:
+    """What is known of a node.
+
+    Args:
+        node: any but a leaf.
+        operands: what is known of them.
+        positions: of the word.
+        on: the stretch that is asked for.
+        edge: of an `until` what is known of it just behind the stretch; of a `since`, just before.
+    """
+    first, last = on
+    match node:
+        case Leaf():
+            raise ValueError("leaves are read")
+        case Junction(every=every):
+            parts = [_turned(_clipped(operand, first, last), not every) for operand in operands]
+            true, false = parts[0]
+            for its_true, its_false in parts[1:]:
+                true, false = latest(true, its_true), soonest(false, its_false)
+            return _turned((true, false), not every)
+        case Window(every=every):
+            found = _window(node, _turned(operands[0], every), positions, on)
+            return _turned(_clipped(found, first, last), every)
+        case Shift(offset=offset):
+            true, false = _clipped(operands[0], first + offset, last + offset)
+            moved = shift(true, offset), shift(false, offset)
+            return _not_early(moved, positions) if offset < 0 else moved
+        case Sweep(dual=dual):
+            left, right = (_turned(operand, dual) for operand in operands)
+            stays = positions.besides(left[0], first, last), positions.only(left[1], first, last)
+            meets = positions.only(right[0], first, last), positions.besides(right[1], first, last)
+            around = None if edge is None else (edge[0] is not dual, edge[1])
+            sweep = until if node.future else since
+            return _turned(sweep(stays, meets, first, last, around), dual)
+        case _:
+            assert_never(node)
+
+
+def _window(node: Window, operand: Known, positions: Positions, on: Range) -> Known:
+    """The operand at some position of a window."""
+    first, last = on[0] + node.low, min(on[1] + node.high, FAR)
+    true = some_of_window(positions.only(operand[0], first, last), node.low, node.high)
+    false = all_of_window(positions.besides(operand[1], first, last), node.low, node.high)
+    if node.over is None:
+        return _not_early((true, false), positions)
+    return true, not_before(false, 2 * node.over, positions.slope)
+
+
+def _not_early(known: Known, positions: Positions) -> Known:
+    """What is known of a position is so when that has come."""
+    slope = positions.slope
+    return not_before(known[0], 1, slope), not_before(known[1], 1, slope)
+
+
+def _clipped(known: Known, first: int, last: int) -> Known:
+    return clip(known[0], first, last), clip(known[1], first, last)
+
+
+def _turned(known: Known, dual: bool) -> Known:
+    """Negated if `dual`."""
+    return (known[1], known[0]) if dual else known

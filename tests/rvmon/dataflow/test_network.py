@@ -1,0 +1,124 @@
+"""The delay network: what only it can judge, how much it remembers, and how often it works."""
+
+import pytest
+
+import rvmon
+from rvmon.dataflow.network import Network
+from rvmon.errors import RvmonError
+from rvmon.monitor import compile_spec
+from rvmon.session import Spec
+from rvmon.spec.checked import TimeModel
+from rvmon.testing.differential import campaign, case_of
+from rvmon.testing.drive import drive
+from rvmon.testing.forms import Maker
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.scale import in_units, scaled
+
+SECOND = 10**9
+RESPAWNED = "whenever a then F[2 s, 5 s] b"
+PAIRS = 60
+
+
+def spec_of(requirement, time="held"):
+    """A spec of one requirement over two signals and an event."""
+    return rvmon.loads(
+        f"spec s\ntime {time}\nsignal a, b : bool\nevent e\nrequirement R1\n  {requirement}\n"
+    )
+
+
+def outcomes(spec, samples, end=None, engine="auto"):
+    """Trigger and decision instants in ticks, with the verdicts."""
+    monitor = spec.monitor(engine=engine)
+    for t, values in samples:
+        monitor.step(t, values)
+    return [(a.triggered, a.decided, a.verdict.value) for a in monitor.finish(end).attempts]
+
+
+@pytest.mark.parametrize("time", TimeModel)
+def test_no_disagreement(time):
+    """On formulas of all kinds, mixed ones too, it is the oracle's in verdicts and instants."""
+    seeds = [f"network {number}" for number in range(PAIRS)]
+    tally = campaign(Maker("network"), seeds, Profile(time=time), TraceProfile(), online_every=4)
+    assert tally.pairs == PAIRS
+    assert "\n\n".join(tally.disagreements) == ""
+
+
+@pytest.mark.parametrize(
+    ("requirement", "engine"),
+    [
+        ("upon e then within 3 s b", "automaton"),
+        (RESPAWNED, "network"),
+        ("upon e then within 3 s once (a and within 1 s b)", "network"),
+    ],
+)
+def test_the_compiler_picks_it_where_no_automaton_closes(requirement, engine):
+    """What has an automaton is judged by it, the rest by the network, and the report says why."""
+    [compiled] = compile_spec(spec_of(requirement).checked).requirements.values()
+    assert compiled.report.engine == compiled.engine("auto") == engine
+    assert bool(compiled.report.why) is (engine == "network")
+
+
+def test_the_future_below_the_past():
+    """What was owed a while ago is judged as soon as that is settled."""
+    spec = spec_of("upon e then immediately once[0 s, 2 s] (a and within 3 s b)")
+    samples = [(0, {"a": True, "b": False}), (1, {"a": False}), (2, {"e": True}), (9, {})]
+    # The last tick with `a` is just before 1 s; `b` was due within 3 s of it.
+    assert outcomes(spec, samples) == [(2 * SECOND, 4 * SECOND, "F")]
+    met = [*samples[:3], (3.5, {"b": True})]
+    assert outcomes(spec, met) == [(2 * SECOND, 3_500_000_000, "P")]
+
+
+def test_progression_says_that_it_cannot():
+    """Asked for by name, an engine that cannot judge a requirement says so."""
+    spec = spec_of("upon e then immediately once (within 3 s b)")
+    with pytest.raises(RvmonError, match="use the engine `auto` or `network`"):
+        spec.monitor(engine="progression")
+
+
+def test_a_window_that_is_started_at_every_tick():
+    """A gap in `b` is told when the first window that lies in it closes."""
+    samples = [(0, {"a": True, "b": True}), (10, {"b": False}), (20, {"b": True})]
+    # The first position whose window [t + 2 s, t + 5 s] lies in the gap is 8 s.
+    assert outcomes(spec_of(RESPAWNED), samples) == [(0, 13 * SECOND + 1, "F")]
+
+
+def count_steps(monkeypatch, case):
+    """How often the network was told of a letter or of time."""
+    count = 0
+    for name in ("visit", "grow"):
+        original = getattr(Network, name)
+
+        def counted(self, *args, original=original):
+            nonlocal count
+            count += 1
+            return original(self, *args)
+
+        monkeypatch.setattr(Network, name, counted)
+    report, _ = drive(Spec(case.spec).monitor(engine="network", sources=case.names), case)
+    monkeypatch.undo()
+    return report, count
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_the_length_of_a_tick_is_of_no_account(seed, monkeypatch):
+    """A million times longer: the same attempts, at the same instants, in as many steps."""
+    profile = Profile(time=TimeModel.HELD, numbers=False)
+    case = case_of(f"scale {seed}", profile, TraceProfile())
+    short, long = scaled(case, 10**3), scaled(case, 10**9)
+    expected, steps = count_steps(monkeypatch, short)
+    found, as_many = count_steps(monkeypatch, long)
+    assert in_units(found, 10**9) == in_units(expected, 10**3)
+    assert abs(as_many - steps) <= 2
+
+
+def test_memory_is_bounded_by_the_window():
+    """However long the run, no more is kept than changed within the reach of the formula."""
+    monitor = spec_of(RESPAWNED).monitor()
+    monitor.step(0, {"a": True, "b": True})
+    [judge] = monitor._lanes.judges
+    sizes = []
+    for k in range(1, 400):
+        monitor.step(k * 0.5, {"b": k % 2 == 0})
+        sizes.append(sum(len(true) + len(false) for true, false in judge.worse.known))
+    assert max(sizes[200:]) <= max(sizes[:200]) <= 150

@@ -1,0 +1,117 @@
+"""The algebra of pieces, and the two sweeps, against their definitions point by point."""
+
+import random
+
+import pytest
+
+from rvmon.dataflow.pieces import (
+    FAR,
+    PAST,
+    all_of_window,
+    append,
+    as_past,
+    clip,
+    insert,
+    latest,
+    shift,
+    some_of_window,
+    soonest,
+    stamp,
+    up_to,
+    without,
+)
+from rvmon.dataflow.sweep import since, until
+
+NEVER = 1 << 100
+LAST = 25
+CASES = range(150)
+
+
+def random_known(dice):
+    """Where something is true and where false, on 0 … LAST, with gaps."""
+    true, false = [], []
+    left = 0
+    while left <= LAST:
+        right = min(LAST, left + dice.randint(0, 4))
+        line = dice.choice([(PAST, 0), (dice.randint(-10, 30), 0), (dice.choice([1, 4, 9]), 2)])
+        kind = dice.random()
+        if kind < 0.8:
+            append(true if kind < 0.4 else false, left, right, *line)
+        left = right + 1
+    return true, false
+
+
+def at(pieces, position):
+    """The stamp of a position; later than all if it is not known."""
+    found = stamp(pieces, position)
+    return NEVER if found is None else found
+
+
+@pytest.mark.parametrize("seed", CASES)
+def test_points(seed):
+    """Minima, maxima, shifts and limits are what they are at each position."""
+    dice = random.Random(seed)
+    one, other = random_known(dice)[0], random_known(dice)[0]
+    offset, first, last = dice.randint(-5, 5), dice.randint(0, 10), dice.randint(8, 20)
+    for i in range(-8, LAST + 9):
+        assert at(soonest(one, other), i) == min(at(one, i), at(other, i))
+        assert at(latest(one, other), i) == max(at(one, i), at(other, i))
+        assert at(shift(one, offset), i) == at(one, i + offset)
+        assert at(clip(one, first, last), i) == (at(one, i) if first <= i <= last else NEVER)
+        assert at(up_to(one, 15), i) == (at(one, i) if at(one, i) <= 15 else NEVER)
+        assert at(as_past(one), i) == (PAST if at(one, i) < NEVER else NEVER)
+        fresh = without(one, other)
+        assert at(fresh, i) == (at(one, i) if at(other, i) == NEVER else NEVER)
+        whole = list(other)
+        insert(whole, fresh)
+        assert at(whole, i) == (at(one, i) if at(other, i) == NEVER else at(other, i))
+
+
+@pytest.mark.parametrize("seed", CASES)
+def test_windows(seed):
+    """A window knows of some as of the first, of all as of the last."""
+    dice = random.Random(seed)
+    pieces = random_known(dice)[0]
+    low = dice.randint(-6, 4)
+    high = low + dice.randint(0, 7)
+    some, every = some_of_window(pieces, low, high), all_of_window(pieces, low, high)
+    for i in range(-12, LAST + 12):
+        stamps = [at(pieces, j) for j in range(i + low, i + high + 1)]
+        assert at(some, i) == min(stamps)
+        assert at(every, i) == max(stamps)
+
+
+def test_an_empty_window():
+    """Of nothing, none is known and all are."""
+    assert some_of_window(((0, 5, PAST, 0),), 3, 2) == ()
+    assert at(all_of_window((), 3, 2), -FAR) == PAST
+
+
+def step(left, right, k, true, false):
+    """Right or (left and what comes next), of the stamps of true and of false."""
+    return (
+        min(at(right[0], k), max(at(left[0], k), true)),
+        max(at(right[1], k), min(at(left[1], k), false)),
+    )
+
+
+@pytest.mark.parametrize("seed", CASES)
+def test_sweeps(seed):
+    """`until` and `since` are what their recursion gives, on any stretch, from any edge."""
+    dice = random.Random(seed)
+    left, right = random_known(dice), random_known(dice)
+    edge = dice.choice([None, (True, 12), (False, 7), (False, PAST)])
+    first, last = dice.randint(0, 8), dice.randint(10, LAST)
+    outside = (
+        edge[1] if edge and edge[0] else NEVER,
+        edge[1] if edge and not edge[0] else NEVER,
+    )
+    for sweep, order in (
+        (until, range(last, first - 1, -1)),
+        (since, range(first, last + 1)),
+    ):
+        found = sweep(left, right, first, last, edge)
+        value = outside
+        for i in order:
+            value = step(left, right, i, *value)
+            assert (at(found[0], i), at(found[1], i)) == value
