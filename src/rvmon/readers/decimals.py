@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 _DIGITS = 15
 """So many digits and their power of ten are exact doubles: the quotient is rounded once."""
 
+_POINT = np.uint8((ord(".") - ord("0")) % 256)
+
 _POWERS = 10.0 ** np.arange(_DIGITS + 1)
 
 
@@ -93,32 +95,60 @@ def truth_values(cells: Cells) -> NDArray[np.bool_] | None:
 def _mantissas(cells: Cells, most: int) -> tuple[NDArray[np.int64], NDArray[Any]] | None:
     """The digits of each cell as an integer, and how many stand behind the point."""
     text, starts = cells.text, cells.starts
-    first = text[starts]
+    first = text.take(starts)
     signed = (first == ord("-")) | (first == ord("+"))
     begins = starts + signed
     lengths = cells.ends - begins
     if not len(lengths) or lengths.min() < 1 or lengths.max() > most + 1:
         return None
-    mantissa = np.zeros(len(starts), np.int64)
-    behind = np.zeros(len(starts), np.int64)
-    pointed = np.zeros(len(starts), bool)
-    power = np.ones(len(starts), np.int64)
+    read = (_with_points if (text == ord(".")).any() else _without_points)(cells, begins, lengths)
+    if read is None:
+        return None
+    mantissa, behind, digits = read
+    if digits.max() > most:
+        return None
+    return np.where(first == ord("-"), -mantissa, mantissa), behind
+
+
+_Read = tuple["NDArray[np.int64]", "NDArray[Any]", "NDArray[np.int64]"]
+"""Mantissa, digits behind the point, digits."""
+
+
+def _without_points(
+    cells: Cells, begins: NDArray[np.int64], lengths: NDArray[np.int64]
+) -> _Read | None:
+    mantissa = np.zeros(len(begins), np.int64)
+    shortest = int(lengths.min())
     for place in range(int(lengths.max())):
-        at = cells.ends - 1 - place
-        inside = at >= begins
-        character = np.where(inside, text[at], ord("0"))
-        digit = character - np.uint8(ord("0"))
-        point = character == ord(".")
-        if point.any():
-            if (point & (pointed | (lengths == 1))).any():
-                return None
-            behind[point] = place
-            pointed |= point
-            digit[point] = 0
-        if (digit > 9).any():
+        at = cells.ends - (place + 1)
+        digit = cells.text.take(at) - np.uint8(ord("0"))
+        if place >= shortest:
+            digit[at < begins] = 0
+        if digit.max() > 9:
+            return None
+        mantissa += digit * np.int64(10**place)
+    return mantissa, np.zeros(len(begins), np.int64), lengths
+
+
+def _with_points(
+    cells: Cells, begins: NDArray[np.int64], lengths: NDArray[np.int64]
+) -> _Read | None:
+    mantissa = np.zeros(len(begins), np.int64)
+    behind = np.zeros(len(begins), np.int64)
+    pointed = np.zeros(len(begins), bool)
+    power = np.ones(len(begins), np.int64)
+    for place in range(int(lengths.max())):
+        at = cells.ends - (place + 1)
+        digit = cells.text.take(at) - np.uint8(ord("0"))
+        digit[at < begins] = 0
+        point = digit == _POINT
+        if (point & (pointed | (lengths == 1))).any():
+            return None
+        behind[point] = place
+        pointed |= point
+        digit[point] = 0
+        if digit.max() > 9:
             return None
         mantissa += digit * power
         power *= np.where(point, 1, 10)
-    if ((lengths - pointed) > most).any():
-        return None
-    return np.where(first == ord("-"), -mantissa, mantissa), behind
+    return mantissa, behind, lengths - pointed
