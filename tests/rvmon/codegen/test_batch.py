@@ -1,13 +1,22 @@
 """Columns of arrays: judged as the same samples one by one."""
 
+import ctypes
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import rvmon
-from rvmon.monitor import batch
+from rvmon.codegen.c_build import built
+from rvmon.monitor import batch, compile_spec
+from rvmon.testing.compare import differences
+from rvmon.testing.differential import cases_of
+from rvmon.testing.filled import filled, judge_columns
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.law import judge
 
 SPEC = """
 spec watch "A base"
@@ -160,3 +169,37 @@ def test_many_traces_in_one_call(jobs):
     reports = list(spec.evaluate_many(runs, jobs=jobs, only=["R1", "R3"]))
     assert reports == [spec.evaluate(run, only=["R1", "R3"]) for run in runs]
     assert set(reports[0].verdicts) == {"R1", "R3"}
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+def test_builds_at_the_same_time_do_not_disturb_each_other(tmp_path, monkeypatch):
+    """Whoever comes second finds a whole file; nothing is left over."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    texts = {"one.c": "int one(void);\nint one(void) { return 1; }\n"}
+
+    def build(_: int) -> object:
+        return built(texts, ["one.c"], ".so", ["-shared", "-fPIC"])
+
+    with ThreadPoolExecutor(4) as pool:
+        paths = set(pool.map(build, range(8)))
+    (path,) = paths
+    assert ctypes.CDLL(str(path)).one() == 1
+    assert list(path.parent.iterdir()) == [path]
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.parametrize(("engine", "seeds"), [("auto", 30), ("c", 4)])
+def test_columns_judge_as_the_law_has_it(engine, seeds, tmp_path, monkeypatch):
+    """Random specifications on random arrays: what the oracle says of the same samples."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    profile = Profile(captures=False, for_each=False)
+    judged = 0
+    for seed in range(seeds):
+        compiled = None
+        for case in map(filled, cases_of(f"columns/{seed}", profile, TraceProfile(), 3)):
+            compiled = compiled or compile_spec(case.spec)
+            report = judge_columns(compiled, case, engine)
+            if report is not None:
+                judged += 1
+                assert not differences(judge(case), report)
+    assert judged >= seeds
