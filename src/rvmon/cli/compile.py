@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 if TYPE_CHECKING:
     from rvmon.session import Spec
 
-_AUTOMATA = ("dot", "json", "hoa")
+_AUTOMATA = ("dot", "json", "hoa", "costs")
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -23,12 +23,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="a specification as Python or C that runs alone, or as automata",
         description="Write a monitor that needs nothing of rvmon: one Python file, or C99 (a "
         "header, a source, a header for C++) that allocates nothing. Or the automata: dot for "
-        "Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time).",
+        "Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time). "
+        "Or costs: a line per requirement with what judges it and what open attempts cost.",
         epilog="examples: rvmon compile specs/handover.rv --to c -o monitor/; "
         "rvmon compile specs/handover.rv --to dot --only R1 | dot -Tsvg -o r1.svg",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument("--to", choices=("python", "c", "dot", "json", "hoa"), required=True)
+    parser.add_argument(
+        "--to", choices=("python", "c", "dot", "json", "hoa", "costs"), required=True
+    )
     parser.add_argument(
         "-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)"
     )
@@ -79,6 +82,10 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
             known = ", ".join(compiled.requirements)
             raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
     chosen = [one for name, one in compiled.requirements.items() if ids is None or name in ids]
+    if form == "costs":
+        from rvmon.report.costs_text import costs_text
+
+        return costs_text({one.requirement.id: one.report for one in chosen})
     if form == "hoa":
         from rvmon.export.hoa import hoa
 

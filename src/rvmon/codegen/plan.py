@@ -22,12 +22,14 @@ class PlannedRule:
         alphabet: of what it owes.
         automaton: judges its attempts; `None` if there is none, which only a monitor in this
             process can do without.
+        in_runs: whether its open attempts are kept in runs.
     """
 
     requirement: Requirement
     trigger: State | None
     alphabet: Alphabet
     automaton: Automaton | None
+    in_runs: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.automaton.bulk import moves_in_runs
 from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_nodes import (
@@ -18,9 +17,6 @@ from rvmon.codegen.python_nodes import (
 from rvmon.codegen.python_visit import VisitWriter, indented
 from rvmon.spec.checked import Compare, Mode, ProbeAtom, SignalAtom
 from rvmon.spec.printer import format_formula
-
-_SEEN = 19
-"""So many truth values fit into one number of 32 bits, with what was seen at a trigger."""
 
 
 def unit_source(plan: Plan, arriving: frozenset[str] | None = None) -> str:
@@ -118,23 +114,8 @@ class _Writer:
     def _trigger(self, rule: PlannedRule) -> str:
         place = -1 if rule.trigger is None else self.plan.graph.index[rule.trigger]
         requirement = rule.requirement
-        bulk = place >= 0 and rule.automaton is not None and moves_in_runs(rule.automaton)
-        bulk = bulk and self._leaves_below(rule) <= _SEEN
-        return f"{place}, {requirement.pulse!r}, {requirement.mode is Mode.WHENEVER!r}, {bulk!r}"
-
-    def _leaves_below(self, rule: PlannedRule) -> int:
-        """How many leaves a requirement reads."""
-        graph = self.plan.graph
-        stack = [graph.index[state] for state in rule.alphabet.propositions]
-        if rule.trigger is not None:
-            stack.append(graph.index[rule.trigger])
-        found: set[int] = set()
-        while stack:
-            place = stack.pop()
-            if place not in found:
-                found.add(place)
-                stack += graph.operands[place]
-        return sum(graph.nodes[place].leaf is not None for place in found)
+        episodic = requirement.mode is Mode.WHENEVER
+        return f"{place}, {requirement.pulse!r}, {episodic!r}, {rule.in_runs!r}"
 
     def _momentary(self) -> tuple[tuple[int, tuple[str, ...]], ...]:
         """The leaves that speak of one position, with the names without which they cannot."""

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.bulk import moves_in_runs
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.forecast import Forecaster
+from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
@@ -26,6 +28,12 @@ from rvmon.formula.state import State
 from rvmon.monitor.wording import Words
 from rvmon.spec.checked import CheckedSpec, Compare, Requirement, TimeModel
 
+RUN_BYTES = 20
+"""Of an attempt in a run: the instant of its trigger, its number, what was seen."""
+
+MOST_SEEN = 19
+"""So many truth values, seen at the trigger, fit into a number of 32 bits."""
+
 ENGINES = ("auto", "python", "automaton", "progression", "network")
 
 
@@ -41,7 +49,11 @@ class CompileReport:
         locations: of the automaton, both verdicts included; 0 without one. So are the others.
         clocks: the largest number that an attempt has.
         classes: of letters that lead the same way everywhere.
-        bytes_per_attempt: of its packed state, a location and an instant per clock.
+        in_runs: whether attempts are kept in runs, so that a sample costs the same however many of
+            them are open.
+        bytes_per_attempt: of memory, while it is open; `None` if it is an object of its own.
+        steps: what is looked at when something changes or a time is due: parts of runs; without
+            runs, so many for each open attempt.
     """
 
     engine: str
@@ -51,7 +63,9 @@ class CompileReport:
     locations: int = 0
     clocks: int = 0
     classes: int = 0
-    bytes_per_attempt: int = 0
+    in_runs: bool = False
+    bytes_per_attempt: int | None = None
+    steps: int = 0
 
 
 class CompiledRequirement:
@@ -104,6 +118,18 @@ class CompiledRequirement:
         """Why it has no automaton, or empty."""
         return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
 
+    def in_runs(self, automaton: Automaton | None) -> bool:
+        """Whether its open attempts are kept in runs if an automaton of it judges them."""
+        requirement = self.requirement
+        return (
+            automaton is not None
+            and self.obligation.trigger is not None
+            and not requirement.captures
+            and requirement.for_each is None
+            and len(self.leaves) <= MOST_SEEN
+            and moves_in_runs(automaton)
+        )
+
     @property
     def report(self) -> CompileReport:
         """How it is judged, and at what cost."""
@@ -111,6 +137,9 @@ class CompiledRequirement:
         automaton = self.automaton
         if automaton is None:
             return CompileReport("network", self.refusal, letters, reach)
+        in_runs = self.in_runs(automaton)
+        live = automaton.locations[PASSED + 1 :]
+        parts = sum(len(place.cuts[0]) + 1 if place.cuts else 1 for place in live)
         return CompileReport(
             "automaton",
             "",
@@ -119,7 +148,9 @@ class CompiledRequirement:
             len(automaton.locations),
             automaton.clocks,
             automaton.classes,
-            2 + 8 * automaton.clocks,
+            in_runs,
+            RUN_BYTES if in_runs else None,
+            parts - 1 if in_runs else 1,
         )
 
     @cached_property

@@ -67,6 +67,7 @@ def plan_requirements(
                 one.obligation.trigger,
                 one.alphabet,
                 one.automaton if explained else one.slim,
+                one.in_runs(one.automaton if explained else one.slim),
             )
             for one in requirements
         ],

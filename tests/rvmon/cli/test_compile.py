@@ -56,3 +56,13 @@ def test_unknown_requirements_are_named(spec, capsys):
     """The ones there are stand in the message."""
     assert main(["compile", spec, "--to", "dot", "--only", "D7"]) == 2
     assert "there are D1, D2" in capsys.readouterr().err
+
+
+def test_costs(spec, capsys):
+    """A line per requirement says what judges it and what open attempts cost."""
+    assert main(["compile", spec, "--to", "costs"]) == 0
+    head, first, second = capsys.readouterr().out.splitlines()
+    assert head.split() == "engine locations clocks letters decided within open attempts".split()
+    assert first.startswith("D1  automaton") and "2 s" in first
+    assert "in runs: 20 bytes each" in first
+    assert "any time" in second

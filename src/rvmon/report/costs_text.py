@@ -1,0 +1,44 @@
+"""What judging costs, as a table for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rvmon.monitor.compiled import CompileReport
+from rvmon.spec.printer import format_duration
+
+_HEAD = ("", "engine", "locations", "clocks", "letters", "decided within", "open attempts")
+
+
+def costs_text(reports: Mapping[str, CompileReport]) -> str:
+    """A line per requirement: its engine, its size, what an open attempt costs.
+
+    Args:
+        reports: by id.
+    """
+    rows = [_HEAD, *(_row(name, report) for name, report in reports.items())]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = (
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )
+    return "\n".join(lines) + "\n"
+
+
+def _row(name: str, report: CompileReport) -> tuple[str, ...]:
+    reach = "any time" if report.horizon is None else format_duration(report.horizon)
+    letters = f"{report.letters:,}"
+    if not report.locations:
+        return name, report.engine, "–", "–", letters, reach, f"one by one ({report.why})"
+    sizes = (f"{report.locations}", f"{report.clocks}", letters, reach)
+    return name, report.engine, *sizes, _open(report)
+
+
+def _open(report: CompileReport) -> str:
+    """How open attempts are kept, and what a change or a due time costs."""
+    if report.horizon == 0:
+        return "none: decided at once"
+    if not report.in_runs:
+        return "one by one: a step for each that is open"
+    steps = "1 step" if report.steps == 1 else f"at most {report.steps} steps"
+    return f"in runs: {report.bytes_per_attempt} bytes each, {steps} for all together"
