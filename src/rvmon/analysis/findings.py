@@ -71,8 +71,9 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
     else:
         both = "both" if len(conflict.ids) == 2 else "all"
         named = _listed(conflict.ids, "and")
-        when = ", ".join(_later(conflict)) or "at one instant"
-        message = f"{named} cannot {both} hold once they are triggered, {when}"
+        later = ", ".join(_later(conflict))
+        when = f", {later}" if later else " at one instant"
+        message = f"{named} cannot {both} hold once they are triggered{when}"
         mend = "narrow one of the triggers, or settle which one yields"
     return finding(rules.CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), mend=mend)
 

@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     _show(arguments.format, findings)
     if arguments.format == "text":
         if remarks:
-            print("\n".join(remarks))
+            print("\n".join(["", *remarks] if findings else remarks))
         if findings or not (unreadable or broken):
             print(_summary(len(arguments.specs) - unreadable, findings))
     if unreadable or broken:
