@@ -134,8 +134,11 @@ def _over_occurrences(names: Names, leaf: Compare, events: Sequence[str]) -> Ite
     for number in numbers:
         yield f"int32_t p{number};"
     absent = " || ".join(f"(m->silent[{number}] == IS_UNKNOWN)" for number in numbers)
+    may_occur = " && ".join(
+        f"((m->silent[{n}] == IS_UNKNOWN) || (m->payloads[{n}] > 0))" for n in numbers
+    )
     yield f"if ({absent}) {{"
-    yield "    return (uint8_t)IS_UNKNOWN;"
+    yield f"    return ({may_occur}) ? (uint8_t)IS_UNKNOWN : (uint8_t)IS_FALSE;"
     yield "}"
     for number in numbers:
         yield f"for (p{number} = 0; p{number} < m->payloads[{number}]; p{number}++) {{"

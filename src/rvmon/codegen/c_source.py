@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -219,13 +220,16 @@ class _Writer:
         yield array("int32_t", "timed", self._timed())
         yield array("int32_t", "perishable", self._perishable())
         yield array("int32_t", "stateful", graph.stateful)
+        # Counted down for each name without a source; at 0 the leaf stays as it is.
+        named = Counter(place for places in self._needs() for place in places)
         momentary = [
-            int(place in graph.reads and graph.reads[place].momentary) for place in range(count)
+            max(named[place], int(graph.reads[place].momentary)) if place in graph.reads else 0
+            for place in range(count)
         ]
         yield array("uint8_t", "momentary", momentary)
 
     def _needs(self) -> list[list[int]]:
-        """Per name, the leaves that speak of one position only if it has a source."""
+        """Per name, the leaves that speak of one position if that or another one has a source."""
         graph, plan = self.plan.graph, self.plan
         return [
             [

@@ -118,7 +118,7 @@ class _Writer:
         return f"{place}, {requirement.pulse!r}, {episodic!r}, {rule.in_runs!r}"
 
     def _momentary(self) -> tuple[tuple[int, tuple[str, ...]], ...]:
-        """The leaves that speak of one position, with the names without which they cannot."""
+        """The leaves that speak of one position, with the names of which they need one."""
         graph, events = self.plan.graph, self.plan.events
         return tuple(
             (

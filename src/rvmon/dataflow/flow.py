@@ -61,11 +61,11 @@ class Flow:
         self._evaluate = [self._evaluator(place) for place in range(len(graph.nodes))]
 
     def _is_never(self, place: int) -> bool:
-        """Whether an occurrence that a leaf speaks of has no source, so that its value is fixed."""
-        absent = self.inputs.absent & self.graph.reads[place].names
-        if isinstance(self.graph.nodes[place].leaf, ProbeAtom):
-            return bool(absent)
-        return bool(absent - self.inputs.slots.keys())
+        """Whether no name of whose occurrence a leaf speaks has a source, so that it stays unknown."""
+        needed = self.graph.reads[place].names
+        if not isinstance(self.graph.nodes[place].leaf, ProbeAtom):
+            needed -= self.inputs.slots.keys()
+        return bool(needed) and needed <= self.inputs.absent
 
     def apply(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take the updates of a sample; they show at the next call of `evaluate`."""

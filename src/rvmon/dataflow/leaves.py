@@ -128,11 +128,11 @@ def _compare(leaf: Compare, inputs: Inputs, captured: Mapping[str, Scalar]) -> E
         return TRUE if operation(first, second) else FALSE
 
     def of_occurrences(_: int) -> int:
-        if any(event in inputs.absent for event in events):
-            return UNKNOWN
         found = FALSE
         choices = [
-            [p for value in inputs.occurrences.get(event, ()) for p in payloads_of(value)]
+            [None]
+            if event in inputs.absent
+            else [p for value in inputs.occurrences.get(event, ()) for p in payloads_of(value)]
             for event in events
         ]
         for chosen in product(*choices):

@@ -66,6 +66,27 @@ def test_forms_agree_with_the_law(name, form):
     assert not disagreements(case, Maker(form))
 
 
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
+@pytest.mark.parametrize("sources", ["g", "h", "gh", ""])
+def test_two_events_of_which_one_has_no_source(form, time, sources):
+    """A comparison over two events is false while one surely does not occur, else unknown."""
+    if form == "c" and shutil.which("gcc") is None:
+        pytest.skip("no gcc")
+    spec = rvmon.loads(
+        f"spec s\ntime {time}\nevent g(k: int)\nevent h(m: real)\n"
+        "requirement R1\n  upon start\n  then for 5 ns not g.k > h.m\n"
+        "requirement R2\n  upon start\n  then within 5 ns g.k > h.m\n"
+    )
+    told = [(0, {}), (2, {"g": {"k": 1}}), (3, {}), (7, {"h": {"m": 0.5}}), (9, {})]
+    samples = [
+        Sample(t, {name: value for name, value in values.items() if name in sources})
+        for t, values in told
+    ]
+    case = Case(spec.checked, tuple(samples), 12, frozenset(sources))
+    assert not disagreements(case, Maker(form), online=form != "c")
+
+
 def test_what_cannot_be_judged_within_bounds_says_so():
     """Progression ends in a message, not in a hang, where the network goes on."""
     spec = rvmon.loads(

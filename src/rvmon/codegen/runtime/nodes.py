@@ -56,7 +56,7 @@ class Nodes:
     READERS: Mapping[str, int]
     """Per name, a bit for each leaf that reads it."""
     MOMENTARY: tuple[tuple[int, tuple[str, ...]], ...] = ()
-    """The leaves that speak of one position, with the events that they need a source of."""
+    """The leaves that speak of one position, with the names of which one has to have a source."""
     BEFORE: tuple[int, ...] = ()
     """Per node, its value before the first position."""
     MEMORY: tuple[int, ...] = ()
@@ -89,7 +89,7 @@ class Nodes:
         self.marked = {place: Since(low, high, gap) for place, (low, high) in self.MARKED.items()}
         self.momentary = 0
         for place, needs in self.MOMENTARY:
-            if not absent.intersection(needs):
+            if not needs or not absent.issuperset(needs):
                 self.momentary |= 1 << place
         self.origin: int | None = None
         self.before = 0
@@ -136,11 +136,10 @@ class Nodes:
 
     def over_(self, events: Sequence[int], truth: Callable[[dict[int, Any]], int]) -> int:
         """The truth of a comparison over all occurrences of the events whose fields it reads."""
-        for event in events:
-            if self.silent[event] == UNKNOWN:
-                return UNKNOWN
         found = FALSE
-        for payloads in product(*[self.p[event] for event in events]):
+        silent, occurred = self.silent, self.p
+        choices = [[None] if silent[event] == UNKNOWN else occurred[event] for event in events]
+        for payloads in product(*choices):
             one = UNKNOWN if None in payloads else truth(dict(zip(events, payloads)))  # noqa: B905
             if one > found:
                 found = one
