@@ -61,7 +61,7 @@ class Flow:
         self._evaluate = [self._evaluator(place) for place in range(len(graph.nodes))]
 
     def _is_never(self, place: int) -> bool:
-        """Whether no name of whose occurrence a leaf speaks has a source, so that it stays unknown."""
+        """Whether nothing whose occurrence a leaf speaks of has a source: its value is fixed."""
         needed = self.graph.reads[place].names
         if not isinstance(self.graph.nodes[place].leaf, ProbeAtom):
             needed -= self.inputs.slots.keys()
