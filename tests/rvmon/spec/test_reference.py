@@ -10,8 +10,10 @@ from rvmon.spec import compile_text
 from rvmon.spec.effort import DEEPEST, LARGEST
 from rvmon.spec.findings import MOST
 from rvmon.spec.formatter import format_text
+from rvmon.spec.parse import grammar
 from rvmon.spec.rules.goals import MOST_COMBINATIONS
-from rvmon.spec.words import FUNCTIONS, ITEM_WORDS
+from rvmon.spec.units import unit_table
+from rvmon.spec.words import CLAUSE_WORDS, FUNCTIONS, INFIX_WORDS, ITEM_WORDS, RESERVED
 
 DOCS = Path(__file__).parents[3] / "docs" / "reference"
 PAGE = (DOCS / "language.md").read_text(encoding="utf-8")
@@ -27,6 +29,42 @@ def test_example(text):
         pytest.fail(str(error))
     assert {warning.code for warning in warnings} <= {"RV046"}
     assert format_text(format_text(text)) == format_text(text)
+
+
+OPEN = ("NAME", "CALL", "NUMBER", "UNIT", "STRING", *grammar().ignore_tokens)
+"""Terminals that stand for many words."""
+
+
+def grammar_words():
+    """All words of the language: those in the grammar's terminals, and those that are no names."""
+    yield from RESERVED | INFIX_WORDS | CLAUSE_WORDS | FUNCTIONS
+    for terminal in grammar().terminals:
+        if terminal.name not in OPEN:
+            pattern = terminal.pattern.value.replace(r"\s", " ").replace(r"\w", " ")
+            yield from re.findall(r"[a-z]{2,}", pattern)
+
+
+@pytest.mark.parametrize("word", sorted(set(grammar_words())))
+def test_every_word_of_the_grammar_is_named(word):
+    """A word that is added to the language has to be added to its reference."""
+    prose = re.sub(r"```.*?```|``.*?``", "", PAGE, flags=re.DOTALL)
+    quoted = [*re.findall(r"`([^`]+)`", prose), *EXAMPLES]
+    assert any(re.search(rf"(?<!\w){word}(?!\w)", text) for text in quoted)
+
+
+@pytest.mark.parametrize("sign", ["<->", "->", "-->", "&&", "||", "!", "A[]", "E<>", "inf", "∞"])
+def test_every_sign_is_named(sign):
+    """Signs that stand for words are named, too."""
+    assert sign in PAGE.replace("\\|", "|")
+
+
+def test_every_unit_is_named():
+    """All units but those with a prefix stand in the table."""
+    named = set(re.findall(r"`([^`]+)`", PAGE[PAGE.index("### Units") :]))
+    prefixed = {
+        unit for unit in unit_table() if unit[0] in "nuµmcdkMG" and unit[1:] in unit_table()
+    }
+    assert unit_table().keys() - prefixed - named == {"A", "W"} - named
 
 
 def test_reference_is_complete():
