@@ -58,7 +58,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     GeneratedMonitor: (*_MONITOR, "_floor"),
     Ledger: ("attempts", "_counts"),
     HealthLog: ("began", "_seen"),
-    Intake: ("floor", "conflicts", "late", "_held", "_taken"),
+    Intake: ("floor", "conflicts", "late", "crowded", "_held", "_taken"),
     Conflicts: ("_seen",),
     Lanes: _LANES,
     GeneratedLanes: ("unit", "_counts", *_LANES),

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.intake import Intake
+from rvmon.monitor.intake import MOST_HELD, Intake
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
@@ -76,6 +76,10 @@ class HealthLog:
             if intake.late is not None:
                 count, first = intake.late
                 found.append(Health(HealthKind.LATE, "samples", count, first, remark="left out"))
+            if intake.crowded is not None:
+                count, first = intake.crowded
+                early = f"judged before the delay was over: {MOST_HELD:,} samples were waiting"
+                found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
         return sorted(found, key=lambda one: (one.name, one.kind))
 
     def _unfed(self, readers: Mapping[str, tuple[str, ...]], inputs: Inputs) -> list[Health]:

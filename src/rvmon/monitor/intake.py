@@ -10,6 +10,9 @@ from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT, format_ticks
 
+MOST_HELD = 65_536
+"""So many samples at most wait for late ones; with more, the oldest are judged early."""
+
 
 class Intake:
     """Holds samples back until no other can come at their instant or before (SEMANTICS 6).
@@ -22,6 +25,7 @@ class Intake:
         floor: no sample before this instant is taken any more.
         conflicts: signals that got two values at one instant.
         late: samples that came after their instant was settled: how many, and the first's instant.
+        crowded: samples judged early because too many waited: the same.
     """
 
     def __init__(self, delay: int, events: Container[str]) -> None:
@@ -30,6 +34,7 @@ class Intake:
         self.floor = -TIME_LIMIT
         self.conflicts = Conflicts()
         self.late: tuple[int, int] | None = None
+        self.crowded: tuple[int, int] | None = None
         self._held: list[tuple[int, int, Mapping[str, Value]]] = []
         self._taken = 0
 
@@ -50,7 +55,13 @@ class Intake:
             return []
         self._taken += 1
         heappush(self._held, (t, self._taken, values))
-        return self.settle(t - self.delay)
+        ready = self.settle(t - self.delay)
+        if self.delay and len(self._held) > MOST_HELD:
+            oldest = self._held[0][0]
+            count, first = self.crowded or (0, oldest)
+            self.crowded = (count + 1, first)
+            ready += self.settle(oldest + 1)
+        return ready
 
     def settle(self, t: int) -> list[Sample]:
         """Learn that no sample before `t` will come; returns those that are settled, in order."""

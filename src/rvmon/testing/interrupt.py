@@ -45,7 +45,9 @@ class Interrupted:
 
     def finish_ns(self, t_ns: int | None = None) -> Report:
         """See `Monitor.finish_ns`."""
-        return self._interrupt().finish_ns(t_ns)
+        report = self._interrupt().finish_ns(t_ns)
+        self._share = 0  # a finished run is not interrupted
+        return report
 
     @property
     def open(self) -> Sequence[Attempt]:

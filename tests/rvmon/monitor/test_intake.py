@@ -44,6 +44,17 @@ def test_advance_and_finish_settle_too():
     assert [a.number for a in monitor.finish().attempts] == [1, 2]
 
 
+def test_the_buffer_of_delayed_samples_is_bounded(monkeypatch):
+    """When too many samples wait, the oldest are judged, and input health says so."""
+    monkeypatch.setattr("rvmon.monitor.intake.MOST_HELD", 3)
+    monitor = load("max delay 1 h").monitor()
+    for t in range(6):
+        monitor.step(t, {"x": 1})
+    monitor.step(1, {"x": 2})
+    found = {(one.name, one.count, one.first) for one in monitor.finish().health}
+    assert {("buffer", 3, 0), ("samples", 1, 10**9)} <= found
+
+
 def test_samples_are_put_in_order_within_the_allowed_delay():
     """What comes late but in time is judged at its instant; what comes later is counted."""
     monitor = load("max delay 1 s").monitor()
