@@ -98,6 +98,7 @@ class IntakeWriter:
             yield from indented(self._done())
             yield "    return ()"
         yield from self._time()
+        yield from indented(self._expired())
         yield "dirty = 0"
         yield from at_hand(always)
         yield from always
@@ -108,6 +109,14 @@ class IntakeWriter:
             lines += indented(self._new(f"x{number}", name))
         yield from indented([*at_hand(lines), *lines])
         yield from self._after()
+
+    def _expired(self) -> Iterator[str]:
+        """After time has passed: what became unknown is another value, though it is the same."""
+        for number, name in enumerate(self.arriving):
+            signal = self.plan.spec.signals.get(name)
+            if signal is not None and signal.stale_after is not None:
+                yield f"if self.last[{self.plan.signals.index(name)}] is MISSING:"
+                yield f"    changed |= {1 << number}"
 
     def _noticed(self, number: int, name: str) -> Iterator[str]:
         """See whether a value is another; refuse what needs a closer look."""

@@ -96,3 +96,17 @@ def test_what_cannot_be_judged_within_bounds_says_so():
     monitor.step(0, {"a": True})
     with pytest.raises(rvmon.RvmonError, match="an attempt of R1 owes more than 256 obligations"):
         monitor.step(1, {"a": False})
+
+
+@pytest.mark.parametrize("engine", ["python", "automaton"])
+def test_a_value_that_comes_again_after_it_was_stale_is_known(engine):
+    """Samples that hold all names: time passes before it is seen what is new."""
+    spec = rvmon.loads(
+        "spec s\nsignal y : int stale after 4 ns\nevent e\n"
+        "requirement R1\n  upon e\n  then within 3 ns y == -1\n"
+    )
+    monitor = spec.monitor(engine=engine)
+    for t in (4, 11, 14, 18):
+        monitor.step_ns(t, {"y": -2, "e": t == 11})
+    (attempt,) = monitor.finish_ns().attempts
+    assert (attempt.decided, attempt.verdict) == (15, "F")
