@@ -103,3 +103,18 @@ def test_standard_input(monkeypatch, capsys):
     monkeypatch.setattr("sys.stdin", io.StringIO(WRONG))
     assert main(["check", "-"]) == 2
     assert "<stdin>:3:38" in capsys.readouterr().err
+
+
+def test_engines_are_told_on_demand(write, capsys):
+    """With `--engines` each requirement says what judges it, and why it has no automaton."""
+    path = write(
+        "a.rv",
+        "spec s\nsignal a, b : bool\nevent e\nrequirement R1\n  upon e then within 3 s b\n"
+        "requirement R2\n  whenever a then F[2 s, 5 s] b\n",
+    )
+    assert main(["check", path]) == 0
+    assert "automaton" not in capsys.readouterr().out
+    assert main(["check", path, "--engines"]) == 0
+    shown = capsys.readouterr().out
+    assert "R1: automaton of 4 locations" in shown
+    assert "R2: delay network: as an automaton it would have more than 6 clocks" in shown
