@@ -35,6 +35,12 @@ CASES = {
         [(0, {})],
         0,
     ),
+    "a loop without a boundary ahead, before the instant 0": (
+        "held",
+        "whenever true\n  then F[1 ns, 1 ns] true",
+        [(-3, {}), (11, {"unread": 1.0})],
+        11,
+    ),
     "an instance begins between two ticks of the clock": (
         "sampled every 3 ns",
         "upon g\n  then start\n  for each v in g.k",
