@@ -110,7 +110,8 @@ _COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evalu
 def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
     """All that take part in a section, ours first: with columns in memory, or row by row."""
     here = Path(sys.executable)
-    for label, kind, engine in _COLUMNS if section == "batch" else _STEPS:
+    forms = {"batch": _COLUMNS, "online": _STEPS, "robot": _STEPS}.get(section, _STEPS[1:])
+    for label, kind, engine in forms:
         yield Worker(label, Peer(here, OURS), _ours(kind, engine))
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _past(dialects.REELAY_DISCRETE)),
