@@ -27,6 +27,9 @@ from rvmon.timed.scope import (
 )
 from rvmon.timed.syntax import BaseType
 
+MAX_FINDINGS = 100
+"""Behind so many, nothing more is looked for."""
+
 MAX_CLOCKS = 255
 """The most clocks of a network: a zone has the square of it in numbers."""
 
@@ -54,9 +57,15 @@ class Findings:
     found: dict[tuple[str, str, int], Diagnostic] = field(default_factory=dict)
 
     def add(self, diagnostic: Diagnostic) -> None:
-        """Note a finding; template instances repeat those of their template."""
+        """Note a finding; template instances repeat those of their template.
+
+        Raises:
+            ModelError: there are so many that looking for more would help nobody.
+        """
         start = diagnostic.spans[0].span.start if diagnostic.spans else -1
         self.found.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
+        if len(self.found) >= MAX_FINDINGS:
+            self.raise_errors()
 
     def has(self, code: str) -> bool:
         """Whether a finding of a code is among them."""

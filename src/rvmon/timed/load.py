@@ -25,7 +25,7 @@ def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None
         ModelError: the file cannot be read, or is no model; it has all findings.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = Path(path).read_text(encoding="utf-8-sig")
     except OSError as error:
         raise model_error("TA022", f"{path}: {error.strerror}", None) from None
     except UnicodeDecodeError:

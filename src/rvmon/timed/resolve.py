@@ -45,6 +45,9 @@ MAX_VALUES = 10_000
 MAX_UNROLLED = 100_000
 """The most conditions that the quantifiers of a model may stand for together."""
 
+MOST_NAMES = 1_000
+"""Names that a misspelt one is compared with."""
+
 INT16 = (-32768, 32767)
 """UPPAAL's `int` without a range."""
 
@@ -385,5 +388,5 @@ def values_of(kind: ResolvedType, span: Span) -> range:
 
 def suggest(name: str, candidates: list[str]) -> str:
     """The name that was probably meant, as a sentence; empty if none is near."""
-    near = difflib.get_close_matches(name, candidates, n=1)
+    near = difflib.get_close_matches(name, candidates[:MOST_NAMES], n=1)
     return f"did you mean `{near[0]}`?" if near else ""

@@ -28,10 +28,12 @@ from rvmon.timed.syntax import LocationKind
 from rvmon.timed.xml_tree import Element, read_xml
 from rvmon.trace.time import TICKS_PER_UNIT
 
-_UNIT = re.compile(r"^\s*//\s*unit\s+([1-9]\d{0,9})\s+(\w+)\s*$", re.MULTILINE)
-_NAME = re.compile(r"^\s*//\s*network\s+(\w+)(?:\s+\"([^\"\n]*)\")?\s*$", re.MULTILINE)
-_WEIGHT = re.compile(r"^\s*weight\s+(\d+(?:\.\d+)?)\s*$", re.MULTILINE)
-_LABEL = re.compile(r"^\s*as\s+(\S+)\s*$", re.MULTILINE)
+_UNIT = re.compile(r"^[ \t]*//[ \t]*unit[ \t]+([1-9]\d{0,9})[ \t]+(\w+)[ \t]*$", re.MULTILINE)
+_NAME = re.compile(
+    r"^[ \t]*//[ \t]*network[ \t]+(\w+)(?:[ \t]+\"([^\"\n]*)\")?[ \t]*$", re.MULTILINE
+)
+_WEIGHT = re.compile(r"^[ \t]*weight[ \t]+(\d+(?:\.\d+)?)[ \t]*$", re.MULTILINE)
+_LABEL = re.compile(r"^[ \t]*as[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
 def read_uppaal(source: Source) -> tuple[syntax.Document, list[Diagnostic]]:

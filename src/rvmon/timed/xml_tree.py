@@ -25,6 +25,7 @@ class Element:
     """An element with its texts joined, and where each piece of them stands.
 
     Attributes:
+        pieces: of the text, as they were read.
         offsets: of the pieces in `text`.
         places: of the same pieces in the file.
     """
@@ -35,6 +36,7 @@ class Element:
     start: int
     children: list[Element] = field(default_factory=list)
     text: str = ""
+    pieces: list[str] = field(default_factory=list)
     offsets: list[int] = field(default_factory=list)
     places: list[int] = field(default_factory=list)
 
@@ -92,6 +94,7 @@ class _Reader:
         self._data = data
         self._open: list[Element] = []
         self._parser: Any = None
+        self._reached = (0, 0)
 
     def read(self, parser: Any, data: bytes) -> None:  # expat's parser type has no public name
         self._parser = parser
@@ -102,10 +105,13 @@ class _Reader:
         parser.Parse(data, True)
 
     def position(self, byte: int) -> int:
-        """The character that a byte of the file belongs to."""
+        """The character that a byte of the file belongs to; asked of later and later bytes."""
         if len(self._data) == len(self._source.text):
             return byte
-        return len(self._data[:byte].decode("utf-8", errors="ignore"))
+        before, characters = self._reached
+        characters += len(self._data[before:byte].decode("utf-8", errors="ignore"))
+        self._reached = (byte, characters)
+        return characters
 
     def _here(self) -> int:
         return self.position(self._parser.CurrentByteIndex)
@@ -121,13 +127,15 @@ class _Reader:
         self._open.append(element)
 
     def _end(self, _name: str) -> None:
-        self._open.pop()
+        element = self._open.pop()
+        element.text = "".join(element.pieces)
 
     def _characters(self, data: str) -> None:
         element = self._open[-1]
-        element.offsets.append(len(element.text))
+        last = element.offsets[-1] + len(element.pieces[-1]) if element.pieces else 0
+        element.offsets.append(last)
         element.places.append(self._here())
-        element.text += data
+        element.pieces.append(data)
 
     def _entity(self, name: str, *_rest: object) -> None:
         here = self._here()

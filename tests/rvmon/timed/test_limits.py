@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon.errors import ModelError
-from rvmon.timed.load import loads_network
+from rvmon.timed.load import load_network, loads_network
 from rvmon.timed.verify import verify
 
 A = "automaton A { location a start a } "
@@ -74,3 +74,25 @@ def test_a_wide_quantifier_is_decided():
     network = loads_network("int[0,9] v " + A)
     assert verify(network, "A[] forall (i : int[0,9999]) v < i + 1").holds
     assert not verify(network, "E<> exists (i : int[1,9999]) v == i").holds
+
+
+def test_findings_end_at_a_hundred():
+    """Thousands of mistakes are not all told: the first hundred are."""
+    with pytest.raises(ModelError) as caught:
+        loads_network("clock x" + ", x" * 5000)
+    assert len(caught.value.diagnostics) == 100
+
+
+def test_xml_is_read_in_one_go():
+    """A text of many lines, and many tags behind a letter that is no ASCII, take no square time."""
+    for text in ("<nta><declaration>" + "\n" * 1_000_000 + "</declaration></nta>",
+                 "<nta><!-- ü -->" + "<a/>" * 100_000 + "</nta>"):  # fmt: skip
+        with pytest.raises(ModelError, match="there is no automaton"):
+            loads_network(text)
+
+
+def test_a_byte_order_mark_is_passed_over(tmp_path):
+    """Editors on Windows write one in front."""
+    path = tmp_path / "model.ta"
+    path.write_bytes(b"\xef\xbb\xbf" + A.encode())
+    assert len(load_network(path).automata) == 1
