@@ -27,7 +27,7 @@ ROOT = Path(__file__).parents[1]
 def corpus() -> list[bytes]:
     """The textbook models, the handover, and small random models in both forms."""
     files = [
-        *sorted((ROOT / "examples" / "models").iterdir()),
+        *sorted(p for p in (ROOT / "examples" / "models").iterdir() if p.suffix in (".ta", ".xml")),
         ROOT / "src/handover/model/handover.ta",
     ]
     small = [random_model(seed) for seed in range(20)]
