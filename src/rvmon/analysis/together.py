@@ -1,8 +1,9 @@
 """Attempts of several requirements side by side: whether they can all end well.
 
 One clock measures the time since the first trigger; its ages are cut into cells by the windows of
-all. More is taken to be possible than is: windows that open later than the trigger may lie
-anywhere, a cell takes any number of steps. So what is found impossible is so.
+all. Of every clock of an attempt it is known in which cell it was started, so that its age is known
+up to the widths of two cells. More is taken to be possible than is: a cell takes any number of
+steps, and clocks that are started in one cell are not compared. So what is found impossible is so.
 """
 
 from __future__ import annotations
@@ -14,16 +15,17 @@ from itertools import product
 
 from rvmon.analysis.letters import Letters, Table, Truths
 from rvmon.analysis.possible import automaton_letter
-from rvmon.analysis.regions import after_edge, row_of
+from rvmon.analysis.regions import Regions, after_edge, row_of
 from rvmon.analysis.subject import Subject
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.spec.checked import CheckedSpec, EndPolicy, TimeModel
 
 MOST_STATES = 4000
+FOREVER = 1 << 63
 
-Spot = tuple[int, tuple[int, ...]]
-"""Where one attempt is: its location, and the regions of clocks that do not tell the time."""
+Spot = tuple[int, Regions, tuple[int, ...]]
+"""Where one attempt is: its location, the least regions of its clocks and where they began."""
 
 State = tuple[int, tuple[Spot | None, ...]]
 """The cell, and each attempt; `None` before its trigger."""
@@ -131,21 +133,6 @@ def _automaton(subject: Subject) -> Automaton:
     return subject.automaton
 
 
-def keeps_its_clock(automaton: Automaton) -> bool:
-    """Whether all its windows are counted from the trigger."""
-    for row in range(automaton.bases[automaton.initial]):
-        if _restarts(automaton, row):
-            return False
-    size = len(automaton.edges) // automaton.classes
-    after = automaton.bases[automaton.initial] + 1
-    return not any(_restarts(automaton, row) for row in range(after, size))
-
-
-def _restarts(automaton: Automaton, row: int) -> bool:
-    edges = automaton.edges[row * automaton.classes : (row + 1) * automaton.classes]
-    return any(edge >= 0 and NOW in automaton.sources[edge] for edge in edges)
-
-
 class _Search:
     def __init__(
         self,
@@ -160,12 +147,9 @@ class _Search:
         self.offsets = offsets
         self.letters = letters
         self.automata = [_automaton(subject) for subject in subjects]
-        self.tied = [keeps_its_clock(automaton) for automaton in self.automata]
         cuts = {0, 1}
         for automaton, offset in zip(self.automata, offsets, strict=True):
-            cuts |= {offset, offset + 1}
-            for location in automaton.locations:
-                cuts |= {offset + cut for clock in location.cuts for cut in clock}
+            cuts |= {offset, offset + 1} | {offset + cut for cut in _cuts(automaton)}
         self.starts = sorted(cuts)
         self.dense = spec.time is TimeModel.HELD
         self._at: dict[int, frozenset[tuple[int, ...]]] = {}
@@ -228,26 +212,34 @@ class _Search:
             yield None
             return
         if spot is None:
-            spot = (automaton.initial, ())
-        location, regions = spot
+            spot = (automaton.initial, (), ())
+        location, _, began = spot
         if location <= PASSED:
             yield spot
             return
-        for at in self._regions(index, location, regions, age):
+        for at in self._regions(index, spot, cell):
             row = row_of(automaton, location, at)
             edge = automaton.edges[row * automaton.classes + class_]
             if edge >= 0:
-                kept = () if self.tied[index] else after_edge(automaton, location, at, edge)
-                yield automaton.targets[edge], kept
+                since = [cell if s == NOW else began[s] for s in automaton.sources[edge]]
+                kept = after_edge(automaton, location, at, edge)
+                yield automaton.targets[edge], kept, tuple(since)
 
-    def _regions(
-        self, index: int, location: int, regions: tuple[int, ...], age: int
-    ) -> Iterator[tuple[int, ...]]:
+    def _regions(self, index: int, spot: Spot, cell: int) -> Iterator[Regions]:
+        """The regions in which an attempt's clocks can be in a cell."""
+        location, regions, began = spot
         cuts = self.automata[index].locations[location].cuts
-        if self.tied[index]:
-            yield tuple(bisect_right(own, age) for own in cuts)
-            return
-        yield from product(*(range(r, len(own) + 1) for r, own in zip(regions, cuts, strict=True)))
+        ranges = []
+        for own, region, start in zip(cuts, regions, began, strict=True):
+            youngest = max(self.starts[cell] - self._last(start), 0)
+            oldest = self._last(cell) - self.starts[start]
+            low = max(bisect_right(own, youngest), region)
+            ranges.append(range(low, max(bisect_right(own, oldest), low) + 1))
+        yield from product(*ranges)
+
+    def _last(self, cell: int) -> int:
+        """The last tick of a cell."""
+        return self.starts[cell + 1] - 1 if cell + 1 < len(self.starts) else FOREVER
 
     def is_reached(self, state: State) -> bool:
         """Whether the aim is reached if the run ends here, all attempts having been triggered."""
@@ -255,18 +247,29 @@ class _Search:
         if any(spot is None for spot in spots):
             return False
         at = [spot for spot in spots if spot is not None]
-        return all(self._well(i, *at[i], cell) for i in self.aim.well) and all(
+        return all(self._well(i, at[i], cell) for i in self.aim.well) and all(
             at[i][0] == FAILED for i in self.aim.failed
         )
 
-    def _well(self, index: int, location: int, regions: tuple[int, ...], cell: int) -> bool:
+    def _well(self, index: int, spot: Spot, cell: int) -> bool:
+        location = spot[0]
         if location <= PASSED:
             return location == PASSED
         policy = self.subjects[index].requirement.at_end
         if policy is not EndPolicy.DEFAULT:
             return policy in (EndPolicy.WEAK, EndPolicy.PASS)
-        automaton, age = self.automata[index], self.starts[cell] - self.offsets[index]
+        automaton = self.automata[index]
         return any(
             automaton.end_values[row_of(automaton, location, at)]
-            for at in self._regions(index, location, regions, age)
+            for at in self._regions(index, spot, cell)
         )
+
+
+def _cuts(automaton: Automaton) -> set[int]:
+    """Ages at which windows of an automaton open and end, and those of windows in windows."""
+    cuts = {cut for location in automaton.locations for clock in location.cuts for cut in clock}
+    row = automaton.bases[automaton.initial] * automaton.classes
+    first = set(automaton.edges[row : row + automaton.classes])
+    later = (sources for edge, sources in enumerate(automaton.sources) if edge not in first)
+    restarts = any(NOW in sources for sources in later)
+    return cuts | {a + b for a in cuts for b in cuts} if restarts else cuts

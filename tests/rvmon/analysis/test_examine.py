@@ -149,6 +149,22 @@ requirement R1
     assert [attempt.triggered for attempt in example.attempts] == [0, 10**9]
 
 
+def test_conflict_of_a_window_in_a_window():
+    """Wherever the inner window begins, it covers the stretch that another requirement needs."""
+    text = """
+requirement R1
+  upon a
+  then within 500 ms for 1 s p
+requirement R2
+  upon a
+  then eventually[600 ms, 1 s] not p
+requirement R3
+  upon a
+  then eventually[600 ms, 1200 ms] not p
+"""
+    assert conflicts_of(text) == [(("R1", "R2"), (0, 0))]
+
+
 def test_conflict_apart_with_what_holds_always():
     """Two that are triggered apart conflict only because of a third that holds at all times."""
     text = """
@@ -232,6 +248,9 @@ def _random_responses(dice):
         low = dice.choice([0, 0, 0, 1, 2])
         high = low + dice.randint(0, 3)
         operator = dice.choice([build.eventually, build.always, build.always])
+        if dice.random() < 0.2:
+            inner = build.always if operator is build.eventually else build.eventually
+            return operator(inner(dice.choice(literals), 0, dice.randint(1, 2)), low, high)
         if dice.random() < 0.25:
             return build.two(dice.choice(literals), "U", dice.choice(literals), low, high)
         return operator(dice.choice(literals), low, high)
