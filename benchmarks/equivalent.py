@@ -16,6 +16,12 @@ EQUIVALENT = {
     "residual.py and/or: `left == right or not right` => `left == right and (not right)`": (
         "only a short cut to what the reduction finds"
     ),
+    "residual.py swapped branches: `residual if limit is None else sorted(residual, "
+    "key=_in_order)` => `sorted(residual, key=_in_order) if limit is None else residual`": (
+        "the order says only which results are met on the way"
+    ),
+    "lanes.py off by one: `len(known) + 1` => `len(known)`": "only the order of instances counts",
+    "lanes.py operator: `len(known) + 1` => `len(known) - 1`": "only the order of instances counts",
     "flow.py dropped operand: `reads.momentary and (not self._is_never(place))` => "
     "`not self._is_never(place)`": "what stays as it is is worked out again at the next position",
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
