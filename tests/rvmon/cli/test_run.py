@@ -2,6 +2,7 @@
 
 import io
 import json
+import shutil
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -43,6 +44,29 @@ def test_exit_code_and_verdict(files, capsys, trace, code, strict):
     assert shown["requirements"]["D1"]["verdict"] == trace
     assert shown["trace"] == f"{trace}.csv"
     assert main(["run", "door.rv", f"{trace}.csv", "--strict"]) == strict
+
+
+def told(text: str) -> dict:
+    """Verdicts and attempts without reasons."""
+    return {
+        name: (entry["verdict"], [(a["number"], a["decided"]) for a in entry["attempts"]])
+        for name, entry in json.loads(text)["requirements"].items()
+    }
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.parametrize("until", [[], ["--until", "2.5"]])
+def test_compiled_c_judges_alike(files, capsys, monkeypatch, until):
+    """`--engine c` gives the same verdicts, attempts and exit codes, from CSV and JSON lines."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(files))
+    (files / "whole.csv").write_text("t,closed,knock\n0,1,0\n1,1,1\n2,0,0\n5,1,1\n9,1,0\n")
+    (files / "F.jsonl").write_text('{"t": 0, "closed": true}\n{"t": 1, "events": ["knock"]}\n')
+    for trace in ("P.csv", "F.csv", "NT.csv", "I.csv", "whole.csv", "F.jsonl"):
+        command = ["run", "door.rv", trace, "--format", "json", *until]
+        code = main(command)
+        expected = told(capsys.readouterr().out)
+        assert main([*command, "--engine", "c"]) == code
+        assert told(capsys.readouterr().out) == expected
 
 
 def test_a_failure_shows_cause_window_and_spec_line(files, capsys):
