@@ -16,6 +16,7 @@ from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.build import Builder
 from rvmon.spec.expected import explain_unexpected
 from rvmon.spec.findings import Findings
+from rvmon.spec.grammar_cache import parser_of
 from rvmon.spec.items import Item, ParsedSpec
 from rvmon.spec.rules import syntax as rules
 from rvmon.spec.rules.rule import Refusal
@@ -85,7 +86,7 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
 @cache
 def grammar() -> lark.Lark:
     """The parser, built once per process."""
-    return lark.Lark(grammar_text(), **GRAMMAR_OPTIONS)
+    return parser_of(grammar_text(), GRAMMAR_OPTIONS)
 
 
 GRAMMAR_OPTIONS: dict[str, Any] = {

@@ -12,6 +12,7 @@ import lark
 
 from rvmon.diagnostics import Source, Span
 from rvmon.errors import ModelError
+from rvmon.spec.grammar_cache import parser_of
 from rvmon.timed.foreign import reason_at
 from rvmon.timed.rules import model_error
 from rvmon.timed.syntax import Document, QueryText
@@ -90,7 +91,8 @@ def parse_part(text: str, start: str, place: Place) -> Any:
 @cache
 def _parser() -> lark.Lark:
     grammar = resources.files("rvmon.timed").joinpath("ta.lark").read_text(encoding="utf-8")
-    return lark.Lark(grammar, parser="lalr", start=list(STARTS), propagate_positions=True)
+    options = {"parser": "lalr", "start": list(STARTS), "propagate_positions": True}
+    return parser_of(grammar, options)
 
 
 def _syntax_error(
