@@ -104,6 +104,8 @@ class Positions:
             left: the first integer that matters.
             right: the last one.
         """
+        if self._stamps is None and left >= self.first and right <= self.last:
+            return clip(pieces, left, right)
         made: list[Piece] = []
         append(made, left, min(right, self.first - 1), PAST, 0)
         behind = max(left, self.first)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from heapq import merge
 
 from rvmon.dataflow.pieces import Line, Piece, Pieces, append, clip, latest, soonest, stamp
 
@@ -130,10 +129,12 @@ def _sides(known: Known, start: int, end: int) -> Iterator[tuple[int, int, _Side
     """An operand from `start` to `end` without gaps."""
     true, false = (clip(pieces, start, end) for pieces in known)
     at = start
-    for left, right, side in merge(
-        ((piece[0], piece[1], (True, piece[2:])) for piece in true),
-        ((piece[0], piece[1], (False, piece[2:])) for piece in false),
-    ):
+    sides: list[tuple[int, int, tuple[bool, Line]]] = [
+        (left, right, (True, (stamp_, slope))) for left, right, stamp_, slope in true
+    ]
+    sides += [(left, right, (False, (stamp_, slope))) for left, right, stamp_, slope in false]
+    sides.sort()
+    for left, right, side in sides:
         if left > at:
             yield at, left - 1, None
         yield left, right, side
