@@ -2,8 +2,8 @@
 
     python -m benchmarks.timed_models
 
-Prints symbolic states visited and stored, seconds of CPU (the best of some runs), states per second;
-beside them what TChecker (compiled, C++) took for its own models of the same systems.
+Prints symbolic states visited and stored, seconds of CPU (the best of some runs) and states per
+second; beside them what TChecker (compiled, C++) took for its own models of the same systems.
 """
 
 from __future__ import annotations
