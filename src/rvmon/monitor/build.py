@@ -25,8 +25,9 @@ def build_monitor(
     Args:
         compiled: from `compile_spec`; any number of monitors can share it.
         only: ids of the requirements to judge; default all.
-        engine: `auto` runs generated code where it can; `python`: the same; `automaton` and
-            `progression` look up tables, or work out residuals, at each step.
+        engine: `auto` runs generated code where there is an automaton, else the delay network;
+            `python`: the same; `automaton`, `network` and `progression` look up tables, take note
+            of what becomes known, or work out residuals, at each step.
         settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
             each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
