@@ -7,6 +7,7 @@ Exit codes: 0 fine, 1 a requirement failed, 2 wrong input or spec, 3 internal er
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -41,6 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     0
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a narrow encoding costs signs, not the answer
     try:
         namespace = _parser(words).parse_args(words)
     except SystemExit as stop:  # argparse has said what is wrong

@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.numbers import duration
+
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.spec.checked import CheckedSpec
@@ -45,7 +47,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="say which engine judges each requirement, why, and what it remembers",
     )
     parser.add_argument(
-        "--seconds", metavar="S", type=float, default=8.0, help="budget of --analyse per file"
+        "--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file"
     )
 
 

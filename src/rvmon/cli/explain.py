@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.numbers import positive
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--svg", metavar="FILE", help="write the automaton as a picture")
     parser.add_argument("--dot", action="store_true", help="print the automaton as DOT, no more")
     parser.add_argument(
-        "--runs", metavar="N", type=int, default=4000, help="short runs to try (default: 4000)"
+        "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
     )
 
 
@@ -55,8 +56,6 @@ def run(arguments: argparse.Namespace) -> int:
 
     spec = load(arguments.subject, const=constants_of(arguments.const))
     ids = _ids(arguments.ids, spec)
-    if arguments.runs < 1:
-        raise RvmonError(f"error: --runs {arguments.runs}: expected a number from 1")
     compiled = compile_spec(spec.checked)
     if arguments.dot or arguments.svg:
         _draw(compiled, ids, arguments)

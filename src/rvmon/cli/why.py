@@ -110,9 +110,9 @@ def _chosen(report: Report, name: str, number: int | None) -> Attempt:
     for attempt in attempts:
         if attempt.number == number:
             return attempt
-    raise UnknownNameError(
-        f"error: no attempt {name}#{number}: there are {name}#1 to {name}#{attempts[-1].number}"
-    )
+    first, last = f"{name}#{attempts[0].number}", f"{name}#{attempts[-1].number}"
+    there = f"there are {first} to {last}" if last != first else f"there is {first} only"
+    raise UnknownNameError(f"error: no attempt {name}#{number}: {there}")
 
 
 def _most_telling(attempts: Sequence[Attempt]) -> Attempt:

@@ -2,6 +2,9 @@
 
 import io
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -118,3 +121,21 @@ def test_engines_are_told_on_demand(write, capsys):
     shown = capsys.readouterr().out
     assert "R1: automaton of 4 locations" in shown
     assert "R2: delay network: as an automaton it would have more than 6 clocks" in shown
+
+
+@pytest.mark.parametrize("seconds", ["nan", "-1", "inf", "x"])
+def test_the_budget_is_a_number_of_seconds(write, capsys, seconds):
+    """A budget that is none is refused before anything is read."""
+    assert main(["check", write("a.rv", GOOD), "--analyse", f"--seconds={seconds}"]) == 2
+    assert "--seconds" in capsys.readouterr().err
+
+
+def test_a_narrow_terminal_encoding_costs_signs_only(tmp_path):
+    """What the terminal's encoding lacks is replaced; there is no traceback and no other code."""
+    path = tmp_path / "a.rv"
+    path.write_text("signal größe : real\nrequirement R always größe > 1\n", encoding="utf-8")
+    command = [sys.executable, "-m", "rvmon", "explain", str(path), "R"]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, capture_output=True, env=environment, check=False)  # noqa: S603
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"gr??e is above 1" in done.stdout
