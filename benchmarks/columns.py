@@ -9,7 +9,9 @@ seed, and exits with 1 if there is one.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
+import tempfile
 from collections import Counter
 from collections.abc import Sequence
 
@@ -58,9 +60,11 @@ def main(argv: Sequence[str]) -> int:
     options = parser.parse_args(argv)
     count: Counter[str] = Counter()
     number = 0
-    while count["pairs"] < options.pairs:
-        judge_seed(f"{options.seed}/{number}", options.engine, options.each, count)
-        number += 1
+    with tempfile.TemporaryDirectory() as cache:
+        os.environ["XDG_CACHE_HOME"] = cache  # nobody runs these monitors again
+        while count["pairs"] < options.pairs:
+            judge_seed(f"{options.seed}/{number}", options.engine, options.each, count)
+            number += 1
     shown = ", ".join(
         f"{name} {count[name]}" for name in ("pairs", "refused", "attempts", "disagreements")
     )
