@@ -120,18 +120,24 @@ def _bind(
         count = len(target.parameters)
         message = f"`{target.name}` takes {count} argument{'' if count == 1 else 's'}"
         raise model_error("TA015", f"{message}, {len(family.arguments)} given", family.span)
-    bound = [
-        _argument(parameter, written, scope, resolver)
-        for parameter, written in zip(target.parameters, family.arguments, strict=True)
-    ]
+    bound: list[Symbol] = []
+    own = Scope(top)  # a parameter's type may speak of the parameters before it
+    for parameter, written in zip(target.parameters, family.arguments, strict=True):
+        bound.append(_argument(parameter, written, scope, own, resolver))
+        own.symbols[parameter.name] = bound[-1]
     return _bind(target, bound, families, top, resolver)
 
 
 def _argument(
-    parameter: syntax.Parameter, written: syntax.Expression, scope: Scope, resolver: Resolver
+    parameter: syntax.Parameter,
+    written: syntax.Expression,
+    scope: Scope,
+    own: Scope,
+    resolver: Resolver,
 ) -> Symbol:
-    kind = resolver.type(parameter.type, scope)
-    extents = tuple(array_extent(size, scope, resolver) for size in parameter.sizes)
+    """What an argument stands for; its type has the names of `own`, itself those of `scope`."""
+    kind = resolver.type(parameter.type, own)
+    extents = tuple(array_extent(size, own, resolver) for size in parameter.sizes)
     if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)

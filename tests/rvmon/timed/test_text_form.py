@@ -118,6 +118,21 @@ def test_reference_parameters_stand_for_the_thing():
     assert not verify(network, "E<> one.b and x < 2").holds
 
 
+def test_types_of_parameters_may_speak_of_earlier_ones():
+    """A size or range that another parameter gives is that of the instance."""
+    text = """
+    int[0,3] v[3]
+    automaton T(const int n, const int[0,n] k, int[0,3] &w[n]) {
+      location a start a
+      edge a -> a when w[k-1] == 0 do w[0] = n
+    }
+    one = T(3, {k}, v)
+    system one
+    """
+    assert loads_network(text.replace("{k}", "3")).automata[0].name == "one"
+    assert [code for code, _, _ in findings(text.replace("{k}", "4"))] == ["TA007"]
+
+
 def test_constants_can_be_set_from_outside():
     """A constant's value can be replaced; one that does not exist is refused."""
     text = "const int N = 1 automaton T(const int[1,N] i) { location a start a }"
