@@ -9,17 +9,28 @@ from pathlib import Path
 from rvmon.monitor.batch import can_batch, evaluate_blocks
 from rvmon.monitor.batch_c import evaluate_c_blocks
 from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.generated import can_generate, plan_requirements
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.parquet import parquet_blocks
 from rvmon.trace.schema import Schema
 from rvmon.verdict.report import Report
 
-READERS: Mapping[str, Callable[[str | Path, Schema], Iterator[Block]]] = {
+READERS: Mapping[str, Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]] = {
     ".csv": csv_blocks,
     ".parquet": parquet_blocks,
 }
 """By ending of the file's name."""
+
+
+def _fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[str]:
+    """The names of which only the present value matters, not whether there was an update."""
+    spec = compiled.checked
+    chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
+    uses = plan_requirements(compiled, [one for one in chosen if can_generate(one)]).uses
+    counted = {name for name, use in uses.items() if use.marked or use.history}
+    stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
+    return frozenset({*spec.signals, *spec.events} - counted - stale)
 
 
 def evaluate_file(
@@ -48,7 +59,7 @@ def evaluate_file(
     reader = READERS.get(Path(path).suffix.lower())
     if reader is None or (engine != "c" and not can_batch(compiled, only)):
         return None
-    blocks = reader(path, schema)
+    blocks = reader(path, schema, _fillable(compiled, only))
     try:
         first = next(blocks)
         names = list(first.columns)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.csv_rows import Layout, read_layout
+from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, decimals, nanoseconds, truth_values, whole_numbers
 from rvmon.trace.schema import Kind, Schema
 
@@ -23,31 +23,37 @@ BLOCK = 1 << 20
 _ODD = (b'"', b" ", b"\t", b"\0", b"\r")
 
 
-def csv_blocks(path: str | Path, schema: Schema) -> Iterator[Block]:
+def csv_blocks(
+    path: str | Path, schema: Schema, fillable: frozenset[str] = frozenset()
+) -> Iterator[Block]:
     """Read a plain CSV file.
 
-    Plain is: numbers and truth values (0, 1) without quotes, spaces, labels and payloads, no empty
-    cell, instants that increase.
+    Plain is: numbers and truth values (0, 1) without quotes, spaces, labels and payloads, instants
+    that increase, no empty cell but of names that are fillable.
 
     Args:
         path: of the file.
         schema: the declared names.
+        fillable: the names of which "no update" may be read as what was there before: of signals
+            the value, of events that they do not occur.
 
     Raises:
         NotPlainError: it is not; the blocks before were right.
     """
     last = None
     layout = None
+    held: dict[str, Any] = {}
     for text in _pieces(path):
         body = text
         if layout is None:
             header, _, body = text.partition(b"\n")
             layout = _plain_layout(header, schema)
         if body:
-            block = _block(body, layout)
+            block = _block(body, layout, fillable, held)
             if last is not None and block.times[0] <= last:
                 raise NotPlainError
             last = block.times[-1]
+            held |= {column.name: block.columns[column.name][-1] for column in layout.signals}
             yield block
     if last is None:
         raise NotPlainError
@@ -93,7 +99,7 @@ def _plain_layout(header: bytes, schema: Schema) -> Layout:
     return layout
 
 
-def _block(body: bytes, layout: Layout) -> Block:
+def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[str, Any]) -> Block:
     text = np.frombuffer(body, np.uint8)
     ends = np.flatnonzero((text == ord(",")) | (text == ord("\n")))
     rows, rest = divmod(len(ends), layout.width)
@@ -112,12 +118,49 @@ def _block(body: bytes, layout: Layout) -> Block:
     times = _plain(read(cells(layout.time)))
     if not (times[1:] > times[:-1]).all():
         raise NotPlainError
-    readers = {Kind.BOOL: truth_values, Kind.INT: whole_numbers, Kind.REAL: decimals}
-    columns = {
-        column.name: _plain(readers[column.kind](cells(column.index)))
-        for column in (*layout.signals, *layout.events)
+    columns: dict[str, NDArray[Any]] = {
+        column.name: _values(cells(column.index), column, fillable, held)
+        for column in layout.signals
     }
+    for column in layout.events:
+        columns[column.name] = _occurrences(cells(column.index), column.name, fillable)
     return Block(times, columns)
+
+
+_READERS = {Kind.BOOL: truth_values, Kind.INT: whole_numbers, Kind.REAL: decimals}
+
+
+def _values(
+    cells: Cells, column: Column, fillable: frozenset[str], held: Mapping[str, Any]
+) -> NDArray[Any]:
+    """The values of a column; gaps of a signal are filled with what it holds."""
+    read = _READERS[column.kind]
+    given = cells.ends > cells.starts
+    if given.all():
+        return _plain(read(cells))
+    before = [held[column.name]] if column.name in held else []
+    if column.name not in fillable or not (given[0] or before):
+        raise NotPlainError
+    rows = np.flatnonzero(given)
+    if not len(rows):
+        return np.array(before * len(given))
+    some = _plain(read(Cells(cells.text, cells.starts[rows], cells.ends[rows])))
+    place = np.cumsum(given) - (0 if before else 1)
+    filled: NDArray[Any] = np.concatenate((np.array(before, some.dtype), some))[place]
+    return filled
+
+
+def _occurrences(cells: Cells, name: str, fillable: frozenset[str]) -> NDArray[np.bool_]:
+    """Where an event occurs; an empty cell says that it does not."""
+    given = np.flatnonzero(cells.ends > cells.starts)
+    if len(given) < len(cells.ends) and name not in fillable:
+        raise NotPlainError
+    made = np.zeros(len(cells.ends), bool)
+    if len(given):
+        made[given] = _plain(
+            truth_values(Cells(cells.text, cells.starts[given], cells.ends[given]))
+        )
+    return made
 
 
 def _plain(values: NDArray[Any] | None) -> NDArray[Any]:

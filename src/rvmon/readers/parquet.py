@@ -55,12 +55,15 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
     return read_layout(list(_opened(path).schema_arrow.names), schema)
 
 
-def parquet_blocks(path: str | Path, schema: Schema) -> Iterator[Block]:
+def parquet_blocks(
+    path: str | Path, schema: Schema, _: frozenset[str] = frozenset()
+) -> Iterator[Block]:
     """Read a file whose columns are whole.
 
     Args:
         path: of the file.
         schema: the declared names.
+        _: the names whose gaps could be filled: none are here.
 
     Raises:
         NotPlainError: there are gaps, payloads or labels, or the instants do not increase.

@@ -68,6 +68,30 @@ def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
     assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
 
 
+@pytest.mark.parametrize("time", ["held", "sampled every 20 ms"])
+def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
+    """Empty cells: signals hold, events do not occur; the same as row by row."""
+    monkeypatch.setattr(module, "BLOCK", 997)
+    dice = random.Random(5)
+    first, second, *rest = csv_text(4).splitlines()
+    rest = [
+        ",".join(c if n == 0 or dice.random() < 0.3 else "" for n, c in enumerate(row.split(",")))
+        for row in rest
+    ]
+    (tmp_path / "a.csv").write_text("\n".join([first, second, *rest]) + "\n")
+    spec = rvmon.loads(SPEC.format(time=time, stale=""))
+    report = spec.evaluate_file(tmp_path / "a.csv")
+    assert report == by_rows(spec, tmp_path / "a.csv")
+    assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
+    for other in (
+        SPEC.format(time=time, stale="stale after 300 ms"),
+        SPEC.format(time=time, stale="") + "requirement R4\n  always not updated(stop)\n",
+    ):
+        spec = rvmon.loads(other)
+        assert spec.evaluate_file(tmp_path / "a.csv") is None
+        assert spec.evaluate(tmp_path / "a.csv") == by_rows(spec, tmp_path / "a.csv")
+
+
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_parquet_says_what_csv_says(time, tmp_path):
     """The same recording as Parquet, whole and with gaps and payloads."""
