@@ -44,6 +44,16 @@ def test_what_is_still_possible(formula, time):
     assert (attempt.forecast and attempt.forecast.value) == CASES[formula]
 
 
+@pytest.mark.parametrize(("time", "forecast"), [("held", "F"), ("sampled", None)])
+def test_a_window_without_a_position_asks_for_nothing(time, forecast):
+    """In held time every tick is a position; samples may leave a window out."""
+    both = "(always[2 s, 3 s] p) and always[2 s, 3 s] not p"
+    monitor = loads(HEAD.format(time, both)).monitor()
+    monitor.step_ns(0, {"p": False, "q": False})
+    (attempt,) = monitor.open
+    assert (attempt.forecast and attempt.forecast.value) == forecast
+
+
 def test_a_forecast_is_no_verdict():
     """The report keeps `I`, and the forecast beside it."""
     spec = loads(HEAD.format("held", "(within 3 s p) and for 5 s not p"))
