@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import assert_never
 
 from rvmon.explain.log import Truth, state_truths
-from rvmon.explain.spans import FOREVER, Spans, both, outside, union, until
+from rvmon.explain.spans import FOREVER, Spans, both, outside, since, union, until
 from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.core import Literal, Sense
 from rvmon.formula.factory import Factory
@@ -149,8 +149,22 @@ class Eye:
                 return self._not(self._until(always, self._not(operand), window))
             case UnaryOp.NEXT:
                 return self._next(operand)
-            case op:
-                raise AssertionError(f"{op} is no operator of the future")
+            case UnaryOp.PREVIOUS:
+                return self._previous(operand)
+            case UnaryOp.ONCE:
+                return self._since(always, operand, window)
+            case UnaryOp.HISTORICALLY:
+                return self._historically(operand, window)
+            case UnaryOp.HELD:
+                elapsed: Spans = ((self.begin + (window.high or 0), FOREVER),)
+                whole = self._historically(operand, window)
+                return self._and(whole, Truth(elapsed, elapsed))
+            case UnaryOp.RISE:
+                return self._and(operand, self._not(self._previous(operand)))
+            case UnaryOp.FALL:
+                return self._and(self._not(operand), self._previous(operand))
+            case _:
+                assert_never(formula.op)
 
     def truth_of(self, value: bool) -> Truth:
         """A constant."""
@@ -180,7 +194,7 @@ class Eye:
             case BinaryOp.STRONG_RELEASE:
                 return self._until(right, self._and(left, right), window)
             case BinaryOp.SINCE:
-                raise AssertionError("`since` is no operator of the future")
+                return self._since(left, right, window)
             case _:
                 assert_never(formula.op)
 
@@ -206,6 +220,35 @@ class Eye:
         if self.positions is None:
             return until(left, right, low, high)
         return self._lasting(until(left, self._at_positions(right), low, high))
+
+    def _historically(self, operand: Truth, window: Interval) -> Truth:
+        return self._not(self._since(self.truth_of(True), self._not(operand), window))
+
+    def _since(self, left: Truth, right: Truth, window: Interval) -> Truth:
+        return Truth(
+            self._since_of(left.sure, right.sure, window),
+            self._since_of(left.may, right.may, window),
+        )
+
+    def _since_of(self, left: Spans, right: Spans, window: Interval) -> Spans:
+        if self.positions is None:
+            return since(left, right, window.low, window.high)
+        met = self._at_positions(right)
+        return self._lasting(since(left, met, window.low, window.high))
+
+    def _previous(self, operand: Truth) -> Truth:
+        return Truth(self._previous_of(operand.sure), self._previous_of(operand.may))
+
+    def _previous_of(self, spans: Spans) -> Spans:
+        if self.positions is None:
+            return union((low + 1, high + 1) for low, high in spans)
+        edges = [*self.positions, self.end + 1]
+        kept = [
+            (here, after - 1)
+            for before, here, after in zip(edges, edges[1:], edges[2:], strict=False)
+            if _holds(spans, before)
+        ]
+        return union([*kept, *self._behind(spans)])
 
     def _next(self, operand: Truth) -> Truth:
         return Truth(self._next_of(operand.sure), self._next_of(operand.may))

@@ -60,3 +60,16 @@ def until(left: Spans, right: Spans, low: int, high: int | None) -> Spans:
             if earliest <= latest:
                 found.append((max(first, earliest - last), latest - low))
     return union(found)
+
+
+def since(left: Spans, right: Spans, low: int, high: int | None) -> Spans:
+    """The ticks t with an s of `right` in [t - high, t - low], and `left` at all ticks in (s, t].
+
+    >>> since(((1, 9),), ((0, 0),), 0, 3)
+    ((0, 3),)
+    """
+    return _mirrored(until(_mirrored(left), _mirrored(right), low, high))
+
+
+def _mirrored(spans: Spans) -> Spans:
+    return tuple((-high, -low) for low, high in reversed(spans))

@@ -20,7 +20,7 @@ from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
-PROFILE = Profile(requirements=1, depth=3, mixed=False, captures=False, for_each=False)
+PROFILE = Profile(requirements=1, depth=3, captures=False, for_each=False)
 
 
 def ticks(spans):
