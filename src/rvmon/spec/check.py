@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.spec.checked import CheckedSpec, Event, Requirement, Signal, TimeModel, Type
 from rvmon.spec.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.cycles import find_cycles
@@ -13,12 +10,10 @@ from rvmon.spec.findings import Findings
 from rvmon.spec.items import TypeSyntax
 from rvmon.spec.macros import check_unused
 from rvmon.spec.properties import checked_property
-from rvmon.spec.reads import names_of_spec
 from rvmon.spec.requirements import check_clauses, checked_requirement
 from rvmon.spec.resolved import DeclaredEvent, DeclaredSignal, ResolvedSpec
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
-from rvmon.spec.rules import triggers as trigger_rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax import Expression
@@ -171,18 +166,3 @@ def _duration(checker: Checker, expression: Expression) -> int | None:
     except Reported:
         pass
     return None
-
-
-def never_read(spec: CheckedSpec) -> list[Diagnostic]:
-    """A finding for each signal and event of the main file that nothing reads."""
-    read = frozenset(names_of_spec(spec))
-    kinds: tuple[tuple[str, Mapping[str, Signal | Event]], ...] = (
-        ("signal", spec.signals),
-        ("event", spec.events),
-    )
-    return [
-        trigger_rules.never_read(declared.span, kind)
-        for kind, names in kinds
-        for name, declared in names.items()
-        if name not in read and declared.span is not None and declared.span.source is spec.source
-    ]

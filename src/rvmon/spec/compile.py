@@ -10,13 +10,14 @@ from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.render import render_full
 from rvmon.diagnostics.span import Source, Span
 from rvmon.errors import SpecError
-from rvmon.spec.check import check, never_read
+from rvmon.spec.check import check
 from rvmon.spec.checked import CheckedSpec
 from rvmon.spec.constants import overridden
 from rvmon.spec.findings import MOST, Enough, Findings
 from rvmon.spec.load import load_files
 from rvmon.spec.resolve import resolve
 from rvmon.spec.rules.syntax import empty_file, too_many
+from rvmon.spec.unused import unused_names
 
 
 def compile_text(
@@ -50,9 +51,10 @@ def compile_text(
     with suppress(Enough):
         files = load_files(source, directory, findings)
         files = overridden(files, constants or {}, findings)
-        checked = check(resolve(files, findings), findings)
+        resolved = resolve(files, findings)
+        checked = check(resolved, findings)
         if not _errors(findings.found):
-            findings.extend(never_read(checked))
+            findings.extend(unused_names(resolved, checked))
         if not files[0].items and not findings.found:
             findings.add(empty_file(Span(source, 0, 0)))
     found = sorted(findings.found, key=lambda finding: _place(finding, source))

@@ -16,7 +16,7 @@ from rvmon.testing.spec_text import meaning, spec_text
 @pytest.mark.parametrize("seed", range(150))
 def test_parse_after_print_is_identity(seed):
     """Random specifications survive being printed and read."""
-    spec = random_spec(random.Random(seed), Profile(mixed=False))
+    spec = random_spec(random.Random(seed), Profile())
     once, _ = compile_text(spec_text(spec))
     if not any(map(is_constant_arithmetic, numbers_of(spec))):  # which the compiler folds
         assert meaning(once) == meaning(spec)
@@ -51,7 +51,7 @@ def is_constant_arithmetic(node):
 def test_random_texts_are_varied():
     """The random specifications use all operators of the language."""
     text = " ".join(
-        spec_text(random_spec(random.Random(seed), Profile(mixed=False))) for seed in range(150)
+        spec_text(random_spec(random.Random(seed), Profile())) for seed in range(150)
     )
     for word in ("until", "unless", "since", " R", " M", "once", "within", "for each", "let",
                  "held(", "rise(", "updated(", "->", "<->", "xor", "next", "previous"):  # fmt: skip

@@ -150,6 +150,30 @@ requirement R1
 """,
 )
 
+UNUSED = Rule(
+    "RV017",
+    "unused-name",
+    Severity.WARNING,
+    "A macro, constant or captured value is defined and used nowhere.",
+    "It may be a leftover, or what was to use it uses something else by mistake.",
+    """spec demo
+event asked, released
+const T = 3 s
+
+requirement R1
+  upon asked
+  then within 2 s released
+""",
+    """spec demo
+event asked, released
+const T = 3 s
+
+requirement R1
+  upon asked
+  then within T released
+""",
+)
+
 RULES = (
     RESERVED_NAME,
     DOUBLE_NAME,
@@ -157,6 +181,7 @@ RULES = (
     UNKNOWN_LABEL,
     UNKNOWN_FUNCTION,
     RECURSIVE,
+    UNUSED,
 )
 
 
@@ -220,3 +245,10 @@ def built_in(span: Span) -> Diagnostic:
         span,
         mend="choose another name",
     )
+
+
+def unused(span: Span, kind: str) -> Diagnostic:
+    """A name that nothing uses; `kind` is `define`, `const` or `let`."""
+    name = span.text.strip("`")
+    mend = "remove it, or look for what should use it"
+    return finding(UNUSED, f"`{kind} {name}` is used nowhere", span, mend=mend)
