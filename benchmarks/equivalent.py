@@ -22,6 +22,10 @@ EQUIVALENT = {
     ),
     "lanes.py off by one: `len(known) + 1` => `len(known)`": "only the order of instances counts",
     "lanes.py operator: `len(known) + 1` => `len(known) - 1`": "only the order of instances counts",
+    "lanes.py dropped operand: `requirement.for_each is not None and remembers` => "
+    "`requirement.for_each is not None`": (
+        "what came before is replayed where going on from now would do"
+    ),
     "flow.py dropped operand: `reads.momentary and (not self._is_never(place))` => "
     "`not self._is_never(place)`": "what stays as it is is worked out again at the next position",
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (

@@ -18,6 +18,7 @@ from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.health import health_differences
 from rvmon.testing.law import judge, word
 from rvmon.testing.online import Watched, online_differences
+from rvmon.testing.seen import seen_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
 from rvmon.testing.walk import intervals
@@ -103,6 +104,7 @@ def _found(case: Case, make: MakeMonitor, online: bool) -> list[str] | None:
         if isinstance(monitor, Watched):
             found += frame_differences(expected, actual)
             found += health_differences(case, word(case), actual.health)
+            found += seen_differences(case, word(case), actual) if not found else ()
         again = make(case) if online and not found else None
         if again is not None:
             found = online_differences(case, again)

@@ -18,6 +18,7 @@ from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.health import expected_health, health_differences
 from rvmon.testing.law import judge, word
+from rvmon.testing.seen import seen_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
 from rvmon.testing.walk import subformulas
@@ -214,6 +215,23 @@ def test_input_health_is_compared() -> None:
         [*found, replace(found[0], name="y")],
     ):
         assert health_differences(case, word(case), changed_)
+
+
+def test_what_was_seen_is_compared() -> None:
+    """The propositions at the trigger and at the decision have to be those of the trace."""
+    case = Case(spec_of(requirement(eventually(p, 0, 2), upon=e)), timeline(p="0.u", e=".1"))
+    report = judge(case)
+    [made] = report.attempts
+    at = {"e": True, "p": False}
+    good = replace(made, at_trigger=at)
+    assert not seen_differences(case, word(case), replace(report, attempts=(good,)))
+    for bad in (
+        made,
+        replace(made, at_trigger={**at, "p": True}),
+        replace(made, at_trigger={**at, "q": False}),
+        replace(good, at_decision={"p": True}),
+    ):
+        assert seen_differences(case, word(case), replace(report, attempts=(bad,)))
 
 
 def test_begin_and_end_are_compared() -> None:

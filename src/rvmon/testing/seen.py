@@ -1,0 +1,82 @@
+"""What the records of attempts say of the input: the truth of each proposition, by its text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rvmon.spec.checked import (
+    BoundAtom,
+    Compare,
+    EventAtom,
+    Formula,
+    ProbeAtom,
+    Requirement,
+    SignalAtom,
+)
+from rvmon.spec.printer import format_formula
+from rvmon.testing.attempts import Start, starts
+from rvmon.testing.case import Case
+from rvmon.testing.health import may_be_simplified
+from rvmon.testing.kleene import Truth
+from rvmon.testing.truths import Truths
+from rvmon.testing.walk import subformulas
+from rvmon.testing.word import Word
+from rvmon.trace.sample import Scalar
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+_SCALARS: Mapping[Truth, Scalar] = {Truth.TRUE: True, Truth.FALSE: False, Truth.UNKNOWN: None}
+
+
+def seen_differences(case: Case, word: Word, report: Report) -> list[str]:
+    """What the attempts of a report get wrong of the values at their trigger and decision.
+
+    What was seen at a decision is that of the position there, or of the one before: a decision that
+    time alone brings comes before the position at its instant.
+
+    Args:
+        case: what was judged; the attempts are the law's.
+        word: the same, position by position.
+        report: a monitor's.
+    """
+    lines = []
+    begun = {r.id: starts(r, word) for r in case.spec.requirements.values()}
+    for attempt in report.attempts:
+        requirement = case.spec.requirements[attempt.requirement]
+        start = begun[requirement.id][attempt.number - 1]
+        values = _Values(requirement, start)
+        if not values.agree(attempt.at_trigger, start.position):
+            lines.append(f"{attempt} saw {attempt.at_trigger} at its trigger")
+        bare = not attempt.at_trigger and not may_be_simplified(requirement, case.spec.time)
+        if bare and values.atoms:
+            lines.append(f"{attempt} saw nothing at its trigger")
+        if not any(values.agree(attempt.at_decision, at) for at in _positions(start, attempt)):
+            lines.append(f"{attempt} saw {attempt.at_decision} at its decision")
+    return lines
+
+
+def _positions(start: Start, attempt: Attempt) -> list[int]:
+    """The last position up to the decision, and the one before."""
+    until = attempt.triggered if attempt.decided is None else attempt.decided
+    last = sum(letter.instant <= until for letter in start.word.letters) - 1
+    return [last, max(last - 1, 0)]
+
+
+class _Values:
+    """The truths of the propositions of a requirement, for one of its attempts."""
+
+    def __init__(self, requirement: Requirement, start: Start) -> None:
+        self.truths = Truths(start.word, start.captured)
+        self.atoms: dict[str, Formula] = {
+            format_formula(part): part
+            for formula in (requirement.trigger, requirement.consequent)
+            for part in subformulas(formula)
+            if isinstance(part, SignalAtom | EventAtom | ProbeAtom | Compare | BoundAtom)
+        }
+
+    def agree(self, seen: Mapping[str, Scalar], position: int) -> bool:
+        """Whether the values are those of a position."""
+        return all(
+            text in self.atoms and _SCALARS[self.truths.truth(self.atoms[text], position)] is value
+            for text, value in seen.items()
+        )
