@@ -82,16 +82,36 @@ def test_numbers_with_units():
     assert ("until", "keyword.control.temporal.rv") in tokens("x < 5 until y")
 
 
-def test_problem_matcher_reads_concise_findings():
-    """The pattern of the problem matcher fits `rvmon check --format concise`."""
-    from rvmon.diagnostics.render import render_concise
+def findings():
+    """The findings about a file with an error."""
     from rvmon.errors import SpecError
     from rvmon.spec import compile_text
 
-    package = json.loads((VSCODE / "package.json").read_text(encoding="utf-8"))
-    pattern = package["contributes"]["problemMatchers"][0]["pattern"]["regexp"]
     with pytest.raises(SpecError) as caught:
-        compile_text("requirement R always a", name="a.rv")
-    found = re.fullmatch(pattern, render_concise(caught.value.diagnostics))
-    assert found is not None
-    assert found.groups()[:5] == ("a.rv", "1", "22", "error", "RV012")
+        compile_text('requirement R "a \\"quote\\"" always a', name="a.rv")
+    return caught.value.diagnostics
+
+
+def matchers():
+    """The patterns that are shipped: for VS Code by the name of their form, for GitHub."""
+    package = json.loads((VSCODE / "package.json").read_text(encoding="utf-8"))
+    found = {one["name"]: one["pattern"] for one in package["contributes"]["problemMatchers"]}
+    path = ROOT / "editors" / "github" / "problem-matcher.json"
+    (github,) = json.loads(path.read_text(encoding="utf-8"))["problemMatcher"]
+    return {**found, "github": github["pattern"][0]}
+
+
+@pytest.mark.parametrize("name", ["rvmon", "rvmon-json", "github"])
+def test_problem_matchers_read_findings(name):
+    """The patterns fit what `rvmon check --format concise` and `--format json` print."""
+    from rvmon.diagnostics.render import render_concise, render_json
+
+    pattern = matchers()[name]
+    render = render_json if name == "rvmon-json" else render_concise
+    found = [re.match(pattern["regexp"], line) for line in render(findings()).splitlines()]
+    (match,) = [one for one in found if one]
+    read = {key: match[group] for key, group in pattern.items() if key != "regexp"}
+    message = read.pop("message")
+    expected = {"file": "a.rv", "line": "1", "column": "36", "severity": "error", "code": "RV012"}
+    assert read == expected
+    assert message.startswith("no signal or event named `a`")
