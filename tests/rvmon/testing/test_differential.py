@@ -18,6 +18,7 @@ from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.health import expected_health, health_differences
 from rvmon.testing.law import judge, word
+from rvmon.testing.online import online_differences
 from rvmon.testing.seen import seen_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
@@ -162,7 +163,7 @@ def test_late_samples_have_to_be_refused() -> None:
 def test_open_attempts_and_their_dues_are_looked_at() -> None:
     """What is open is compared, and what time alone decided had to be due."""
     case = Case(spec_of(requirement(eventually(p, 0, 3))), (*timeline(p="0"), 4), 4)
-    [found] = disagreements(case, Forgetful, online=True)
+    [found] = online_differences(case, Forgetful(case))
     assert found == "action 1 leaves open [('R', 1, 0)], shown are []"
 
     class Unexpecting(Echo):
@@ -172,7 +173,7 @@ def test_open_attempts_and_their_dues_are_looked_at() -> None:
         def open(self) -> Sequence[Attempt]:
             return [a for a in judge(self.case).attempts if a.decided is None]
 
-    [found] = disagreements(case, Unexpecting, online=True)
+    [found] = online_differences(case, Unexpecting(case))
     assert "but due was None" in found
 
 
@@ -191,7 +192,7 @@ def test_forecasts_have_to_come_true() -> None:
             ]
 
     case = Case(spec_of(requirement(eventually(p, 0, 3))), timeline(p="01"))
-    [found] = disagreements(case, Prophet, online=True)
+    [found] = online_differences(case, Prophet(case))
     assert found.endswith("F was forecast")
 
 
