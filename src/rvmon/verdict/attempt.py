@@ -83,7 +83,7 @@ class Attempt(_Later):
         captured: values captured by `let` and `for each`.
         blame: what failed, for `F`.
         forecast: `P` or `F` if no continuation can change that any more, though undecided.
-        robustness: how far from the other verdict, in the unit of the comparison.
+        robustness: how far from the other verdict at least, in SI units, where somebody measured.
     """
 
     requirement: str

@@ -21,7 +21,7 @@ PAIRS = 70
 def test_no_disagreement(time: TimeModel, engine: str) -> None:
     """Verdicts, decision instants and what each call returns are the oracle's."""
     seeds = [f"{engine} {number}" for number in range(PAIRS)]
-    profile = Profile(time=time, mixed=False)
+    profile = Profile(time=time, mixed=engine != "progression")
     tally = campaign(Maker(engine), seeds, profile, TraceProfile(), online_every=4)
     assert tally.pairs == PAIRS
     assert "\n\n".join(tally.disagreements) == ""
