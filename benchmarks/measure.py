@@ -15,6 +15,9 @@ from rvmon.testing.peers.core import UntranslatableError
 FEWEST_ROWS = 50
 """Of a pass, however slow the contender; as many tell how slow it is."""
 
+SLOW = 10
+"""Who needs so many times the time of a pass for its fewest rows passes twice only."""
+
 
 @dataclass(frozen=True, slots=True)
 class Plan:
@@ -86,6 +89,7 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
             refusals.append((contender.label, str(error).splitlines()[0]))
     spent: dict[str, list[float]] = {contender.label: [] for contender, _ in ready}
     violated: dict[str, tuple[int | None, ...]] = {}
+    slow: list[tuple[Contender, int]] = []
     for number in range(plan.repeats):
         turn = number % max(len(ready), 1)
         for contender, rows in [*ready[turn:], *ready[:turn]]:
@@ -97,6 +101,9 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
                 continue
             spent[contender.label].append(done.cpu_ns / rows)
             violated[contender.label] = done.violated
+            if done.cpu_ns > SLOW * plan.seconds * 1e9 and number == 1:
+                ready.remove((contender, rows))
+                slow.append((contender, rows))
     figures = tuple(
         Figure(
             contender.label,
@@ -106,7 +113,7 @@ def measure(workload: Workload, contenders: Sequence[Contender], plan: Plan) -> 
             max(spent[contender.label]),
             violated[contender.label],
         )
-        for contender, rows in ready
+        for contender, rows in [*ready, *slow]
     )
     return Result(
         workload.section,

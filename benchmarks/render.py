@@ -228,7 +228,12 @@ def _results(results: Sequence[Result]) -> Iterator[str]:
 
 def _refusals(results: Sequence[Result]) -> Iterator[str]:
     """Who did not take part in how many workloads, and why."""
-    counts = Counter(f"{label}: {why}" for result in results for label, why in result.refusals)
+    counts = Counter(
+        f"{label}: {why}"
+        for result in results
+        for label, why in result.refusals
+        if not why.startswith("only ")  # the other form of the same property is measured
+    )
     if counts:
         yield ""
         yield "Not measured: " + "; ".join(f"{text} ({n})" for text, n in counts.items()) + "."

@@ -16,6 +16,7 @@ class Peer:
 
     def __init__(self) -> None:
         self._spec: Any = None
+        self._text = ""
         self._kind = ""
         self._engine = "auto"
         self._columns: dict[str, list[Any]] = {}
@@ -42,7 +43,8 @@ class Peer:
             period: ticks from row to row.
             engine: by name.
         """
-        self._spec = rvmon.loads(spec)
+        if spec != self._text:
+            self._spec, self._text = rvmon.loads(spec), spec
         self._kind, self._engine, self._period = kind, engine, period
         if kind == "evaluate":
             import numpy as np

@@ -85,3 +85,11 @@ def test_death() -> None:
     result = measure(WORKLOAD, [Dying("a", 10, []), Fake("b", 20, [])], Plan(3, 1.0))
     assert [figure.label for figure in result.figures] == ["b"]
     assert result.refusals == (("a", "its process ended"),)
+
+
+def test_very_slow_contender_passes_twice() -> None:
+    """Who takes far too long is measured twice, and still has its figure."""
+    calls: list[str] = []
+    result = measure(WORKLOAD, [Fake("a", 10**9, calls), Fake("b", 10, calls)], Plan(5, 1.0))
+    assert {figure.label for figure in result.figures} == {"a", "b"}
+    assert calls.count("a") == 1 + 2
