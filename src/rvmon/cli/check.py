@@ -126,6 +126,7 @@ def _engines(checked: CheckedSpec) -> list[str]:
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:
+    from rvmon.diagnostics.colour import coloured, wants_colour
     from rvmon.diagnostics.render import render_concise, render_full, render_json
 
     match form:
@@ -134,7 +135,8 @@ def _show(form: str, findings: list[Diagnostic]) -> None:
         case "concise" if findings:
             print(render_concise(findings), file=sys.stderr)
         case "text" if findings:
-            print(render_full(findings), file=sys.stderr)
+            text = render_full(findings)
+            print(coloured(text) if wants_colour(sys.stderr) else text, file=sys.stderr)
 
 
 def _summary(files: int, findings: list[Diagnostic]) -> str:

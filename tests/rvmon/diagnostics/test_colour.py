@@ -1,0 +1,46 @@
+"""Colours say severity and place, change no text, and are asked for by terminals only."""
+
+import io
+import re
+
+import pytest
+
+from rvmon.diagnostics.colour import SEVERITIES, coloured, wants_colour
+from rvmon.diagnostics.render import render_full
+from rvmon.errors import SpecError
+from rvmon.spec import compile_text
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self):
+        return True
+
+
+def rendered():
+    """Two findings with several places, in full."""
+    with pytest.raises(SpecError) as caught:
+        compile_text("event a\nevent a\nrequirement R\n  upon a or p\n  then within 3 b\n")
+    return render_full(caught.value.diagnostics)
+
+
+def test_only_colours_are_added():
+    """Without the control sequences the text is the same, line by line."""
+    text = rendered()
+    shown = coloured(text)
+    assert re.sub(r"\x1b\[\d+m", "", shown) == text
+    assert shown.count(SEVERITIES["error"]) >= 4  # headings and underlines
+
+
+def test_who_gets_colours(monkeypatch):
+    """A terminal does, unless NO_COLOR is set or it is a dumb one; a file or pipe does not."""
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    assert wants_colour(Terminal())
+    assert not wants_colour(io.StringIO())
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert not wants_colour(Terminal())
+    monkeypatch.delenv("NO_COLOR")
+    monkeypatch.setenv("TERM", "dumb")
+    assert not wants_colour(Terminal())
