@@ -9,6 +9,7 @@ runs, and of disagreements, which must be none.
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections import Counter
 
@@ -25,6 +26,9 @@ KINDS = (
     "A[] (p or AF q)", "E<>[<=T] deadlock",
 )  # fmt: skip
 """The queries of a random network, in order."""
+
+SAY_EVERY = 250
+"""Networks between two lines on standard error."""
 
 
 def main() -> int:
@@ -56,6 +60,10 @@ def main() -> int:
             if outcome.holds != expected:
                 disagreements += 1
                 print(f"seed {seed}: {query.text}: zones {outcome.holds}, regions {expected}")
+        done = seed - arguments.first + 1
+        if done % SAY_EVERY == 0:
+            told = f"{done} networks, {disagreements} disagreements so far"
+            print(told, file=sys.stderr, flush=True)
     print(f"{arguments.networks} networks, {time.perf_counter() - began:.0f} s")
     for kind in KINDS:
         print(f"  {kind:24} true {answers[kind, True]:6}   false {answers[kind, False]:6}")
