@@ -35,6 +35,18 @@ CASES = {
         [(0, {})],
         0,
     ),
+    "what is asked at the end was known before": (
+        "held",
+        "upon end\n  then once[0 ns, 0 ns] (F true)",
+        [(0, {})],
+        1,
+    ),
+    "an attempt begins where what was open before is settled": (
+        "sampled every 1 ns",
+        "upon e\n  then G[1 ns, 1 ns] p",
+        [(0, {"e": True}), (4, {"e": True}), (5, {"p": True})],
+        6,
+    ),
     "a loop without a boundary ahead, before the instant 0": (
         "held",
         "whenever true\n  then F[1 ns, 1 ns] true",
