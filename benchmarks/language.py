@@ -160,7 +160,7 @@ def layouts(count: int, seed: int) -> int:
     for number in range(seed * 1_000_000, seed * 1_000_000 + count):
         dice = random.Random(number)
         try:
-            first, _ = compile_text(spec_text(random_spec(dice, Profile(mixed=False))))
+            first, _ = compile_text(spec_text(random_spec(dice, Profile())))
         except SpecError:  # a division by the constant 0, which the generator knows and we refuse
             refused += 1
             continue

@@ -72,7 +72,7 @@ def test_canonical_form():
 def test_laws(seed):
     """Of random specifications in random writing meaning and comments are kept."""
     dice = random.Random(seed)
-    text = scribbled(spec_text(random_spec(dice, Profile(mixed=False))), dice)
+    text = scribbled(spec_text(random_spec(dice, Profile())), dice)
     once = format_text(text)
     assert format_text(once) == once
     assert meaning(compile_text(once)[0]) == meaning(compile_text(text)[0])

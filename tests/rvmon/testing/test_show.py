@@ -19,7 +19,7 @@ per second, a division by the literal 0; beside these a warning."""
 
 def read_back(seed: int) -> bool:
     """Whether the spec of a seed can be written in the language; if so, it has to mean the same."""
-    case = case_of(f"show {seed}", Profile(mixed=False), TraceProfile())
+    case = case_of(f"show {seed}", Profile(), TraceProfile())
     try:
         spec = rvmon.loads(show_spec(case.spec))
     except rvmon.SpecError as error:
