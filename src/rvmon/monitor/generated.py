@@ -197,7 +197,26 @@ class GeneratedLanes(Lanes):
         """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
         self.unit.news = True
         seat = self._seats[rule.index]
-        self.ledger.told(seat.compiled.rank, seat.decided(rule, attempt, verdict, t, before))
+        record = seat.decided(
+            rule, attempt.number, attempt.triggered, attempt.seen, verdict, t, before
+        )
+        self.ledger.told(seat.compiled.rank, record)
+
+    def decided_in_run(
+        self,
+        rule: Rule,
+        number: int,
+        triggered: int,
+        seen: int,
+        verdict: bool,
+        t: int,
+        before: Token,
+    ) -> None:
+        """Hear of the decision of an attempt that was moved together with others."""
+        self.unit.news = True
+        seat = self._seats[rule.index]
+        record = seat.decided(rule, number, triggered, seen, verdict, t, before)
+        self.ledger.told(seat.compiled.rank, record)
 
     def told(self) -> Sequence[Attempt]:
         """The records of what was decided since the last call."""

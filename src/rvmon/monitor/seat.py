@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from operator import itemgetter
 from typing import Any
 
@@ -53,6 +52,9 @@ class Seat:
         self._since_of = _picking(places)
         self._until_of = _picking(tuple(3 * place + truth for place in places for truth in (0, 2)))
         self._plan = plan
+        self._id = compiled.requirement.id
+        self._upon_end = compiled.obligation.trigger is None
+        self.details = self._details
 
     def judge_now(self, rule: Rule) -> Judge:
         """The judge of the requirement, as it would stand now if it had judged."""
@@ -70,45 +72,68 @@ class Seat:
         judge.attempts = attempts
         return judge
 
-    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> Attempt:
-        """The record of a decision; see `rvmon.monitor.bench.Clerk`."""
+    def decided(
+        self,
+        rule: Rule,
+        number: int,
+        triggered: int,
+        seen: tuple[int, ...] | int,
+        verdict: bool,
+        t: int,
+        before: Token,
+    ) -> Attempt:
+        """The record of a decision.
+
+        Args:
+            rule: judged it.
+            number: of the attempt.
+            triggered: the instant of its trigger.
+            seen: what was seen there, perhaps packed.
+            verdict: whether it passed.
+            t: the instant of the decision.
+            before: its token before that.
+        """
         unit = self._unit
-        noted = (
-            attempt,
-            verdict,
-            t,
-            before,
-            (rule.letter, rule.other),
-            rule.position,
-            self.seen(unit.v),
-            self._values_of(unit.v),
-            self._since_of(unit.since),
-            self._until_of(unit.until),
-        )
+        v = unit.v
         return decided_attempt(
-            self.compiled.requirement.id,
-            attempt.number,
-            attempt.triggered,
-            attempt.triggered if self.compiled.obligation.trigger is None else t,
+            self._id,
+            number,
+            triggered,
+            triggered if self._upon_end else t,
             _PASS if verdict else _FAIL,
-            partial(self._details, noted),
+            self.details,
+            # One flat tuple, which costs the collector of garbage next to nothing.
+            (
+                *(seen, t, before, rule.letter, rule.other, rule.position),
+                *self.seen(v),
+                *self._values_of(v),
+                *self._since_of(unit.since),
+                *self._until_of(unit.until),
+            ),
         )
 
-    def _details(self, noted: tuple[Any, ...]) -> Mapping[str, Any]:
+    def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
         """All that a record says beside the verdict, from what was noted at the decision."""
-        attempt, verdict, t, before, letters, position, seen, values, since, until = noted
+        seen_then, t, before, letter, other, position, *rest = noted
+        if isinstance(seen_then, int):
+            seen_then = unpacked(seen_then, self.leaf_count)
+        count = len(self._places)
+        seen = tuple(rest[: self.leaf_count])
+        values, since = rest[self.leaf_count :][:count], rest[self.leaf_count + count :][:count]
+        until = rest[self.leaf_count + 2 * count :]
         nodes: dict[int, int] = dict(zip(self._leaves, seen, strict=True))
         nodes |= zip(self._places, values, strict=True)
         instants = {}
         for index, place in enumerate(self._places):
             instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
         flow = _Stood(self._plan, nodes, dict(zip(self._places, since, strict=True)), instants)
-        judge = self._judge(flow, letters, position, [])
-        why = explain_decision(judge, attempt, verdict, t, before)
+        judge = self._judge(flow, (letter, other), position, [])
+        opened = Open(attempt.triggered, before, seen_then)
+        why = explain_decision(judge, opened, attempt.verdict is _PASS, t, before)
         return {
             "reason": why.reason,
             "deadline": why.deadline,
-            "at_trigger": values_shown(judge, attempt.seen),
+            "at_trigger": values_shown(judge, seen_then),
             "at_decision": values_shown(judge, seen),
             "owed": why.owed,
             "captured": {},

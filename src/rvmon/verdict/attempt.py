@@ -49,17 +49,20 @@ class Blame:
 class _Later:
     """Fields that are filled in when someone first looks at one of them."""
 
-    __slots__ = ("_details",)
+    __slots__ = ("_details", "_noted")
 
-    _details: Callable[[], Mapping[str, Any]]
+    _details: Callable[[Attempt, Any], Mapping[str, Any]]
+    _noted: Any
 
     def __getattr__(self, name: str) -> Any:
         """Called for a field that was never set."""
-        if name == "_details" or not hasattr(self, "_details"):
+        if name in ("_details", "_noted") or not hasattr(self, "_details"):
             raise AttributeError(f"an attempt has no `{name}`")
-        for field_name, value in self._details().items():
+        details: Any = self._details
+        for field_name, value in details(self, self._noted).items():
             object.__setattr__(self, field_name, value)
         object.__delattr__(self, "_details")
+        object.__delattr__(self, "_noted")
         return getattr(self, name)
 
 
@@ -115,7 +118,8 @@ class _Draft(_Later):
         triggered: int,
         decided: int | None,
         verdict: Verdict,
-        details: Callable[[], Mapping[str, Any]],
+        details: Callable[[Attempt, Any], Mapping[str, Any]],
+        noted: Any,
     ) -> None:
         self.requirement = requirement
         self.number = number
@@ -124,6 +128,7 @@ class _Draft(_Later):
         self.verdict = verdict
         self.decision = _PREFIX
         self._details = details
+        self._noted = noted
 
 
 _PREFIX = Decision.PREFIX
@@ -135,7 +140,8 @@ def decided_attempt(
     triggered: int,
     decided: int,
     verdict: Verdict,
-    details: Callable[[], Mapping[str, Any]],
+    details: Callable[[Attempt, Any], Mapping[str, Any]],
+    noted: Any,
 ) -> Attempt:
     """An attempt that the prefix decided; the rest is worked out when someone asks for it.
 
@@ -145,13 +151,14 @@ def decided_attempt(
         triggered: ticks.
         decided: ticks.
         verdict: `P` or `F`.
-        details: gives all the other fields by name.
+        details: gives all the other fields by name, from the attempt and `noted`.
+        noted: what is needed for that.
 
-    >>> made = decided_attempt("R1", 1, 0, 5, Verdict.PASS, lambda: {"reason": "met"})
+    >>> made = decided_attempt("R1", 1, 0, 5, Verdict.PASS, lambda _, t: {"reason": f"at {t}"}, 5)
     >>> made.verdict.value, made.reason
-    ('P', 'met')
+    ('P', 'at 5')
     """
-    made: Any = _Draft(requirement, number, triggered, decided, verdict, details)
+    made: Any = _Draft(requirement, number, triggered, decided, verdict, details, noted)
     made.__class__ = Attempt
     attempt: Attempt = made
     return attempt

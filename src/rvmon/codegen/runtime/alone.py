@@ -79,6 +79,12 @@ class Monitor:
         """An attempt that was moved together with others, by itself."""
         return Open(number, triggered, token)
 
+    def decided_in_run(
+        self, rule: Rule, number: int, triggered: int, _: int, verdict: bool, t: int, __: Any
+    ) -> None:
+        """Hear of the decision of an attempt that was moved together with others."""
+        self.decided(rule, Open(number, triggered, None), verdict, t, None)
+
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
 

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from rvmon.codegen.runtime.table import Token
 
 
+NOWHERE = -1
+"""The target where no run comes at its next step."""
+
+
 class Run:
     """Attempts in one location, in order of their triggers; 20 bytes each.
 
@@ -95,16 +99,22 @@ class BulkRule(Rule):
         number, seen = self.clerk.entered(self)
         target, _ = machine.rows[machine.bases[location]][kind]
         if target <= PASSED:
-            attempt = self.clerk.reopened(self, number, triggered, machine.start, seen)
-            self.clerk.decided(self, attempt, target == PASSED, t, machine.start)
+            verdict = target == PASSED
+            self.clerk.decided_in_run(self, number, triggered, seen, verdict, t, machine.start)
             return
         run = self.runs.get(target)
         if run is None:
             run = self.runs[target] = Run()
         run.append(triggered, number, seen)
-        self.restless = True
-        if self.due > t + 1:
-            self.due = t + 1
+        due = t + 1
+        onward = machine.rows[machine.bases[target]][kind]
+        if onward is not None and onward[0] == target:
+            cuts = machine.cuts_of[target]
+            due = triggered + cuts[0][0] if cuts else NEVER
+        else:
+            self.restless = True
+        if self.due > due:
+            self.due = due
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, at which the values are."""
@@ -117,16 +127,33 @@ class BulkRule(Rule):
         worse, better = self.letters(self.values)
         if kinds[worse] != kinds[better]:
             self.loosen()
-        Rule.visit(self, t)
-        if self.runs:
-            if self.step_runs(t):
-                self.restless = True
-                self.due = t + 1
-            else:
-                self.due = min(self.due, self.next_cut(t))
+        if self.attempts:
+            Rule.visit(self, t)
+            if not self.runs:
+                return
+        else:
+            self.letter, self.other = worse, better
+            self.restless = False
+            self.position = t
+            self.due = NEVER
+        if self.step_runs(t):
+            self.restless = True
+            self.due = t + 1
+        elif self.runs:
+            self.due = min(self.due, self.next_cut(t))
 
     def step_runs(self, t: int) -> bool:
-        """Step all runs at the position `t`; returns whether one changed its location."""
+        """Step all runs at the position `t`; returns whether the same letter would lead on."""
+        parts = self._moving(t)
+        if not parts:
+            return False
+        if len(self.runs) > 1:
+            parts.sort(key=_first_trigger)
+        self._move(parts, t)
+        return bool(self._moving(t))
+
+    def _moving(self, t: int) -> list[Any]:
+        """All runs in parts of one region with their targets; empty if they stay as they are."""
         machine = self.machine
         kind = machine.class_of[self.letter]
         parts = []
@@ -140,29 +167,25 @@ class BulkRule(Rule):
                 for region in range(len(cuts), 0, -1):
                     end = run.older(t - cuts[region - 1])
                     if end > start:
-                        target = machine.rows[base + region * stride][kind][0]
+                        edge = machine.rows[base + region * stride][kind]
+                        target = NOWHERE if edge is None else edge[0]
                         parts.append((location, run, start, end, target))
                         stays = stays and target == location
                         start = end
             if stop > start:
-                target = machine.rows[base][kind][0]
+                edge = machine.rows[base][kind]
+                target = NOWHERE if edge is None else edge[0]
                 parts.append((location, run, start, stop, target))
                 stays = stays and target == location
-        if stays:
-            return False
-        if len(self.runs) > 1:
-            parts.sort(key=_first_trigger)
-        return self._move(parts, t)
+        return [] if stays else parts
 
-    def _move(self, parts: Sequence[Any], t: int) -> bool:
-        """Take parts of runs, oldest first, to their targets; returns whether one is another."""
+    def _move(self, parts: Sequence[Any], t: int) -> None:
+        """Take parts of runs, oldest first, to their targets."""
         fresh: dict[int, Run] = {}
-        moved = False
         for location, run, start, stop, target in parts:
             if target <= PASSED:
                 self._decide(location, run, start, stop, target == PASSED, t)
                 continue
-            moved = moved or target != location
             if stop == len(run.triggers):
                 run.drop(run.head, start)
                 part = run
@@ -173,7 +196,6 @@ class BulkRule(Rule):
             else:
                 fresh[target] = part
         self.runs = fresh
-        return moved
 
     def _decide(
         self,
@@ -190,11 +212,9 @@ class BulkRule(Rule):
         for index in range(start, stop):
             triggered = run.triggers[index]
             token = (location, (triggered,) if clocked else ())
-            attempt = self.clerk.reopened(
-                self, run.numbers[index], triggered, token, run.seen[index]
-            )
             at = triggered + cut if t is None else t
-            self.clerk.decided(self, attempt, verdict, at, token)
+            number, seen = run.numbers[index], run.seen[index]
+            self.clerk.decided_in_run(self, number, triggered, seen, verdict, at, token)
 
     def next_cut(self, t: int) -> int:
         """The first instant after `t` at which an attempt of a run enters another region."""

@@ -160,10 +160,11 @@ class Rule:
         moved = self.machine.step(token, t, letter)
         if moved[0] <= PASSED:
             return moved, t
-        if moved == token:
-            return token, next_cut(self.machine, token, t)
-        self.restless = True
-        return moved, t + 1
+        # Where the same letter leads on, it has to be asked again at the next position.
+        if moved != token and not self.machine.stays(moved, t, letter):
+            self.restless = True
+            return moved, t + 1
+        return moved, next_cut(self.machine, moved, t)
 
     def _moved(self, attempt: Any, before: Token, token: Token, due: int) -> int | None:
         if token[0] <= PASSED:

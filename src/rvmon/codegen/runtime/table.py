@@ -54,6 +54,7 @@ class Table:
         self.rows = rows
         self.time_values = time_values
         self.end_clauses = end_clauses
+        self.kept = [tuple(range(count)) for count in range(1 + max(map(len, cuts)))]
         self.bare: list[Token] = [(location, ()) for location in range(len(cuts))]
 
     def row(self, token: Token, t: int) -> int:
@@ -81,6 +82,12 @@ class Table:
         if not sources:
             return self.bare[target]
         return target, tuple([t if source < 0 else anchors[source] for source in sources])
+
+    def stays(self, token: Token, t: int, letter: int) -> bool:
+        """Whether a token that was stepped at `t` stays as it is under the same letter."""
+        location, anchors = token
+        edge = self.rows[self.row(token, t)][self.class_of[letter]]
+        return edge is not None and edge[0] == location and edge[1] == self.kept[len(anchors)]
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
         """For each clock of a location the ages from which on it acts differently."""
