@@ -17,7 +17,7 @@ from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.health import health_differences
 from rvmon.testing.law import judge, word
-from rvmon.testing.online import Watched, online_differences
+from rvmon.testing.online import Watched, differences_after_end, online_differences
 from rvmon.testing.seen import seen_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
@@ -105,6 +105,7 @@ def _found(case: Case, make: MakeMonitor, online: bool) -> list[str] | None:
             found += frame_differences(expected, actual)
             found += health_differences(case, word(case), actual.health)
             found += seen_differences(case, word(case), actual) if not found else ()
+            found += differences_after_end(case, monitor, actual)
         again = make(case) if online and not found else None
         if again is not None:
             found = online_differences(case, again)

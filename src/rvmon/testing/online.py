@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from rvmon.errors import RvmonError, TimeOrderError
@@ -61,6 +61,34 @@ def online_differences(case: Case, monitor: Monitored) -> list[str]:
             return [f"action {count} {line}" for line in found]
         told |= {(a.requirement, a.number) for a in attempts}
     return []
+
+
+def differences_after_end(case: Case, monitor: Monitored, report: Report) -> list[str]:
+    """What a monitor does wrong once its run is finished: it has to take nothing, and stay so.
+
+    Args:
+        case: what it was told.
+        monitor: finished.
+        report: what it said then.
+    """
+    last = case.actions[-1] if case.actions else 0
+    later = 1_000 + (last.t if isinstance(last, Sample) else last)
+    lines = []
+    if isinstance(monitor, Watched) and monitor.next_due is not None:
+        lines.append(f"due at {monitor.next_due}, though finished")
+    calls: tuple[Callable[[], object], ...] = (
+        lambda: monitor.step_ns(later, {}),
+        lambda: monitor.advance_ns(later),
+    )
+    for name, call in zip(("sample", "advance"), calls, strict=True):
+        try:
+            call()
+        except RvmonError:
+            continue
+        lines.append(f"{name} at {later} was taken, though finished")
+    if monitor.finish_ns(later) != report:
+        lines.append("finishing once more gave another report")
+    return lines
 
 
 def _returned(

@@ -57,13 +57,13 @@ AHEAD = replace(ALL, mixed=False)
 BARE = replace(AHEAD, captures=False, for_each=False, requirements=1, depth=3)
 
 SUBJECTS = {
-    "oracle": Subject(oracle, ALL, 40),
-    "auto": Subject(Form("auto"), ALL, 25),
-    "automaton": Subject(Form("automaton"), AHEAD, 20),
-    "progression": Subject(Form("progression"), AHEAD, 25),
-    "network": Subject(Form("network"), ALL, 25),
-    "file": Subject(Form("file"), BARE, 10),
-    "c": Subject(Form("c"), BARE, 3),
+    "oracle": Subject(oracle, ALL, 30),
+    "auto": Subject(Form("auto"), ALL, 15),
+    "automaton": Subject(Form("automaton"), AHEAD, 12),
+    "progression": Subject(Form("progression"), AHEAD, 15),
+    "network": Subject(Form("network"), ALL, 15),
+    "file": Subject(Form("file"), BARE, 6),
+    "c": Subject(Form("c"), BARE, 2),
 }
 
 

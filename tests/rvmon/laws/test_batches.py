@@ -31,7 +31,7 @@ def whole(engine: str, case: Case) -> Report:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(data=st.data())
 def test_the_order_inside_a_batch(engine: str, data: st.DataObject) -> None:
     """A sample in pieces with equal stamps, in any order, is the same as the whole sample."""
@@ -50,7 +50,7 @@ def test_the_order_inside_a_batch(engine: str, data: st.DataObject) -> None:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(data=st.data())
 def test_the_order_within_the_delay(engine: str, data: st.DataObject) -> None:
     """Samples that come late, but within `max delay`, are judged at their instants."""

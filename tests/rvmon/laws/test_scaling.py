@@ -32,7 +32,7 @@ ENGINE = ("automaton/stretch.py", "automaton/table.py", "/dataflow/", "/runtime/
 
 
 @pytest.mark.parametrize("form", FORMS)
-@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
 def test_scaling(form: str, data: st.DataObject) -> None:
     """A million times longer: the same attempts and verdicts, as many steps, the same instants."""
@@ -78,7 +78,7 @@ def _numbers(formula: Formula) -> list[UpdateFunction]:
     return [part.function for part in numerics(formula) if isinstance(part, UpdateValue)]
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
 def test_a_case_made_compact_is_judged_the_same(data: st.DataObject) -> None:
     """Brought to few ticks, a case has the same attempts, at the same instants and ticks."""

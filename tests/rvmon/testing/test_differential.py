@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from rvmon.errors import TimeOrderError, TraceError
+from rvmon.session import Spec
 from rvmon.spec.checked import UnaryOp
 from rvmon.testing.build import always, e, eventually, p, probe, requirement, spec_of, timeline
 from rvmon.testing.case import Case
@@ -18,7 +19,7 @@ from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.health import expected_health, health_differences
 from rvmon.testing.law import judge, word
-from rvmon.testing.online import online_differences
+from rvmon.testing.online import differences_after_end, online_differences
 from rvmon.testing.seen import seen_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
@@ -175,6 +176,16 @@ def test_open_attempts_and_their_dues_are_looked_at() -> None:
 
     [found] = online_differences(case, Unexpecting(case))
     assert "but due was None" in found
+
+
+def test_a_finished_run_stays_finished() -> None:
+    """After the end nothing is due, and nothing is taken any more."""
+    case = Case(spec_of(requirement(p)), timeline(p="1"))
+    found = differences_after_end(case, Echo(case), judge(case))
+    assert [line.split()[0] for line in found] == ["sample", "advance", "finishing"]
+    monitor = Spec(case.spec).monitor()
+    report, _ = drive(monitor, case)
+    assert differences_after_end(case, monitor, report) == []
 
 
 def test_forecasts_have_to_come_true() -> None:
