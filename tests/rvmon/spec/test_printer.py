@@ -50,9 +50,7 @@ def is_constant_arithmetic(node):
 
 def test_random_texts_are_varied():
     """The random specifications use all operators of the language."""
-    text = " ".join(
-        spec_text(random_spec(random.Random(seed), Profile())) for seed in range(150)
-    )
+    text = " ".join(spec_text(random_spec(random.Random(seed), Profile())) for seed in range(150))
     for word in ("until", "unless", "since", " R", " M", "once", "within", "for each", "let",
                  "held(", "rise(", "updated(", "->", "<->", "xor", "next", "previous"):  # fmt: skip
         assert word in text, word
