@@ -81,7 +81,7 @@ CONFLICT = Rule(
     "RV073",
     "conflict",
     Severity.WARNING,
-    "Requirements that cannot all hold once they are triggered as said.",
+    "Requirements that cannot all hold once they are triggered as said; or one, triggered again.",
     "Each can be met by itself, but no run meets all of them. `rvmon check --analyse` draws the "
     "shortest run after which one of them must fail.",
     """spec demo
@@ -112,8 +112,8 @@ IMPLIED = Rule(
     "RV074",
     "implied",
     Severity.WARNING,
-    "A requirement that fails only where another one fails.",
-    "It adds nothing to the other one; perhaps one of the two was meant otherwise.",
+    "A requirement that fails only where another one, or one of several others, fails.",
+    "It adds nothing to the others; perhaps one of them was meant otherwise.",
     """spec demo
 event asked, released
 
