@@ -11,6 +11,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from rvmon.automaton.progression import Progression
@@ -35,7 +36,7 @@ def snapshot(monitor: Monitor) -> bytes:
     """The run of a monitor; see `Monitor.snapshot`."""
     choice, lanes = monitor.choice, monitor.lanes
     document = {
-        "rvmon": _version(),
+        "rvmon": version("rvmon"),
         "spec": digest(choice.compiled.checked),
         "only": [one.requirement.id for one in choice.requirements],
         "engine": choice.engine,
@@ -65,9 +66,9 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
         SnapshotError: the bytes are no snapshot, or one of another specification or version.
     """
     document = _document(data)
-    if document.get("rvmon") != _version():
+    if document.get("rvmon") != version("rvmon"):
         raise SnapshotError(
-            f"the snapshot was made by rvmon {document.get('rvmon')}, this is {_version()}: "
+            f"the snapshot was made by rvmon {document.get('rvmon')}, this is {version('rvmon')}: "
             "restore it with the version that made it"
         )
     if document.get("spec") != digest(compiled.checked):
@@ -187,9 +188,3 @@ class _Plans(Mapping[str, "Plan"]):
 
     def __len__(self) -> int:
         return len(self._compiled.requirements)
-
-
-def _version() -> str:
-    from rvmon import __version__
-
-    return __version__
