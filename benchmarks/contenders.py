@@ -114,9 +114,9 @@ def contenders(environment: Environment, native: Native, section: str) -> Iterat
     for label, kind, engine in forms:
         yield Worker(label, Peer(here, OURS), _ours(kind, engine))
     peers: tuple[tuple[str, str, str, Request], ...] = (
-        ("reelay", "reelay", "reelay", _past(dialects.REELAY_DISCRETE)),
-        ("rtamt", "rtamt", "rtamt", _few(_past(dialects.RTAMT_DISCRETE))),
-        ("mstlo", "mstlo-python", "mstlo", _future),
+        ("reelay", "reelay", "reelay", _up_to(100, _past(dialects.REELAY_DISCRETE))),
+        ("rtamt", "rtamt", "rtamt", _up_to(10, _past(dialects.RTAMT_DISCRETE))),
+        ("mstlo", "mstlo-python", "mstlo", _up_to(100, _future)),
     )
     for label, package, worker, request in peers:
         if package in environment.versions and (section != "batch" or label == "reelay"):
@@ -152,10 +152,12 @@ def _past(dialect: Dialect) -> Request:
     return request
 
 
-def _few(request: Request) -> Request:
+def _up_to(most: int, request: Request) -> Request:
+    """Refuse more formulas: passing over a few rows, or making the monitors, takes too long."""
+
     def limited(workload: Workload, rows: int) -> dict[str, Any]:
-        if len(workload.formulas) > 10:
-            raise UntranslatableError("too slow to be measured with more than 10 formulas")
+        if len(workload.formulas) > most:
+            raise UntranslatableError(f"too slow to be measured with more than {most} formulas")
         return request(workload, rows)
 
     return limited
