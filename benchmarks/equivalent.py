@@ -26,6 +26,13 @@ EQUIVALENT = {
     "`requirement.for_each is not None`": (
         "what came before is replayed where going on from now would do"
     ),
+    "python_intake.py and/or: `place in self.instant and leaf is not None` => "
+    "`place in self.instant or leaf is not None`": (
+        "of several signals the last to be taken sees what the leaf will be; history marks it anyway"
+    ),
+    "past.py dropped operand: `value is None or isinstance(value, str)` => `value is None`": (
+        "nothing is computed with labels: the checker refuses it"
+    ),
     "flow.py dropped operand: `reads.momentary and (not self._is_never(place))` => "
     "`not self._is_never(place)`": "what stays as it is is worked out again at the next position",
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
