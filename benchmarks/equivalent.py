@@ -28,7 +28,7 @@ EQUIVALENT = {
     ),
     "python_intake.py and/or: `place in self.instant and leaf is not None` => "
     "`place in self.instant or leaf is not None`": (
-        "of several signals the last to be taken sees what the leaf will be; history marks it anyway"
+        "the last signal to be taken sees what the leaf will be; history marks it anyway"
     ),
     "past.py dropped operand: `value is None or isinstance(value, str)` => `value is None`": (
         "nothing is computed with labels: the checker refuses it"
