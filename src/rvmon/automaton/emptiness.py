@@ -24,7 +24,7 @@ from rvmon.formula.state import State
 MOST_TRIED = 500
 """Steps of states, and combinations of regions in which they might be made."""
 
-MOST_CLAUSES = 60
+MOST_CLAUSES = 200
 """Of one step of a clause."""
 
 _NEVER = 1 << 62
