@@ -25,7 +25,8 @@ class Forecaster:
 
     A continuation is an infinite word in which every proposition is known, independently of the
     others; bounded windows are judged by the ages of their clocks, each for itself. So a forecast
-    that is given is right, and for formulas without bounds none is missed.
+    that is given is right, and for formulas without bounds none is missed within the limits of
+    the search.
     """
 
     def __init__(self) -> None:

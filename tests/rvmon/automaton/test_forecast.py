@@ -87,7 +87,7 @@ def test_untimed_forecasts_are_those_of_the_tableau(data):
         assert said == wanted
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(case=cases(Profile(mixed=False), TraceProfile()), cut=st.integers(1, 6))
 def test_forecasts_come_true(case, cut):
     """What was forecast of an attempt at some moment is never overturned by a later decision."""
