@@ -33,6 +33,16 @@ EQUIVALENT = {
     "past.py dropped operand: `value is None or isinstance(value, str)` => `value is None`": (
         "nothing is computed with labels: the checker refuses it"
     ),
+    "python_intake.py dropped not: `not self.plan.uses[next(iter(names))].history` => "
+    "`self.plan.uses[next(iter(names))].history`": (
+        "leaves are worked out once more than needed; those with a history are marked anyway"
+    ),
+    "python_visit.py off by one: `(state.high or 0) - state.low + 1` => "
+    "`(state.high or 0) - state.low`": "samples are looked at that could have been passed over",
+    "past.py dropped operand: `before is None or isinstance(before, str) or isinstance(now, str)` "
+    "=> `before is None or isinstance(before, str)`": (
+        "both are values of one signal: if one is a label, so is the other"
+    ),
     "flow.py dropped operand: `reads.momentary and (not self._is_never(place))` => "
     "`not self._is_never(place)`": "what stays as it is is worked out again at the next position",
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
