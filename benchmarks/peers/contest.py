@@ -25,7 +25,7 @@ from rvmon.testing.peers.core import UntranslatableError, names_in
 from rvmon.testing.peers.dialects import translate
 from rvmon.testing.peers.ways import WAYS, Way, truths
 from rvmon.testing.shrink import smaller_formulas
-from rvmon.testing.vocabulary import CARRIER, EVENTS, NUMBERS
+from rvmon.testing.vocabulary import CARRIER, EVENTS, FURTHER, NUMBERS
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Contest:
     shape: Shape
 
 
-_EVENTS = (*EVENTS, CARRIER)
+_EVENTS = (*EVENTS, CARRIER, FURTHER)
 _PAST = Shape(future=False, numbers=False)
 _FUTURE = Shape(past=False, numbers=False)
 _BOTH = Shape(numbers=False)
