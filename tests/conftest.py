@@ -24,6 +24,12 @@ def chromium() -> str:
 
 
 @pytest.fixture
+def graphviz() -> str:
+    """Path of the program that lays out graphs."""
+    return _program("dot")
+
+
+@pytest.fixture
 def gcc() -> str:
     """Path of a C compiler."""
     return _program("gcc")

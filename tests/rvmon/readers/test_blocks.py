@@ -95,7 +95,7 @@ def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_parquet_says_what_csv_says(time, tmp_path):
     """The same recording as Parquet, whole and with gaps and payloads."""
-    pyarrow = pytest.importorskip("pyarrow")
+    import pyarrow
     from pyarrow import csv, parquet
 
     (tmp_path / "a.csv").write_text(csv_text(2))
@@ -115,7 +115,6 @@ def test_parquet_says_what_csv_says(time, tmp_path):
 
 def test_what_is_no_parquet_file_is_refused_with_its_name(tmp_path):
     """The message names the file and what is wrong with it."""
-    pytest.importorskip("pyarrow")
     (tmp_path / "a.parquet").write_text("t,p\n")
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     with pytest.raises(rvmon.TraceError, match=r"a\.parquet: not a Parquet file"):
