@@ -54,6 +54,19 @@ EQUIVALENT = {
     "lane.py dropped statement: `self._pass_to(min(position - 1, limit))` => `pass`": (
         "a visit, and `reach`, let time pass to the instant before by themselves"
     ),
+    "reduce.py negated condition: `cut < len(place.cuts[clock])` => "
+    "`not cut < len(place.cuts[clock])`": "the automaton stays larger than need be",
+    "lane.py off by one: `self.flow.next_change + 1` => `self.flow.next_change`": (
+        "`next_due` may name an instant too early"
+    ),
+    "judge.py operator: `self.position + gap` => `self.position - gap`": (
+        "`next_due` may name an instant too early"
+    ),
+    "since.py operator: `start - self.gap` => `start + self.gap`": (
+        "stretches that touch are kept apart: more of them, for the same instants"
+    ),
+    "inputs.py constant: `self.updates = 1 if first else 2` => "
+    "`self.updates = (2) if first else 2`": "after one update there is no value before it anyway",
     "construct.py off by one: `entered[clock] + 1` => `entered[clock]`": (
         "another age of the same region, or a row for one in which no step can happen"
     ),
