@@ -55,11 +55,12 @@ def _statements(figures: RobotSummary) -> Table:
     from rich import box
     from rich.table import Table
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     table.add_column("state", no_wrap=True)
-    table.add_column("statements", justify="right")
+    table.add_column("count", justify="right")
     for name in figures.strategies:
-        table.add_column(name, justify="right")
+        # A policy goes to a line of its own where there is little room.
+        table.add_column(name.replace("model-based-", "model-based "), justify="right")
     columns = list(figures.strategies.values())
     for state, block in columns[0].statements.items():
         shares = (one.statements[state] for one in columns)
