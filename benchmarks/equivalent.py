@@ -54,6 +54,9 @@ EQUIVALENT = {
     "lane.py dropped statement: `self._pass_to(min(position - 1, limit))` => `pass`": (
         "a visit, and `reach`, let time pass to the instant before by themselves"
     ),
+    "graph.py constant: `remembers = False` => `remembers = (True)`": (
+        "what came before is replayed where going on from now would do"
+    ),
     "reduce.py negated condition: `cut < len(place.cuts[clock])` => "
     "`not cut < len(place.cuts[clock])`": "the automaton stays larger than need be",
     "lane.py off by one: `self.flow.next_change + 1` => `self.flow.next_change`": (

@@ -60,7 +60,8 @@ def _statements(figures: RobotSummary) -> Table:
     table.add_column("size", justify="right")
     for name in figures.strategies:
         # A policy goes to a line of its own where there is little room.
-        table.add_column(name.replace("model-based-", "model-based "), justify="right")
+        words = name.replace("model-based-", "model-based ").split()
+        table.add_column(" ".join(words), justify="right", min_width=max(map(len, words)))
     columns = list(figures.strategies.values())
     for state, block in columns[0].statements.items():
         shares = (one.statements[state] for one in columns)
