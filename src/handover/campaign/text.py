@@ -57,7 +57,7 @@ def _statements(figures: RobotSummary) -> Table:
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     table.add_column("state", no_wrap=True)
-    table.add_column("size", justify="right")
+    table.add_column("all", justify="right")
     for name in figures.strategies:
         # A policy goes to a line of its own where there is little room.
         words = name.replace("model-based-", "model-based ").split()
