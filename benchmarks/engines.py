@@ -63,8 +63,8 @@ ENGINES: dict[str, tuple[str, ...]] = {
 """By engine, patterns of files below the package; what does not exist (yet) is passed over."""
 
 RELATED = {
-    "automaton": ("auto", "progression"),
-    "progression": ("auto", "automaton"),
+    "automaton": ("auto", "progression", "network"),
+    "progression": ("auto", "automaton", "network"),
     "network": ("auto",),
     "python": ("auto", "file"),
     "file": ("python",),

@@ -57,6 +57,9 @@ EQUIVALENT = {
     "graph.py constant: `remembers = False` => `remembers = (True)`": (
         "what came before is replayed where going on from now would do"
     ),
+    "residual.py and/or: `left == right or right == HOLDS` => `left == right and right == HOLDS`": (
+        "only a short cut to what the reduction finds"
+    ),
     "reduce.py negated condition: `cut < len(place.cuts[clock])` => "
     "`not cut < len(place.cuts[clock])`": "the automaton stays larger than need be",
     "lane.py off by one: `self.flow.next_change + 1` => `self.flow.next_change`": (

@@ -35,6 +35,9 @@ MOST_MEMORY = 4 << 30
 THOROUGH = 10_000
 """Pairs of the second try."""
 
+MORE = 4
+"""Times the pairs of the first try: for the engines that are tried last."""
+
 
 def main(argv: Sequence[str]) -> int:
     """Draw, run and judge the mutants."""
@@ -144,7 +147,9 @@ class Trial:
         self.environment = _environment(scratch, scratch / "src")
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
         self.stages = [(options.engine, options.pairs), (options.engine, THOROUGH)]
-        self.stages += [(engine, options.pairs) for engine in RELATED.get(options.engine, ())]
+        self.stages += [
+            (engine, MORE * options.pairs) for engine in RELATED.get(options.engine, ())
+        ]
         self.known: dict[tuple[str, int], tuple[str, float]] = {}
 
     def _as_it_is(self, engine: str, pairs: int) -> tuple[str, float]:

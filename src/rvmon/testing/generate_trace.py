@@ -46,7 +46,9 @@ def random_trace(dice: Dice, spec: CheckedSpec, profile: TraceProfile) -> Case:
     names = None
     if profile.unknowns and chance(dice, 8):
         names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(dice, 20))
-    values = _Values(spec, numbers, names, profile.unknowns, _several(spec))
+    # Some sensors fail often: what was known before they did then matters.
+    unknown = (30 if chance(dice, 10) else 5) if profile.unknowns else 0
+    values = _Values(spec, numbers, names, unknown, _several(spec))
     time = start = pick(dice, (0, 1, 5, -3))
     actions: list[Sample | int] = []
     for index in range(dice.randint(0 if chance(dice, 5) else 1, profile.samples)):
@@ -113,12 +115,12 @@ def _several(spec: CheckedSpec) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class _Values:
-    """How to draw the values of one sample."""
+    """How to draw the values of one sample; `unknown` per cent of them are not known."""
 
     spec: CheckedSpec
     numbers: Sequence[int | float]
     names: frozenset[str] | None
-    unknowns: bool
+    unknown: int
     several: frozenset[str]
 
     def sample(self, dice: Dice, *, first: bool) -> dict[str, Value]:
@@ -126,7 +128,7 @@ class _Values:
         values: dict[str, Value] = {}
         for name, signal in self.spec.signals.items():
             if self._has_source(name) and chance(dice, 85 if first else 35):
-                values[name] = self._scalar(dice, signal.type, 5)
+                values[name] = self._scalar(dice, signal.type)
         for name, event in self.spec.events.items():
             if self._has_source(name) and chance(dice, 30):
                 values[name] = self._occurrence(dice, name, event.fields)
@@ -135,8 +137,8 @@ class _Values:
     def _has_source(self, name: str) -> bool:
         return self.names is None or name in self.names
 
-    def _scalar(self, dice: Dice, type_: Type, unknown: int) -> Scalar:
-        if self.unknowns and chance(dice, unknown):
+    def _scalar(self, dice: Dice, type_: Type) -> Scalar:
+        if chance(dice, self.unknown):
             return float("nan") if type_.kind is Kind.REAL and chance(dice, 50) else None
         match type_.kind:
             case Kind.BOOL:
@@ -149,13 +151,13 @@ class _Values:
                 return pick(dice, self.numbers)
 
     def _occurrence(self, dice: Dice, name: str, fields: Mapping[str, Type]) -> Value:
-        if self.unknowns and chance(dice, 5):
+        if chance(dice, self.unknown):
             return None
         if chance(dice, 5):
             return False
         if not fields or chance(dice, 5):
             return True
-        payload = {name: self._scalar(dice, type_, 6) for name, type_ in fields.items()}
+        payload = {name: self._scalar(dice, type_) for name, type_ in fields.items()}
         if name in self.several and chance(dice, 25):
-            return (payload, {name: self._scalar(dice, t, 6) for name, t in fields.items()})
+            return (payload, {name: self._scalar(dice, t) for name, t in fields.items()})
         return payload

@@ -53,6 +53,12 @@ CASES = {
         [(-3, {}), (11, {"unread": 1.0})],
         11,
     ),
+    "an instance begins after its trigger was known, and is not now": (
+        "held",
+        "upon p\n  then within 3 ns q\n  for each v in g.k",
+        [(0, {"p": False, "q": False}), (3, {"p": None}), (5, {"g": {"k": 1}}), (7, {"p": True})],
+        12,
+    ),
     "an instance begins between two ticks of the clock": (
         "sampled every 3 ns",
         "upon g\n  then start\n  for each v in g.k",
@@ -81,6 +87,20 @@ def test_forms_agree_with_the_law(name, form):
         f"requirement R1\n  {requirement}\n"
     )
     case = Case(spec.checked, tuple(Sample(t, values) for t, values in samples), end)
+    assert not disagreements(case, Maker(form))
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_window_opens_between_samples_that_change_nothing(form):
+    """In sampled time, `advance` into a window is no position; the sample after it is one."""
+    if form == "c" and shutil.which("gcc") is None:
+        pytest.skip("no gcc")
+    spec = rvmon.loads(
+        "spec s\ntime sampled\nsignal p, q, r : bool\n"
+        "requirement R1\n  upon p\n  then always [5 ns, 9 ns] q\n"
+    )
+    told = [Sample(0, {"p": True, "q": False}), Sample(4, {"r": True}), 7, Sample(8, {"r": False})]
+    case = Case(spec.checked, (*told, Sample(12, {})), 20)
     assert not disagreements(case, Maker(form))
 
 
