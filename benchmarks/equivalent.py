@@ -60,6 +60,12 @@ EQUIVALENT = {
     "residual.py and/or: `left == right or right == HOLDS` => `left == right and right == HOLDS`": (
         "only a short cut to what the reduction finds"
     ),
+    "build.py and/or: `engine not in _GENERATED or not any((can_generate(one) for one in chosen))` "
+    "=> `engine not in _GENERATED and (not any((can_generate(one) for one in chosen)))`": (
+        "another form of the same automaton is run"
+    ),
+    "numbers.py dropped operand: `slot.updates == 2 and slot.value is not None` => "
+    "`slot.value is not None`": "after one update there is no value before it anyway",
     "reduce.py negated condition: `cut < len(place.cuts[clock])` => "
     "`not cut < len(place.cuts[clock])`": "the automaton stays larger than need be",
     "lane.py off by one: `self.flow.next_change + 1` => `self.flow.next_change`": (

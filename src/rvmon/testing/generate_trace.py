@@ -46,8 +46,10 @@ def random_trace(dice: Dice, spec: CheckedSpec, profile: TraceProfile) -> Case:
     names = None
     if profile.unknowns and chance(dice, 8):
         names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(dice, 20))
-    # Some sensors fail often: what was known before they did then matters.
-    unknown = (30 if chance(dice, 10) else 5) if profile.unknowns else 0
+    # Some sensors fail often: what was known before they did then matters, above all to instances
+    # that begin later.
+    often = 40 if any(one.for_each for one in spec.requirements.values()) else 10
+    unknown = (30 if chance(dice, often) else 5) if profile.unknowns else 0
     values = _Values(spec, numbers, names, unknown, _several(spec))
     time = start = pick(dice, (0, 1, 5, -3))
     actions: list[Sample | int] = []
