@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from numbers import Integral
 from typing import Any
 
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import ticks_of_seconds
+from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 
 
 def columns_of(table: Any) -> dict[str, list[Any]]:
@@ -48,7 +49,8 @@ def column_samples(
         time: the column of seconds; if its name ends in `_ns`, of integer ticks.
 
     Raises:
-        TraceError: there is no such time column, or an instant is not finite.
+        TraceError: there is no such time column, or an instant is no finite number; of ticks, no
+            whole one.
     """
     if time not in columns:
         raise TraceError(
@@ -57,5 +59,19 @@ def column_samples(
     names = [name for name in columns if name in schema.signals or name in schema.events]
     in_ticks = time.endswith("_ns")
     for row, stamp in enumerate(columns[time]):
-        t = int(stamp) if in_ticks else ticks_of_seconds(stamp)
+        t = _ticks(stamp, time, row) if in_ticks else ticks_of_seconds(stamp)
         yield Sample(t, {name: columns[name][row] for name in names})
+
+
+def _ticks(stamp: Any, time: str, row: int) -> int:
+    """A stamp of ticks: a whole number, be it held as a float."""
+    whole = isinstance(stamp, Integral) and not isinstance(stamp, bool)
+    if not whole and not (isinstance(stamp, float) and stamp.is_integer()):
+        raise TraceError(
+            f"`{time}` holds whole numbers of ticks (ns), found {stamp!r} in row {row}: "
+            "give seconds in a column whose name does not end in `_ns`"
+        )
+    t = int(stamp)
+    if abs(t) >= TIME_LIMIT:
+        raise TraceError(f"time {t} ns is out of range: at most 2**62 ns (146 years)")
+    return t

@@ -1,0 +1,41 @@
+"""What the facade says when it is used in a wrong way: an error of rvmon, never a raw one."""
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.errors import TraceError
+
+DOOR = """
+spec door
+signal closed : bool
+signal gap : real
+event knock
+requirement D1
+  upon knock
+  then within 2 s not closed
+requirement D2
+  always gap < 3
+"""
+
+
+@pytest.fixture
+def spec():
+    return rvmon.loads(DOOR)
+
+
+@pytest.mark.parametrize(
+    "stamps",
+    [np.array([0.2, 1.9]), np.array([0.0, np.nan]), [0, "1"], [0, None], [False, True], [0, 2e30]],
+)
+def test_ticks_are_whole_numbers(spec, stamps):
+    """A column of ticks is not truncated."""
+    with pytest.raises(TraceError, match=r"whole numbers of ticks|out of range"):
+        spec.evaluate({"t_ns": stamps, "gap": np.array([1.0, 5.0])}, time="t_ns")
+
+
+def test_whole_floats_are_ticks(spec):
+    """Ticks that a table holds as floats are exact if they are whole."""
+    table = {"t_ns": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
+    [attempt] = spec.evaluate(table, time="t_ns", only=["D2"]).attempts
+    assert (attempt.verdict.value, attempt.decided) == ("F", 2)
