@@ -94,11 +94,7 @@ class Spec:
         Raises:
             UnknownNameError: `only`, `engine` or `settle` names what does not exist.
         """
-        chosen = None if only is None else tuple(only)
-        for name in chosen or ():
-            if name not in self.requirements:
-                known = ", ".join(self.requirements)
-                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
+        chosen = self._chosen(only)
         from rvmon.monitor import build_monitor
 
         return build_monitor(
@@ -108,6 +104,15 @@ class Spec:
             settle=settle,
             sources=None if sources is None else frozenset(sources),
         )
+
+    def _chosen(self, only: Iterable[str] | None) -> tuple[str, ...] | None:
+        """The ids that were asked for, all of which there are."""
+        chosen = None if only is None else tuple(only)
+        for name in chosen or ():
+            if name not in self.requirements:
+                known = ", ".join(self.requirements)
+                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
+        return chosen
 
     def restore(self, data: bytes) -> Monitor:
         """Make the monitor that a snapshot was taken of; it goes on as that would have.
@@ -280,16 +285,18 @@ class Spec:
 
         Raises:
             TraceError: the trace cannot be read.
+            UnknownNameError: `only` names what does not exist.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
         from rvmon.monitor.robustness import margins_of
 
+        chosen = self._chosen(only)
         recording = self.recording(trace, time=time)
         return margins_of(
             self._compiled,
             recording,
-            only=None if only is None else tuple(only),
+            only=chosen,
             sources=recording.names,
             end=recording.end if until is None else ticks_of_seconds(until),
         )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.errors import TraceError
+from rvmon.errors import TraceError, UnknownNameError
 
 DOOR = """
 spec door
@@ -39,3 +39,10 @@ def test_whole_floats_are_ticks(spec):
     table = {"t_ns": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     [attempt] = spec.evaluate(table, time="t_ns", only=["D2"]).attempts
     assert (attempt.verdict.value, attempt.decided) == ("F", 2)
+
+
+def test_robustness_of_an_unknown_requirement(spec):
+    """It is named as `evaluate` names it."""
+    for judge in (spec.robustness, spec.evaluate):
+        with pytest.raises(UnknownNameError, match="no requirement `Z`: there are D1, D2"):
+            judge([(0, {"gap": 1.0})], only=["Z"])
