@@ -79,3 +79,13 @@ def test_the_expected_is_said_in_words():
     """No pattern of the grammar comes through."""
     found = first_finding("requirement R\n  upon asked\n  then within ! released\n")
     assert found.message == "found `!`, expected a duration such as `3 s`"
+
+
+@pytest.mark.parametrize(
+    ("word", "mend"), [("boolean", "bool"), ("integer", "int"), ("reals", "real")]
+)
+def test_words_are_found_whole(word, mend):
+    """A word that starts like one of the language is not cut in two."""
+    found = first_finding(f"signal x : {word}\n")
+    assert found.message.startswith(f"found `{word}`, ")
+    assert f"`{mend}`" in found.help
