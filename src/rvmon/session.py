@@ -92,8 +92,14 @@ class Spec:
             sources: the signals and events that can arrive; the others are unknown throughout.
 
         Raises:
-            UnknownNameError: `only`, `engine` or `settle` names what does not exist.
+            UnknownNameError: `only`, `engine`, `settle` or `sources` names what does not exist.
         """
+        given = None if sources is None else frozenset(sources)
+        declared = [*self.schema.signals, *self.schema.events]
+        unknown = sorted((given or frozenset()).difference(declared))
+        if unknown:
+            known = ", ".join(declared)
+            raise UnknownNameError(f"no signal or event named `{unknown[0]}`: there are {known}")
         chosen = self._chosen(only)
         from rvmon.monitor import build_monitor
 
@@ -102,7 +108,7 @@ class Spec:
             only=chosen,
             engine=engine,
             settle=settle,
-            sources=None if sources is None else frozenset(sources),
+            sources=given,
         )
 
     def _chosen(self, only: Iterable[str] | None) -> tuple[str, ...] | None:
@@ -165,7 +171,10 @@ class Spec:
             from rvmon.monitor.batch_c import evaluate_recording
 
             return evaluate_recording(self._compiled, recording, only=chosen, until=end)
-        monitor = self.monitor(only=chosen, engine=engine, sources=recording.names)
+        names = recording.names
+        if names is not None:
+            names &= {*self.schema.signals, *self.schema.events}
+        monitor = self.monitor(only=chosen, engine=engine, sources=names)
         for sample in recording:
             monitor.step_ns(sample.t, sample.values)
         return monitor.finish_ns(recording.end if end is None else end)

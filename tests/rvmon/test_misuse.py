@@ -46,3 +46,10 @@ def test_robustness_of_an_unknown_requirement(spec):
     for judge in (spec.robustness, spec.evaluate):
         with pytest.raises(UnknownNameError, match="no requirement `Z`: there are D1, D2"):
             judge([(0, {"gap": 1.0})], only=["Z"])
+
+
+def test_sources_are_declared(spec):
+    """A source that the specification does not know is most likely a typing error."""
+    with pytest.raises(UnknownNameError, match="`zzz`: there are closed, gap, knock"):
+        spec.monitor(sources=["gap", "zzz"])
+    assert not spec.monitor(sources=["gap"]).step(0, {"gap": 1.0})
