@@ -44,6 +44,7 @@ def processes_of(
         with findings.collect():
             refuse_double(family.name, family.span, top)
             top.places[family.name] = family.span
+            top.families.add(family.name)
             families[family.name] = family
     used = {instance.template.name for instance in document.instances}
     system = document.system

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import assert_never
 
 from rvmon.diagnostics import Span
+from rvmon.errors import ModelError
 from rvmon.timed import syntax
 from rvmon.timed.evaluate import apply_binary, apply_unary
 from rvmon.timed.foreign import type_reason
@@ -208,6 +209,8 @@ class Resolver:
         match written:
             case syntax.Name(name, span):
                 symbol = scope.find(name)
+                if symbol is None and scope.names_automaton(name):
+                    raise _no_value(span)
                 if symbol is None and scope.declares(name):
                     raise refusal()  # why its declaration has no meaning is told there
                 if symbol is None:
@@ -227,8 +230,7 @@ class Resolver:
                 raise model_error("TA002", message, span, suggest(name, names))
             case syntax.Call(name, _, span):
                 if any(name == known for known, _ in self.automata):
-                    mend = f"name a location: {span.text}.location"
-                    raise model_error("TA004", "an automaton is no value", span, mend)
+                    raise _no_value(span)
                 mend = "write the value out, or use an array"
                 raise model_error(
                     "TA016", f"functions such as `{name}` are not supported", span, mend
@@ -357,6 +359,11 @@ def _binary(op: BinaryOp, left: Expression, right: Expression, span: Span) -> Ex
             return UnaryOperation(UnaryOp.NOT, other)
         case _:
             return BinaryOperation(op, left, right)
+
+
+def _no_value(span: Span) -> ModelError:
+    mend = f"name a location: {span.text}.location"
+    return model_error("TA004", "an automaton is no value", span, mend)
 
 
 def _joined(op: BinaryOp, parts: Sequence[Expression], span: Span) -> Expression:

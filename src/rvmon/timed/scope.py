@@ -84,12 +84,14 @@ class Scope:
     Attributes:
         prefix: put before the names of what is declared here, such as `Train(1).`.
         places: where each name was declared.
+        families: names of automata, templates and instances.
     """
 
     parent: Scope | None = None
     prefix: str = ""
     symbols: dict[str, Symbol] = field(default_factory=dict)
     places: dict[str, Span] = field(default_factory=dict)
+    families: set[str] = field(default_factory=set)
 
     def find(self, name: str) -> Symbol | None:
         """The innermost meaning of a name."""
@@ -108,6 +110,12 @@ class Scope:
                 return True
             scope = scope.parent
         return False
+
+    def names_automaton(self, name: str) -> bool:
+        """Whether a name without another meaning is that of an automaton."""
+        return name in self.families or (
+            self.parent is not None and self.parent.names_automaton(name)
+        )
 
     def names(self) -> list[str]:
         """All names that can be seen from here."""
