@@ -21,6 +21,7 @@ _OPERAND_ALL = _OPERAND | {
     "WITHIN", "FOR", "IMMEDIATELY", "CTL", "PATH", "QUANTIFIER", "TRUTH", "START", "END", "CALL",
     "LPAR",
 }  # fmt: skip
+_VALUE = {"NUMBER", "NAME", "CALL", "LPAR", "MINUS"}
 _DURATION = {"NUMBER", "NAME", "LPAR", "MINUS"}
 _ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
 _INFIX = {"AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS"}
@@ -46,6 +47,23 @@ _WORDS = {
     "WHENEVER": "`whenever`",
     "THEN": "`then`",
     "WITHIN": "`within`",
+    "TEXT_CLAUSE": "`source` or `rationale`",
+    "UNWANTED": "`ignore` or `illegal`",
+    "FOR_EACH": "`for each`",
+    "AT_END": "`at end`",
+    "TRUTH": "`true` or `false`",
+    "NOT": "`not`",
+    "AND": "`and`",
+    "OR": "`or`",
+    "XOR": "`xor`",
+    "IFF": "`<->`",
+    "IMPLIES": "`->`",
+    "INFIX": "an operator such as `until`",
+    "LEADS_TO": "`-->`",
+    "TEMPORAL": "an operator such as `always`",
+    "CTL": "an operator such as `AG`",
+    "PATH": "`A[]` or `E<>`",
+    "QUANTIFIER": "`A` or `E`",
 }
 _SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
 
@@ -108,6 +126,9 @@ def _in_words(accepted: set[str], parser: lark.Lark) -> str:
         return "a duration such as `3 s`"
     if rest >= _OPERAND:
         words.append("a formula or a number")
+        rest -= _OPERAND_ALL
+    elif rest >= _VALUE:
+        words.append("a number or a name")
         rest -= _OPERAND_ALL
     if "AND" in rest:
         words.append("an operator such as `and`, `or`, `->`, `until`")

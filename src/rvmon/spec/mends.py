@@ -51,11 +51,22 @@ def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> 
     """
     return (
         _MEND.get(found, "")
+        or _sign_mend(found, accepted, before.text)
         or _number_mend(found, before)
         or _structure_mend(found, accepted, before.text)
         or _word_mend(found, accepted, parser, before.text)
         or _decimal_comma(before.text)
     )
+
+
+def _sign_mend(found: str, accepted: set[str], before: str) -> str:
+    """What mends a label in quotes, or an arrow of another language."""
+    label = re.fullmatch(r'"([^\W\d]\w*)"', found)
+    if label and "NAME" in accepted and before.rstrip().endswith(("=", "{", ",")):
+        return f"labels have no quotes: `{label[1]}`"
+    if found == ">" and before.endswith("="):
+        return "write `->` for what follows, `>=` to compare"
+    return ""
 
 
 def _structure_mend(found: str, accepted: set[str], before: str) -> str:

@@ -4,6 +4,8 @@ import pytest
 
 from rvmon.errors import SpecError
 from rvmon.spec import compile_text
+from rvmon.spec.expected import _word
+from rvmon.spec.parse import grammar
 
 HEAD = """spec demo
 event asked, released
@@ -89,3 +91,24 @@ def test_words_are_found_whole(word, mend):
     found = first_finding(f"signal x : {word}\n")
     assert found.message.startswith(f"found `{word}`, ")
     assert f"`{mend}`" in found.help
+
+
+@pytest.mark.parametrize(
+    ("formula", "mend"),
+    [
+        ('state = "idle"', "labels have no quotes: `idle`"),
+        ("(asked) => (released)", "write `->`"),
+    ],
+)
+def test_signs_of_other_languages(formula, mend):
+    """Labels in quotes and other arrows; what could have stood there is said in words."""
+    found = first_finding(f"signal state : {{idle, on}}\nrequirement R\n  always {formula}\n")
+    assert mend in found.help
+    assert found.message.endswith("expected a number or a name")
+
+
+def test_every_terminal_has_words():
+    """No pattern of the grammar comes through, whichever terminal is expected."""
+    for terminal in grammar().terminals:
+        if not terminal.name.startswith("__IGNORE"):
+            assert not set(_word(terminal.name, grammar())) & set("\\?|^"), terminal.name
