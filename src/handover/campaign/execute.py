@@ -5,11 +5,12 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from itertools import groupby
 
@@ -99,19 +100,18 @@ def _here(chunks: Sequence[Chunk], _workers: int, keep: Callable[[Played], None]
 def _in_workers(chunks: Sequence[Chunk], workers: int, keep: Callable[[Played], None]) -> str:
     # Workers that are spawned inherit no threads and no state, on every platform.
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(
-        min(workers, len(chunks)), mp_context=context, initializer=_leave_interrupts_to_parent
-    )
-    waiting: set[Future[Played]] = {pool.submit(play, chunk) for chunk in chunks}
+    pool = ProcessPoolExecutor(min(workers, len(chunks)), mp_context=context)
+    with _without_interrupts():
+        waiting: set[Future[Played]] = {pool.submit(play, chunk) for chunk in chunks}
     try:
         for future in as_completed(tuple(waiting)):
             waiting.remove(future)
             keep(future.result())
     except KeyboardInterrupt:
-        with suppress(KeyboardInterrupt):  # a second one: what is not here by now is lost
-            for future in waiting:
-                if not future.cancel():  # a worker has it already: it takes less than a second
-                    keep(future.result())
+        # After a second one, what is not here by now is lost.
+        with suppress(KeyboardInterrupt, BrokenProcessPool):
+            for future in [one for one in waiting if not one.cancel()]:
+                keep(future.result())  # a worker has it already
         return INTERRUPTED
     except BrokenProcessPool:
         return WORKER_DIED
@@ -120,6 +120,18 @@ def _in_workers(chunks: Sequence[Chunk], workers: int, keep: Callable[[Played], 
     return ""
 
 
-def _leave_interrupts_to_parent() -> None:
-    """Ctrl-C reaches all processes of a terminal; the workers finish what they have."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Processes that are started here ignore Ctrl-C, from their first instruction on.
+
+    It reaches all processes of a terminal; this one ends the campaign, workers finish what they
+    have. Only the main thread can say so.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    known = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, known)

@@ -128,9 +128,9 @@ class _Draft:
         return tuple(tuple(map(move, edges)) for edges, _, _ in self.places[index].rows.values())
 
     def _with_initial(self, blocks: list[int]) -> list[int]:
-        """The initial location joins another that moves as it does: no attempt rests there."""
+        """The initial location joins another that moves as it does, if no attempt rests there."""
         initial = self.initial
-        if initial <= PASSED or self.places[initial].cuts:
+        if initial <= PASSED or self.places[initial].cuts or self._is_entered(initial):
             return blocks
         moves = self._moves(initial, blocks)
         for index in range(PASSED + 1, len(self.places)):
@@ -138,6 +138,15 @@ class _Draft:
             if index != initial and same:
                 return [blocks[index] if old == blocks[initial] else old for old in blocks]
         return blocks
+
+    def _is_entered(self, index: int) -> bool:
+        """Whether an edge leads to a location."""
+        return any(
+            edge is not None and edge[0] == index
+            for place in self.places
+            for edges, _, _ in place.rows.values()
+            for edge in edges
+        )
 
     @staticmethod
     def _numbered(looks: list[Hashable]) -> list[int]:

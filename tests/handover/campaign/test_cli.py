@@ -1,10 +1,15 @@
 """The command `handover` as a person uses it."""
 
+import contextlib
 import csv
 import io
 import json
+import os
 import re
 import signal
+import subprocess
+import sys
+import time
 
 import pytest
 
@@ -175,3 +180,22 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
     assert "the tables are partial" in capsys.readouterr().out
     assert "PARTIAL" in (tmp_path / "table.txt").read_text()
     assert "Partial: interrupted" in (tmp_path / "report.html").read_text()
+
+
+@pytest.mark.parametrize("seconds", [0.5, 0.9])
+def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
+    """Whenever it comes, also while the workers start: no traceback, and 130 (or all was done)."""
+    words = ["run", "--strategy", "constrained", "--tests", "40", "--jobs", "2"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "handover.cli", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    time.sleep(seconds)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGINT)
+    _, told = process.communicate(timeout=120)
+    assert process.returncode in (0, 130)
+    assert "Traceback" not in told

@@ -53,6 +53,18 @@ CASES = {
         [(-3, {}), (11, {"unread": 1.0})],
         11,
     ),
+    "what is never for good is open at the end": (
+        "held",
+        "upon start\n  then eventually always p",
+        [(0, {"p": True}), (1, {"p": False})],
+        None,
+    ),
+    "what comes again and again is open at the end": (
+        "sampled every 3 ns",
+        "upon e\n  then always eventually (p until q)",
+        [(0, {"p": False, "q": True, "e": True}), (6, {"q": False})],
+        None,
+    ),
     "an instance begins after its trigger was known, and is not now": (
         "held",
         "upon p\n  then within 3 ns q\n  for each v in g.k",
