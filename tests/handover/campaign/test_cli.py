@@ -186,7 +186,7 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
 def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
     """Whenever it comes, also while the workers start: no traceback, and 130 (or all was done)."""
     words = ["run", "--strategy", "constrained", "--tests", "40", "--jobs", "2"]
-    process = subprocess.Popen(
+    process = subprocess.Popen(  # noqa: S603 - our own program
         [sys.executable, "-m", "handover.cli", *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
