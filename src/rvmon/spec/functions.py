@@ -17,6 +17,7 @@ from rvmon.spec.checked import (
     UpdateFunction,
     UpdateValue,
 )
+from rvmon.spec.mends import NEVER
 from rvmon.spec.quantities import arithmetic
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import types as rules
@@ -133,4 +134,5 @@ def _unknown(checker: Checker, call: Call) -> Diagnostic:
         )
     close = difflib.get_close_matches(name, [*FUNCTIONS, *checker.table.declared], 1, 0.6)
     mend = f"did you mean `{close[0]}`?" if close else ""
+    mend = NEVER if name == "never" else mend
     return name_rules.unknown_function(call.function.span, name, mend)

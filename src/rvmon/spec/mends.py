@@ -29,6 +29,7 @@ _MEND = {
     "%": "`%` is a unit and stands behind a number",
     ";": "items and clauses need no `;`",
 }
+NEVER = "for `never` write `always not (…)`"
 _TYPES = {
     "float": "real",
     "double": "real",
@@ -53,6 +54,7 @@ def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> 
         _MEND.get(found, "")
         or _sign_mend(found, accepted, before.text)
         or _number_mend(found, before)
+        or _never_mend(found, before.text)
         or _structure_mend(found, accepted, before.text)
         or _word_mend(found, accepted, parser, before.text)
         or _decimal_comma(before.text)
@@ -67,6 +69,12 @@ def _sign_mend(found: str, accepted: set[str], before: str) -> str:
     if found == ">" and before.endswith("="):
         return "write `->` for what follows, `>=` to compare"
     return ""
+
+
+def _never_mend(found: str, before: str) -> str:
+    """What mends `never φ`, which is no operator here."""
+    never = found and re.search(r"(?<![\w.])never[ \t]+$", before)
+    return NEVER if never else ""
 
 
 def _structure_mend(found: str, accepted: set[str], before: str) -> str:

@@ -112,3 +112,11 @@ def test_every_terminal_has_words():
     for terminal in grammar().terminals:
         if not terminal.name.startswith("__IGNORE"):
             assert not set(_word(terminal.name, grammar())) & set("\\?|^"), terminal.name
+
+
+@pytest.mark.parametrize("formula", ["never (asked)", "never(asked)", "never asked"])
+def test_never(formula):
+    """What shall never be is said by `always not`."""
+    assert first_finding(f"requirement R\n  {formula}\n").help == (
+        "for `never` write `always not (…)`"
+    )
