@@ -11,7 +11,7 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
-from rvmon.spec.mends import mend_of
+from rvmon.spec.mends import NAMELESS, mend_of
 from rvmon.spec.rules import names, syntax, types
 from rvmon.spec.units import unit_table
 from rvmon.spec.words import ITEM_WORDS, NOT_UNITS, RESERVED
@@ -84,7 +84,8 @@ def explain_unexpected(
     place = _place(error, source, start, end)
     accepted = _accepted(parser, source.text[start:end], rule)
     found = place.text
-    if found in RESERVED and "NAME" in accepted and not accepted >= _OPERAND:
+    nameless = found in NAMELESS and source.text[start : place.start].split() == ["requirement"]
+    if found in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
         return names.reserved(place)
     if swallowed := _SWALLOWED.search(source.text, start, place.start):
         number, name = swallowed[1], Span(source, swallowed.start(2), swallowed.end(2))

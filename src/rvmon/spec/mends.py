@@ -8,7 +8,7 @@ import re
 import lark
 
 from rvmon.diagnostics.span import Span
-from rvmon.spec.words import ITEM_WORDS
+from rvmon.spec.words import ITEM_WORDS, RESERVED
 
 _MEND = {
     "≤": "write `<=`",
@@ -30,6 +30,8 @@ _MEND = {
     ";": "items and clauses need no `;`",
 }
 NEVER = "for `never` write `always not (…)`"
+NAMELESS = RESERVED - frozenset(ITEM_WORDS)
+"""Words that are no name and may start what a requirement demands."""
 _TYPES = {
     "float": "real",
     "double": "real",
@@ -55,6 +57,8 @@ def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> 
         or _sign_mend(found, accepted, before.text)
         or _number_mend(found, before)
         or _never_mend(found, before.text)
+        or _name_mend(found, before.text)
+        or _let_mend(found, before.text)
         or _structure_mend(found, accepted, before.text)
         or _word_mend(found, accepted, parser, before.text)
         or _decimal_comma(before.text)
@@ -75,6 +79,27 @@ def _never_mend(found: str, before: str) -> str:
     """What mends `never φ`, which is no operator here."""
     never = found and re.search(r"(?<![\w.])never[ \t]+$", before)
     return NEVER if never else ""
+
+
+def _name_mend(found: str, before: str) -> str:
+    """What mends a requirement whose name is none, or that has none."""
+    dashed = re.fullmatch(r"requirement\s+([\w.]+(?:-\w+)+)\s*", before)
+    if dashed:
+        name = dashed[1].replace("-", "_")
+        return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
+    alone = re.fullmatch(r"requirement\s+([\w.]+)\s*", before)
+    if alone and not found:
+        return f"`{alone[1]}` is taken for its name; what it demands stands behind it"
+    nameless = before.split() == ["requirement"] and found in NAMELESS
+    return f"its name comes first: `requirement R1 {found} …`" if nameless else ""
+
+
+def _let_mend(found: str, before: str) -> str:
+    """What mends a `let` before what is owed."""
+    behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
+    if found == "let" or behind:
+        return "`let` stands behind what is owed: `upon … then … let x = …`"
+    return ""
 
 
 def _structure_mend(found: str, accepted: set[str], before: str) -> str:
