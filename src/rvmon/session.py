@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.errors import SpecError, UnknownNameError
+from rvmon.errors import SpecError, TraceError, UnknownNameError
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -173,7 +173,7 @@ class Spec:
             return evaluate_recording(self._compiled, recording, only=chosen, until=end)
         names = recording.names
         if names is not None:
-            names &= {*self.schema.signals, *self.schema.events}
+            names = frozenset(names) & {*self.schema.signals, *self.schema.events}
         monitor = self.monitor(only=chosen, engine=engine, sources=names)
         for sample in recording:
             monitor.step_ns(sample.t, sample.values)
@@ -330,7 +330,24 @@ class Spec:
             columns = columns_of(trace)
             names = frozenset(columns) & {*self.schema.signals, *self.schema.events}
             return Trace(tuple(column_samples(columns, self.schema, time)), names)
-        return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in trace))
+        return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in _pairs(trace)))
+
+
+def _pairs(trace: Any) -> Iterator[tuple[Any, Mapping[str, Any]]]:
+    """The items of a trace, which have to be `(t, values)`."""
+    if not isinstance(trace, Iterable):
+        raise TraceError(
+            f"expected a path, columns by name or (t, values) pairs, found {type(trace).__name__}"
+        )
+    for number, item in enumerate(trace):
+        match item:
+            case [t, Mapping() as values]:
+                yield t, values
+            case _:
+                raise TraceError(
+                    f"item {number} of the trace: expected (t, values) with values by name, "
+                    f"found {item!r}"
+                )
 
 
 def _evaluate_here(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.errors import TraceError, UnknownNameError
+from rvmon.errors import SnapshotError, TraceError, UnknownNameError
 
 DOOR = """
 spec door
@@ -53,3 +53,49 @@ def test_sources_are_declared(spec):
     with pytest.raises(UnknownNameError, match="`zzz`: there are closed, gap, knock"):
         spec.monitor(sources=["gap", "zzz"])
     assert not spec.monitor(sources=["gap"]).step(0, {"gap": 1.0})
+
+
+def test_numpy_numbers_are_seconds(spec):
+    """A monitor takes any number as its instant, exactly."""
+    monitor = spec.monitor(only=["D2"])
+    monitor.step(np.float32(0.5), {"gap": np.float32(1)})
+    [attempt] = monitor.step(np.int64(100_000_000), {"gap": 5.0})
+    assert attempt.decided == 10**17
+
+
+@pytest.mark.parametrize("engine", ["auto", "network"])
+@pytest.mark.parametrize(
+    ("t", "values", "message"),
+    [
+        ("a", {}, "time 'a' is no finite number"),
+        (None, {}, "time None is no finite number"),
+        (float("inf"), {}, "not finite"),
+        (np.float32("nan"), {}, "not finite"),
+        (2, {"gap": np.array([1.0, 2.0])}, "`gap`: expected a number, found array"),
+        (2, {"closed": [True]}, "`closed`: expected True or False"),
+        (2, 5, "expected values by name, found 5"),
+        (2, None, "expected values by name, found None"),
+    ],
+)
+def test_a_wrong_sample_is_told(spec, engine, t, values, message):
+    """What was expected is said, at the first sample and at a later one."""
+    monitor = spec.monitor(engine=engine)
+    for _ in range(2):
+        with pytest.raises(TraceError, match=message):
+            monitor.step(t, values)
+        monitor.reset()
+        monitor.step(0, {"gap": 1.0})
+
+
+@pytest.mark.parametrize("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)], ["ab"]])
+@pytest.mark.parametrize("engine", ["auto", "network", "c"])
+def test_a_wrong_trace_is_told(spec, engine, trace):
+    """A trace is a path, columns or pairs."""
+    with pytest.raises(TraceError, match=r"expected|no finite number"):
+        spec.evaluate(trace, engine=engine)
+
+
+def test_a_snapshot_is_bytes(spec):
+    """A text is none."""
+    with pytest.raises(SnapshotError, match="expected the bytes of a snapshot, found str"):
+        spec.restore("abc")

@@ -82,6 +82,8 @@ class Monitor:
             t: seconds.
             values: what was updated or occurred.
         """
+        if type(values) is not dict and not isinstance(values, Mapping):
+            raise TraceError(f"sample at {t} s: expected values by name, found {values!r}")
         return self.step_ns(ticks_of_seconds(t), values)
 
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:

@@ -111,6 +111,8 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
 
 
 def _document(data: bytes) -> Mapping[str, Any]:
+    if not isinstance(data, bytes | bytearray | memoryview):
+        raise SnapshotError(f"expected the bytes of a snapshot, found {type(data).__name__}")
     head, found, body = bytes(data).partition(b"\n")
     kind, _, checksum = head.rpartition(b" ")
     if kind != _KIND or not found:

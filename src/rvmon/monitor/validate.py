@@ -44,6 +44,10 @@ class Validator:
         Raises:
             TraceError: a name or a value that the specification does not know; it is named.
         """
+        if not isinstance(values, Mapping):
+            raise TraceError(
+                f"sample at {format_ticks(t)}: expected values by name, found {values!r}"
+            )
         plain: dict[str, Value] = {}
         for name, value in values.items():
             if name not in self._expected:
@@ -99,13 +103,18 @@ class Validator:
 def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
     takes = _TAKES[type_.kind]
     if type(value) in takes and (type_.kind is not Kind.LABEL or value in type_.labels):
-        plain: Scalar = value
-        return plain
+        known: Scalar = value
+        return known
     if value is None:
         return None
     item = getattr(value, "item", None)
     if callable(item) and type(value) not in (bool, int, float, str):
-        return _scalar(item(), type_, name, t)  # a NumPy scalar
+        try:
+            plain = item()
+        except (TypeError, ValueError):  # an array of several values
+            plain = value
+        if not hasattr(plain, "item"):
+            return _scalar(plain, type_, name, t)  # a NumPy scalar
     if isinstance(value, float | int) and isinstance(value, takes) and type(value) is not bool:
         return value + 0  # an instance of a subclass
     if type_.kind is Kind.LABEL:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
+from typing import Any
 
 from rvmon.errors import TraceError
 
@@ -28,14 +29,16 @@ def ticks_of_seconds(seconds: float | Fraction) -> int:
     """Round seconds to the nearest tick, once.
 
     Args:
-        seconds: a finite number; an `int` or `Fraction` is converted exactly.
+        seconds: a finite number, NumPy's too; an `int` or `Fraction` is converted exactly.
 
     Raises:
-        TraceError: the number is not finite or beyond `TIME_LIMIT` ticks.
+        TraceError: it is no number, not finite or beyond `TIME_LIMIT` ticks.
 
     >>> ticks_of_seconds(0.1)
     100000000
     """
+    if type(seconds) not in (float, int, Fraction):
+        seconds = _plain(seconds)
     if isinstance(seconds, float) and not math.isfinite(seconds):
         raise TraceError(f"time {seconds} is not finite: give seconds as a finite number")
     # The float product is within half a tick of the exact one only up to 2**22 s, hence Fraction.
@@ -43,6 +46,17 @@ def ticks_of_seconds(seconds: float | Fraction) -> int:
     if abs(ticks) >= TIME_LIMIT:
         raise TraceError(f"time {seconds} s is out of range: at most 2**62 ns (146 years)")
     return ticks
+
+
+def _plain(seconds: Any) -> float | Fraction:
+    """What is no plain number as one, if it is a number."""
+    try:
+        if not isinstance(seconds, str):
+            plain = seconds.item() if hasattr(seconds, "item") else seconds
+            return plain if isinstance(plain, float | int) else Fraction(plain)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise TraceError(f"time {seconds!r} is no finite number: give seconds as a number")
 
 
 def ticks_of_text(text: str) -> int:
