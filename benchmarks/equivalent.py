@@ -66,6 +66,8 @@ EQUIVALENT = {
     ),
     "numbers.py dropped operand: `slot.updates == 2 and slot.value is not None` => "
     "`slot.value is not None`": "after one update there is no value before it anyway",
+    "stretch.py dropped statement: `break` => `pass`": "the cuts behind it are later ones",
+    "factory.py off by one: `self._count - 1` => `self._count`": "numbers only have to differ",
     "reduce.py negated condition: `cut < len(place.cuts[clock])` => "
     "`not cut < len(place.cuts[clock])`": "the automaton stays larger than need be",
     "lane.py off by one: `self.flow.next_change + 1` => `self.flow.next_change`": (

@@ -106,10 +106,11 @@ def _field(payload: Payload, field: FieldValue) -> Scalar:
 def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
     """The letter with those occurrences of the event only whose field has the value.
 
-    Where the field is not known, it is not known whether the event occurs for the value.
+    Where the field is not known, it is not known whether the event occurs for the value, nor what
+    it says then.
     """
     kept = tuple(
-        replace(occurrence, truth=Truth.UNKNOWN) if found is None else occurrence
+        replace(occurrence, truth=Truth.UNKNOWN, payload={}) if found is None else occurrence
         for occurrence in letter.events[field.event].occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )

@@ -65,6 +65,12 @@ CASES = {
         [(0, {"p": False, "q": True, "e": True}), (6, {"q": False})],
         None,
     ),
+    "an occurrence whose key is not known says nothing in an instance": (
+        "held",
+        "upon g\n  then within 3 ns (g.m > 1)\n  for each v in g.k",
+        [(0, {"g": {"k": 1, "m": 1}}), (2, {"g": {"m": 0}})],
+        9,
+    ),
     "an instance begins after its trigger was known, and is not now": (
         "held",
         "upon p\n  then within 3 ns q\n  for each v in g.k",
@@ -95,7 +101,7 @@ def test_forms_agree_with_the_law(name, form):
     time, requirement, samples, end = CASES[name]
     spec = rvmon.loads(
         f"spec s\ntime {time}\nsignal p, q : bool\nsignal unread : real stale after 1 ns\n"
-        f"signal x : real stale after 1 ns\nevent e\nevent g(k: int)\n"
+        f"signal x : real stale after 1 ns\nevent e\nevent g(k: int, m: int)\n"
         f"requirement R1\n  {requirement}\n"
     )
     case = Case(spec.checked, tuple(Sample(t, values) for t, values in samples), end)
