@@ -9,9 +9,10 @@ from rvmon.analysis.examine import Examination
 from rvmon.analysis.subject import Conflict, Implication
 from rvmon.diagnostics.diagnostic import Diagnostic, Label
 from rvmon.diagnostics.span import Span
-from rvmon.spec.checked import CheckedSpec, Requirement
+from rvmon.spec.checked import Binary, BoundAtom, CheckedSpec, Constant, Requirement, Unary
 from rvmon.spec.printer import format_duration
 from rvmon.spec.rules.rule import finding
+from rvmon.spec.tense import FUTURE, subformulas
 
 
 def findings_of(spec: CheckedSpec, found: Examination) -> list[Diagnostic]:
@@ -42,7 +43,7 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
             rules.NEVER_FAILS,
             f"{name} can never fail, whatever comes",
             *place,
-            mend="give it a deadline with `within`, or say `at end: strong`",
+            mend=_can_fail(spec.requirements[name]),
         )
     if can.pass_ is False:
         yield finding(
@@ -74,8 +75,28 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
         later = ", ".join(_later(conflict))
         when = f", {later}" if later else " at one instant"
         message = f"{named} cannot {both} hold once they are triggered{when}"
-        mend = "narrow one of the triggers, or settle which one yields"
+        triggered = any(_has_trigger(spec.requirements[name]) for name in conflict.ids)
+        narrow = "narrow one of the triggers" if triggered else "change a bound of one of them"
+        mend = f"{narrow}, or settle which one yields"
     return finding(rules.CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), mend=mend)
+
+
+def _can_fail(requirement: Requirement) -> str:
+    """What lets a requirement fail that never does."""
+    open_ended = any(
+        isinstance(part, Unary | Binary)
+        and part.op in FUTURE
+        and (part.interval is None or part.interval.high is None)
+        for part in subformulas(requirement.consequent)
+    )
+    if open_ended:
+        return "give it a deadline with `within`, or say `at end: strong`"
+    return "what is owed always holds where it is looked at: look at the comparisons in it"
+
+
+def _has_trigger(requirement: Requirement) -> bool:
+    """Whether something was said about when it applies, other than always or at the start."""
+    return not isinstance(requirement.trigger, Constant | BoundAtom)
 
 
 def _later(conflict: Conflict) -> Iterator[str]:

@@ -327,3 +327,19 @@ def test_check_analyse(tmp_path, capsys):
     capsys.readouterr()
     assert main(["check", str(path), "--analyse", "--seconds", "0"]) == 0
     assert "not decided" in capsys.readouterr().out
+
+
+def test_help_speaks_of_what_is_there(tmp_path, capsys):
+    """No deadline is asked for where there is one, and no trigger is narrowed that is not there."""
+    path = tmp_path / "a.rv"
+    path.write_text(
+        "signal v : real\nevent go\nrequirement TAUT\n"
+        " upon go then within 1 s (v > 1 or v <= 1)\n"
+        "requirement SLOW\n always v < 1\nrequirement FAST\n always v > 2\n"
+    )
+    assert main(["check", str(path), "--analyse"]) == 0
+    shown = capsys.readouterr().err
+    assert "RV071" in shown
+    assert "give it a deadline" not in shown
+    assert "RV073" in shown
+    assert "narrow one of the triggers" not in shown
