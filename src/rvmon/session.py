@@ -157,8 +157,10 @@ class Spec:
         Raises:
             TraceError: the trace cannot be read; place and cause are named.
         """
-        chosen = None if only is None else tuple(only)
+        chosen = self._chosen(only)
         end = None if until is None else ticks_of_seconds(until)
+        if chosen == () and engine == "c":
+            engine = "auto"  # nothing to compile
         report = self._evaluate_arrays(trace, time, engine, chosen, end)
         if report is not None:
             return report

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import rvmon
+from rvmon.cli import main
 from rvmon.errors import SnapshotError, TraceError, UnknownNameError
 
 DOOR = """
@@ -99,3 +100,21 @@ def test_a_snapshot_is_bytes(spec):
     """A text is none."""
     with pytest.raises(SnapshotError, match="expected the bytes of a snapshot, found str"):
         spec.restore("abc")
+
+
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_no_requirement_is_judged(spec, engine):
+    """An empty choice has an empty report, whatever judges."""
+    arrays = {"t": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
+    for trace in (arrays, [(0, {"gap": 1.0}), (2, {"gap": 5.0})]):
+        report = spec.evaluate(trace, only=[], engine=engine)
+        assert (report.verdicts, report.attempts) == ({}, ())
+
+
+@pytest.mark.parametrize("only", ["", " , "])
+def test_no_program_without_requirements(tmp_path, capsys, only):
+    """`rvmon build` says what there is."""
+    path = tmp_path / "door.rv"
+    path.write_text(DOOR)
+    assert main(["build", str(path), "-o", str(tmp_path / "door"), "--only", only]) == 2
+    assert "the list of requirements is empty: there are D1, D2" in capsys.readouterr().err

@@ -35,7 +35,9 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids = None if arguments.only is None else [name.strip() for name in arguments.only.split(",")]
+    ids = None
+    if arguments.only is not None:
+        ids = [name.strip() for name in arguments.only.split(",") if name.strip()]
     plan = spec.plan(only=ids)
     made = c_files(plan)
     name = f"{made.prefix}_program.c"

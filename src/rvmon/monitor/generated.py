@@ -82,12 +82,15 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
         only: ids of its requirements; default all.
 
     Raises:
-        UnknownNameError: there is no such requirement.
+        UnknownNameError: there is no such requirement, or none is asked for.
         RvmonError: one of them is beyond generated code; which and why is said.
     """
     chosen = list(compiled.requirements.values())
     if only is not None:
         names = list(only)
+        if not names:
+            known = ", ".join(compiled.requirements)
+            raise UnknownNameError(f"the list of requirements is empty: there are {known}")
         for name in names:
             if name not in compiled.requirements:
                 known = ", ".join(compiled.requirements)
