@@ -2,8 +2,9 @@
 
 All symbolic states that explain the recording so far are kept, with a clock for the time since its
 start. For each recorded action: close under unrecorded moves, cut to the instant of the action give
-or take the tolerance, take the moves with its label. No state left is the first divergence. After
-the last action the network must be able to keep quiet until the recording's end.
+or take the tolerance, take the moves with its label; a move with several labels stands for several
+actions of one instant. No state left is the first divergence. After the last action the network
+must be able to keep quiet until the recording's end.
 
 Source: Krichen and Tripakis, Conformance Testing for Real-Time Systems, Formal Methods in System
 Design 34, 2009, section 5 (state estimation); the end as quiescence, as in Tretmans' ioco.
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from math import inf
 
 from rvmon.timed.conformance import Allowed, Conformance, Divergence, Recorded
@@ -47,8 +49,9 @@ def conform(
     Args:
         network: with a unit of time that is a whole number of milliseconds.
         actions: in order of time; all their labels are observed.
-        observed: labels that the recording would show; all others happen unseen. The label of a
-            move is that of its first edge with one, else the name of its channel.
+        observed: labels that the recording would show; all others happen unseen. A move has
+            the labels of all its edges and the name of its channel: it is recorded as all those of
+            them that are observed, at one instant.
         end: ticks since the start; the recording goes on until then.
         tolerance: ticks by which an instant may be off either way.
         budget: when to give up, for each action.
@@ -62,18 +65,26 @@ def conform(
         raise model_error("TA023", "time is not in whole milliseconds", None, mend)
     watcher = _Watcher(finer(network, network.unit // RESOLUTION), observed)
     states = list(watcher.start())
-    for number, action in enumerate(actions):
-        earliest = (action.t - tolerance) // RESOLUTION
-        latest = -(-(action.t + tolerance) // RESOLUTION)
-        meter = Meter(budget, None)
-        reached = watcher.quiet(states, latest, meter)
-        if meter.stopped:
-            return Conformance(number, None, meter.stopped)
-        after = list(watcher.fired(reached, action.label, earliest, latest))
-        if not after:
-            allowed = watcher.allowed(states, end // RESOLUTION, meter)
-            return Conformance(number, Divergence(action.t, action.label, allowed))
-        states = after
+    explained = 0
+    for t, group in groupby(actions, lambda action: action.t):
+        labels = tuple(action.label for action in group)
+        earliest, latest = (t - tolerance) // RESOLUTION, -(-(t + tolerance) // RESOLUTION)
+        pending, rest = {labels: states}, labels
+        while pending:
+            rest = max(pending, key=len)
+            states = pending.pop(rest)
+            if not rest:
+                break
+            meter = Meter(budget, None)
+            reached = watcher.quiet(states, latest, meter)
+            if meter.stopped:
+                return Conformance(explained + len(labels) - len(rest), None, meter.stopped)
+            for left, after in watcher.fired(reached, rest, earliest, latest):
+                pending.setdefault(left, []).append(after)
+        explained += len(labels) - len(rest)
+        if rest:
+            allowed = watcher.allowed(states, end // RESOLUTION, Meter(budget, None))
+            return Conformance(explained, Divergence(t, rest[0], allowed))
     meter = Meter(budget, None)
     earliest, latest = (end - tolerance) // RESOLUTION, -(-(end + tolerance) // RESOLUTION)
     if not watcher.reaches(states, earliest, latest, meter) and not meter.stopped:
@@ -104,7 +115,7 @@ class _Quiet:
         """Unseen moves before the instant is over."""
         dim = self.dim
         for move, state, fresh in self.steps.successors(site, zone):
-            if label_of(move, self.steps.space.network) in self.observed:
+            if not self.observed.isdisjoint(names_of(move, self.steps.space.network)):
                 continue
             if constrain(fresh, dim, 0, dim - 1, float(self.latest)):
                 yield move, state, normalise(fresh)
@@ -144,17 +155,28 @@ class _Watcher:
         return [(node.site, node.zone) for node in kept if not node.covered]
 
     def fired(
-        self, states: Sequence[tuple[State, Zone]], label: str, earliest: int, latest: int
-    ) -> Iterator[tuple[State, Zone]]:
-        """The states behind an action within a range of instants."""
+        self,
+        states: Sequence[tuple[State, Zone]],
+        labels: tuple[str, ...],
+        earliest: int,
+        latest: int,
+    ) -> Iterator[tuple[tuple[str, ...], tuple[State, Zone]]]:
+        """The states behind the first of some actions within a range of instants.
+
+        Each comes with the actions that are left: a move with several names stands for all of them.
+        """
         timer = self._dim - 1
         for state, zone in states:
             now = zone[:]
             if not cut(now, self._dim, [(timer, 0, -float(earliest)), (0, timer, float(latest))]):
                 continue
             for move, target, fresh in self._steps.successors(state, now):
-                if label_of(move, self._network) == label:
-                    yield target, normalise(fresh)
+                left = _without(labels, self._seen(move))
+                if left is not None:
+                    yield left, (target, normalise(fresh))
+
+    def _seen(self, move: Move) -> list[str]:
+        return [name for name in names_of(move, self._network) if name in self._observed]
 
     def reaches(
         self, states: Sequence[tuple[State, Zone]], earliest: int, latest: int, meter: Meter
@@ -174,8 +196,10 @@ class _Watcher:
         spans: dict[str, tuple[float, float]] = {}
         for state, zone in self.quiet(states, end, meter):
             for move in self._steps.space.moves(state):
-                label, ready = label_of(move, self._network), zone[:]
-                if label in self._observed and cut(ready, self._dim, move.guard):
+                seen, ready = self._seen(move), zone[:]
+                if not seen or not cut(ready, self._dim, move.guard):
+                    continue
+                for label in seen:
                     low, high = spans.get(label, (inf, 0.0))
                     spans[label] = (
                         min(low, -ready[timer * self._dim]), max(high, ready[timer])
@@ -189,10 +213,21 @@ class _Watcher:
         return tuple(found)
 
 
-def label_of(move: Move, network: Network) -> str:
-    """The name that a move has in recordings; empty if it has none."""
-    for edge in move.edges:
-        if edge.edge.label:
-            return edge.edge.label
+def _without(labels: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...] | None:
+    """The actions left behind a move that is the first of them; `None` if it cannot be."""
+    if labels[0] not in names:
+        return None
+    left = list(labels)
+    for name in names:
+        if name not in left:
+            return None
+        left.remove(name)
+    return tuple(left)
+
+
+def names_of(move: Move, network: Network) -> tuple[str, ...]:
+    """The names that a move has in recordings: the labels of its edges, and its channel's."""
     first = move.edges[0]
-    return network.channels[first.channels[0]].name if first.channels else ""
+    channel = network.channels[first.channels[0]].name if first.channels else ""
+    names = (*(edge.edge.label for edge in move.edges), channel)
+    return tuple(dict.fromkeys(name for name in names if name))

@@ -82,30 +82,30 @@ class Letters:
         if name not in self._signals:
             raise NotExpressibleError(f"the network has no signal `{name}`")
 
-    def truth(self, proposition: Proposition, state: State, label: str) -> bool:
-        """Whether a proposition holds in a state, at an action with a label (empty: between)."""
+    def truth(self, proposition: Proposition, state: State, labels: tuple[str, ...]) -> bool:
+        """Whether a proposition holds in a state, at an action with some names (none: between)."""
         match proposition.op:
             case StateOp.NOT:
-                return not self.truth(proposition.args[0], state, label)
+                return not self.truth(proposition.args[0], state, labels)
             case StateOp.AND:
-                return all(self.truth(part, state, label) for part in proposition.args)
+                return all(self.truth(part, state, labels) for part in proposition.args)
             case StateOp.OR:
-                return any(self.truth(part, state, label) for part in proposition.args)
+                return any(self.truth(part, state, labels) for part in proposition.args)
             case StateOp.LEAF:
-                return self._leaf(proposition, state, label)
+                return self._leaf(proposition, state, labels)
             case StateOp.PREVIOUS | StateOp.SINCE:
                 raise AssertionError("refused before")
             case _:
                 assert_never(proposition.op)
 
-    def _leaf(self, proposition: Proposition, state: State, label: str) -> bool:
+    def _leaf(self, proposition: Proposition, state: State, labels: tuple[str, ...]) -> bool:
         match proposition.leaf:
             case Constant(value=value):
                 return value
             case SignalAtom(name=name):
                 return bool(self._read(name, state))
             case EventAtom(name=name):
-                return name == label
+                return name in labels
             case Compare(op=op, left=left, right=right):
                 return bool(_COMPARE[op](self._number(left, state), self._number(right, state)))
             case _:
@@ -123,10 +123,10 @@ class Letters:
     def _read(self, name: str, state: State) -> int:
         return self._signals[name](state.vector.locations, state.values)
 
-    def letter(self, alphabet: Alphabet, state: State, label: str) -> int:
+    def letter(self, alphabet: Alphabet, state: State, labels: tuple[str, ...]) -> int:
         """The letter of a state, or of an action that leads to it."""
         return sum(
-            entries[TRUE if self.truth(proposition, state, label) else FALSE]
+            entries[TRUE if self.truth(proposition, state, labels) else FALSE]
             for proposition, entries in zip(
                 alphabet.propositions, alphabet.pessimistic, strict=True
             )

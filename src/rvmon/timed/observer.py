@@ -1,8 +1,8 @@
 """A requirement's monitor as a further component of a network.
 
 The monitor follows one attempt, which begins at any action that triggers it, or not: so every
-attempt of every run is followed by some path. It steps at each action, with the action's label as
-event and the signals as they are behind it, and between actions as time passes, with no event:
+attempt of every run is followed by some path. It steps at each action, with the action's names as
+events and the signals as they are behind it, and between actions as time passes, with no event:
 once just behind the action, and wherever an age passes a bound of its window. Actions at one
 instant are stepped one after the other, where a recording would show one sample.
 """
@@ -19,7 +19,7 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.lower import Obligation
 from rvmon.spec.checked import Bound, BoundAtom
-from rvmon.timed.conform import label_of
+from rvmon.timed.conform import names_of
 from rvmon.timed.discrete import Move, State
 from rvmon.timed.letters import Letters, NotExpressibleError
 from rvmon.timed.model import Constant, Network
@@ -135,7 +135,7 @@ class Observed:
         for state, zone in self.steps.start():
             yield self._site(state, Phase.IDLE), zone
             if self._starts_at_once(state):
-                letter = self._letters.letter(self._automaton.alphabet, state, "")
+                letter = self._letters.letter(self._automaton.alphabet, state, ())
                 for step, target in self._stepped(self._automaton.initial, letter):
                     yield self._site(state, Phase.FRESH, target), self._moved(zero(self.dim), step)
 
@@ -160,16 +160,16 @@ class Observed:
     def _behind(
         self, site: ObservedSite, move: Move, zone: Zone
     ) -> Iterator[tuple[ObservedLink, ObservedSite, Zone]]:
-        target, label = move.target, label_of(move, self._network)
+        target, labels = move.target, names_of(move, self._network)
         invariant = [(0, clock, bound) for clock, bound in target.invariant]
         if site.phase is Phase.IDLE:
             later = zone[:]
             if settle_in(target, later, self.dim):
                 yield ObservedLink(move), self._site(target, Phase.IDLE), normalise(later)
-            if not self._starts(site.state, target, label):
+            if not self._starts(site.state, target, labels):
                 return
         location = self._automaton.initial if site.phase is Phase.IDLE else site.location
-        letter = self._letters.letter(self._automaton.alphabet, target, label)
+        letter = self._letters.letter(self._automaton.alphabet, target, labels)
         for step, reached in self._stepped(location, letter):
             now = zone[:]
             if cut(now, self.dim, (*invariant, *step.piece)):
@@ -184,15 +184,15 @@ class Observed:
             return False
         if isinstance(trigger.leaf, BoundAtom):
             return trigger.leaf.bound is Bound.START
-        return self._letters.truth(trigger, state, "")
+        return self._letters.truth(trigger, state, ())
 
-    def _starts(self, before: State, after: State, label: str) -> bool:
+    def _starts(self, before: State, after: State, labels: tuple[str, ...]) -> bool:
         trigger = self._trigger
         if trigger is None or isinstance(trigger.leaf, BoundAtom):
             return False
-        if not self._letters.truth(trigger, after, label):
+        if not self._letters.truth(trigger, after, labels):
             return False
-        return self._pulse or not self._letters.truth(trigger, before, "")
+        return self._pulse or not self._letters.truth(trigger, before, ())
 
     # Time.
 
@@ -200,7 +200,7 @@ class Observed:
         self, site: ObservedSite, zone: Zone
     ) -> Iterator[tuple[ObservedLink, ObservedSite, Zone]]:
         """What the monitor does as time passes: just behind an action, or at the next bound."""
-        letter = self._letters.letter(self._automaton.alphabet, site.state, "")
+        letter = self._letters.letter(self._automaton.alphabet, site.state, ())
         instant = zone[:]
         # The monitor steps behind the instant: some time must be able to pass.
         room = [(0, clock, ceil(bound) - STRICT) for clock, bound in site.state.invariant]

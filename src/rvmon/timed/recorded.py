@@ -72,15 +72,12 @@ def recording_of(
     for step in run.steps:
         now += step.delay
         if step.action is not None:
-            label = _label(network, step.action)
             at = samples.setdefault(round(now * unit), {})
-            at.update(read(step.position) | ({label: True} if label else {}))
+            at.update(read(step.position) | dict.fromkeys(_names(network, step.action), True))
     return [Sample(t, values) for t, values in samples.items()], round(now * unit)
 
 
-def _label(network: Network, action: Action) -> str:
-    for _, edge in action.edges:
-        if edge.label:
-            return edge.label
+def _names(network: Network, action: Action) -> list[str]:
     sync = action.edges[0][1].sync
-    return _channel_name(network, sync.slot.first) if sync is not None else ""
+    channel = _channel_name(network, sync.slot.first) if sync is not None else ""
+    return [name for name in (*(edge.label for _, edge in action.edges), channel) if name]

@@ -145,8 +145,8 @@ def test_every_run_of_a_network_conforms_to_it(seed):
         now, actions = Fraction(0), []
         for step in run.steps:
             now += step.delay
-            names = [edge.label for _, edge in step.action.edges if edge.label]
-            actions += [Recorded(round(now * TICKS_PER_SECOND), name) for name in names[:1]]
+            names = dict.fromkeys(e.label for _, e in step.action.edges if e.label)
+            actions += [Recorded(round(now * TICKS_PER_SECOND), name) for name in names]
         end = round(now * TICKS_PER_SECOND)
         # Times with thirds and sevenths do not fall on whole milliseconds.
         answer = conform(network, actions, observed=labels, end=end, tolerance=2_000_000)
@@ -166,3 +166,31 @@ def test_a_model_without_unit_is_refused():
     """Recordings are in seconds: a model that does not say what its unit is cannot be compared."""
     with pytest.raises(ModelError, match="not in whole milliseconds"):
         check([], end=1, text=DOOR.replace("unit 1 s", ""))
+
+
+PAIR = """
+unit 1 s
+chan c
+clock x
+automaton p { location a location b start a edge a -> b when x >= 1 on c! as snd }
+automaton q { location a location b start a edge a -> b on c? as rcv }
+"""
+
+
+@pytest.mark.parametrize(
+    ("names", "observed", "explained"),
+    [
+        ("rcv", "rcv", True),
+        ("snd", "snd", True),
+        ("c", "c", True),
+        ("rcv snd", "snd rcv", True),
+        ("rcv snd", "snd rcv c", False),
+        ("rcv", "snd rcv", False),
+        ("rcv rcv", "rcv", False),
+    ],
+)
+def test_a_synchronised_move_has_the_labels_of_all_its_edges(names, observed, explained):
+    """It is recorded as all those of its names that the recording shows."""
+    recorded = [(2, name) for name in names.split()]
+    answer = check(recorded, end=3, observed=observed.split(), text=PAIR)
+    assert answer.conforms is explained

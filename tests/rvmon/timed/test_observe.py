@@ -170,3 +170,33 @@ def test_times_are_those_of_the_window():
     ((one,), _) = observed("requirement R\n  upon pressed then within 7 s dark")
     unit = one.network.unit / TICKS_PER_SECOND
     assert float(one.failing.duration) * unit >= 8
+
+
+PAIR = """
+unit 1 s
+int[0, 1] v
+chan c
+clock x
+automaton p { location a invariant x <= 2 location b start a
+  edge a -> b when x >= 1 on c! as pressed }
+automaton q { location a location b start a edge a -> b on c? as raised }
+signal lit = p.b
+signal level = v
+"""
+
+
+@pytest.mark.parametrize(
+    ("requirement", "holds"),
+    [
+        ("upon raised then immediately pressed", True),
+        ("upon pressed then immediately raised", True),
+        ("upon raised then immediately not pressed", False),
+    ],
+)
+def test_all_labels_of_a_synchronised_move_are_events(requirement, holds):
+    """They occur together, whichever automaton comes first."""
+    (found,), spec = observed(f"requirement R\n  {requirement}", model=PAIR)
+    assert found.triggered is not None
+    assert found.holds is holds
+    if not holds:
+        assert "F" in judged(spec, found, found.failing)
