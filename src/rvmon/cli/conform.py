@@ -108,6 +108,10 @@ def _compare(
     elif recording.names is not None and (missing := sorted(chosen - shown)):
         raise TraceError(f"{path}: there is no column `{missing[0]}` to observe")
     end = length if until is None else until
+    later = sum(action.t > end for action in actions)
+    if later:
+        what = "1 later action is" if later == 1 else f"{later} later actions are"
+        print(f"{path}: {what} not looked at, because of --until", file=sys.stderr)
     actions = [action for action in actions if action.t <= end]
     return conform(network, actions, observed=chosen, end=end, tolerance=tolerance)
 

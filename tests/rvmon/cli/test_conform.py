@@ -106,4 +106,6 @@ def test_until_may_cut_a_recording(folder, capsys):
     """What comes after the given end is not compared."""
     words = [str(folder / "lamp.ta"), str(folder / "bad.csv"), "--until", "6"]
     assert main(["conform", *words]) == 0
-    assert "conforms; 1 action explained" in capsys.readouterr().out
+    shown = capsys.readouterr()
+    assert "conforms; 1 action explained" in shown.out
+    assert "1 later action is not looked at" in shown.err
