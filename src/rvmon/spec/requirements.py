@@ -49,7 +49,14 @@ from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.scopes import scoped_consequent, scoped_trigger
 from rvmon.spec.syntax import Expression, Group, Ident, Immediately
-from rvmon.spec.tense import end_part, future_part, is_pulse, is_timeless, mixed_disjunction
+from rvmon.spec.tense import (
+    end_part,
+    future_part,
+    is_pulse,
+    is_timeless,
+    mixed_disjunction,
+    subformulas,
+)
 from rvmon.spec.unit import PLAIN
 from rvmon.spec.values import EVERYWHERE, Quantity, Scope
 from rvmon.trace.schema import Kind
@@ -131,6 +138,8 @@ def _parts(
                 raise Reported
             if end := end_part(formula):
                 raise Refusal(rules.end_not_alone(end.span or expression.span))
+            if _at_start_by_mistake(expression, formula):
+                checker.report(rules.bare_instant(_ungrouped(expression).span))
             return normalised(formula)
         case Triggered():
             return _triggered(checker, item.body, outer, inner)
@@ -197,10 +206,21 @@ def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formu
         checker.report(rules.mixed_trigger(pulse.span or place, level.span or place))
 
 
+def _at_start_by_mistake(expression: Expression, formula: Formula) -> bool:
+    """Whether a bare formula speaks of no time, and not of the start either."""
+    if _on_purpose(expression) or not is_timeless(formula):
+        return False
+    return not any(isinstance(part, BoundAtom) for part in subformulas(formula))
+
+
 def _on_purpose(expression: Expression) -> bool:
+    return isinstance(_ungrouped(expression), Immediately)
+
+
+def _ungrouped(expression: Expression) -> Expression:
     while isinstance(expression, Group):
         expression = expression.inner
-    return isinstance(expression, Immediately)
+    return expression
 
 
 def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:

@@ -61,7 +61,8 @@ ONE_INSTANT = Rule(
     Severity.WARNING,
     "What is owed has no word of time, so that a single instant is checked.",
     "`upon asked then released` demands the release at the very nanosecond of the asking. If that "
-    "is meant, `immediately` says so.",
+    "is meant, `immediately` says so. A requirement that is one formula without a word of time, "
+    "as `not (stop and go)`, is checked at the start of the run only.",
     """spec demo
 event asked, released
 
@@ -223,6 +224,17 @@ def one_instant(span: Span) -> Diagnostic:
         f"`{text}` is checked at one instant only",
         span,
         mend=f"say for how long or until when (`within D`, `for D`), or `immediately {text}`",
+    )
+
+
+def bare_instant(span: Span) -> Diagnostic:
+    """A requirement that is one formula, without a word of time."""
+    text = short(span.text)
+    return finding(
+        ONE_INSTANT,
+        f"`{text}` is checked at one instant only, the start of the run",
+        span,
+        mend=f"did you mean `always ({text})`? If the start is meant, write `immediately ({text})`",
     )
 
 
