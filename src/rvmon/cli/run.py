@@ -88,6 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     constants = constants_of(arguments.const)
     spec = load(arguments.spec, const=constants)
     _show_warnings(spec)
+    _refuse_places(arguments)
     options = Options(
         _ids(arguments.only, spec),
         arguments.engine,
@@ -111,6 +112,18 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"{name} was triggered in no recording", file=sys.stderr)
         failed |= bool(silent)
     return int(failed)
+
+
+def _refuse_places(arguments: argparse.Namespace) -> None:
+    """Say before anything is judged that a result has no place to go to."""
+    if arguments.junit:
+        path = Path(arguments.junit)
+        if path.is_dir():
+            raise RvmonError(f"cannot write {path}: it is a folder: name a file")
+        if not path.parent.is_dir():
+            raise RvmonError(f"cannot write {path}: there is no folder {path.parent}")
+    if arguments.report and Path(arguments.report).is_file():
+        raise RvmonError(f"cannot write to {arguments.report}: it is a file: name a folder")
 
 
 def _show_warnings(spec: Spec) -> None:

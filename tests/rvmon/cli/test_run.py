@@ -79,6 +79,20 @@ def test_a_failure_shows_cause_window_and_spec_line(files, capsys):
     assert "^" in shown
 
 
+def test_a_place_that_is_none_is_told_before_anything_is_judged(files, capsys):
+    """A wrong path costs no long run, and no page is written beside it."""
+    (files / "file").write_text("")
+    for places in (["--report", "rep", "--junit", "gone/j.xml"], ["--junit", "."]):
+        assert main(["run", "door.rv", "P.csv", *places]) == 2
+        told = capsys.readouterr()
+        assert "error: cannot write" in told.err
+        assert not told.out
+    assert main(["run", "door.rv", "P.csv", "--report", "file", "--junit", "j.xml"]) == 2
+    assert "cannot write to file: it is a file: name a folder" in capsys.readouterr().err
+    assert not (files / "rep").exists()
+    assert not (files / "j.xml").exists()
+
+
 def test_many_recordings_are_counted(files, capsys):
     """Several recordings end in a table of runs per verdict, the same with two processes."""
     traces = [f"{name}.csv" for name in ("P", "F", "NT", "I")]
