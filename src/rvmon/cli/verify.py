@@ -108,8 +108,19 @@ def run(arguments: argparse.Namespace) -> int:
         from rvmon.export.network_file import write_network
 
         write_network(network, arguments.export)
+        _warn_of_queries(network, arguments.export)
         return 0
     return _decide(network, arguments, budget)
+
+
+def _warn_of_queries(network: Network, path: str) -> None:
+    """Say which queries an exported file has only as comments."""
+    from rvmon.export.uppaal import left_out
+
+    if path.lower().endswith(".xml"):
+        for query in left_out(network):
+            name = f"`{query.id}`: " if query.id else ""
+            print(f"warning: not a query of UPPAAL, left out: {name}{query.text}", file=sys.stderr)
 
 
 def _refuse_unused(arguments: argparse.Namespace) -> None:

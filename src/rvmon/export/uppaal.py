@@ -52,6 +52,12 @@ def uppaal_xml(network: Network) -> str:
     return _HEAD + "\n".join(lines)
 
 
+def left_out(network: Network) -> list[Query]:
+    """The queries that are not UPPAAL's, of which only the text is kept."""
+    names = Names(network)
+    return [query for query in network.queries if not _formula(names, query.formula)]
+
+
 def _declarations(network: Network, names: Names) -> str:
     lines = [f'// network {network.name} "{network.title}"']
     if network.unit is not None:

@@ -208,3 +208,12 @@ def test_a_requirement_beyond_the_model_is_said_plainly(lamp, capsys):
     model, spec = lamp
     main(["verify", model, "--spec", spec])
     assert "BAD: not expressible: the network has no signal `lit`" in capsys.readouterr().out
+
+
+def test_an_export_says_which_queries_it_leaves_out(tmp_path, capsys):
+    """UPPAAL has no bounded operators: one line for each such query."""
+    assert main(["verify", str(MODELS / "dock.ta"), "--export", str(tmp_path / "d.xml")]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == (
+        "warning: not a query of UPPAAL, left out: `soon`: robot.docked -->[<=20] charging"
+    )
