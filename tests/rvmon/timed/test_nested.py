@@ -33,6 +33,8 @@ automaton A {
         ("E<> (A.open and x <= 4 and (A[] not A.start))", False),
         ("A[] (A.open imply (A<> A.trap))", False),
         ("A[] (A.trap imply (A<> A.trap))", True),
+        ("A[] (A.open imply A<> A.trap)", False),
+        ("A[] (A.trap imply A<> A.trap)", True),
         ("E<> (A.open and (E[] A.open))", True),
         ("A[] ((A.trap imply AF A.trap) and EF A.trap)", True),
         ("E<> (EF (A.trap and x < 6) and AG not A.start)", True),
@@ -72,7 +74,7 @@ def test_what_is_not_decided_is_refused(query):
 
 
 def test_a_nest_without_brackets_is_mended():
-    """The message says that an inner operator of UPPAAL's kind takes brackets."""
+    """The message says that an inner operator of UPPAAL's kind takes brackets elsewhere."""
     with pytest.raises(ModelError) as caught:
-        verify(loads_network(TRAP), "A[] (A.open imply A<> A.trap)")
+        verify(loads_network(TRAP), "A[] (A.open or A<> A.trap)")
     assert "brackets: (A<> …)" in caught.value.diagnostics[0].help
