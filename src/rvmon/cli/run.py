@@ -48,8 +48,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--engine",
         metavar="NAME",
         default="auto",
-        help="how to judge: auto (default), python, automaton, progression, or c: compiled by the "
-        "C compiler that is installed, without reasons",
+        help="how to judge: auto (default), python, automaton, progression, network, or c: "
+        "compiled by the C compiler that is installed, without reasons",
     )
     parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"

@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from rvmon.cli import main
+from rvmon.monitor.compiled import ENGINES
 from rvmon.verdict.report import Report
 
 SPEC = """
@@ -91,6 +92,13 @@ def test_a_place_that_is_none_is_told_before_anything_is_judged(files, capsys):
     assert "cannot write to file: it is a file: name a folder" in capsys.readouterr().err
     assert not (files / "rep").exists()
     assert not (files / "j.xml").exists()
+
+
+def test_help_names_the_engines(capsys):
+    """All that --engine takes."""
+    assert main(["run", "--help"]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert f"how to judge: auto (default), {', '.join(ENGINES[1:])}, or c:" in shown
 
 
 def test_many_recordings_are_counted(files, capsys):
