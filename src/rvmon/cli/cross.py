@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
+    from rvmon.spec.checked import CheckedSpec
     from rvmon.testing.cross import Crossing
     from rvmon.testing.peers.client import Peer
+    from rvmon.trace.sample import Recording, Sample
 
 SHOWN = 5
 """Disagreements of one way on one requirement that are printed."""
@@ -51,7 +53,6 @@ def run(arguments: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from rvmon.cli.constants import constants_of
-    from rvmon.cli.judging import in_order
     from rvmon.session import load
     from rvmon.testing.case import Case
     from rvmon.testing.cross import crossings
@@ -69,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
         chosen = {name: checked.requirements[name] for name in names}
         checked = replace(checked, requirements=chosen)
     recording = spec.recording(arguments.trace)
-    samples = in_order(recording)
+    samples, late = _as_run_takes_them(recording, checked)
     if not samples:
         raise RvmonError(f"error: {arguments.trace} has no sample: nothing to compare")
     case = Case(checked, tuple(samples), recording.end, recording.names)
@@ -77,11 +78,36 @@ def run(arguments: argparse.Namespace) -> int:
         peers = {name: stack.enter_context(peer) for name, peer in _peers(arguments.peers)}
         found = list(crossings(case, peers))
     if arguments.format == "json":
-        print(_json(arguments, found))
+        print(_json(arguments, found, 0 if late is None else late[0]))
     else:
         _print(arguments, found)
+        if late is not None:
+            print(f"  left out as `rvmon run` does, later than `max delay`: {_late_text(*late)}")
     judged = all(crossing.report is not None for crossing in found)
     return 0 if judged and all(crossing.agrees for crossing in found) else 1
+
+
+def _as_run_takes_them(
+    recording: Recording, spec: CheckedSpec
+) -> tuple[list[Sample], tuple[int, int] | None]:
+    """The samples in order of time, and how many came too late, with the first one's instant."""
+    from rvmon.cli.judging import in_order
+    from rvmon.monitor.intake import Intake
+
+    if not spec.max_delay:
+        return in_order(recording), None
+    intake = Intake(spec.max_delay, spec.events)
+    samples = [ready for one in recording for ready in intake.take(one.t, one.values)]
+    samples += intake.close()
+    return samples, intake.late
+
+
+def _late_text(count: int, first: int) -> str:
+    from rvmon.trace.time import format_ticks
+
+    if count == 1:
+        return f"the sample at {format_ticks(first)}"
+    return f"{count:,} samples, the first at {format_ticks(first)}"
 
 
 def _peers(python: str) -> Iterator[tuple[str, Peer]]:
@@ -99,12 +125,13 @@ def _peers(python: str) -> Iterator[tuple[str, Peer]]:
             yield name, Peer(Path(python), name)
 
 
-def _json(arguments: argparse.Namespace, found: Sequence[Crossing]) -> str:
+def _json(arguments: argparse.Namespace, found: Sequence[Crossing], late: int) -> str:
     import msgspec
 
     document = {
         "spec": arguments.spec,
         "trace": arguments.trace,
+        "left_out": late,
         "agree": all(crossing.agrees for crossing in found),
         "requirements": {
             crossing.requirement: {

@@ -111,3 +111,19 @@ def test_wrong_arguments_are_named(files, capsys, words, message):
     """Exit 2 with place and cause."""
     assert main(["cross", *files, *words]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_what_comes_too_late_is_left_out_as_run_does(tmp_path, capsys):
+    """Both judge the same recording, and it is said what is no part of it."""
+    spec, trace = tmp_path / "door.rv", tmp_path / "late.csv"
+    spec.write_text("spec door\nmax delay 1 s\nsignal v : real\nrequirement R1\n  always v < 3\n")
+    trace.write_text("t,v\n0,1\n2,1\n1.5,2\n5,1\n3,9\n6,1\n")
+    files = [str(spec), str(trace)]
+    assert main(["run", *files, "--format", "json"]) == 0
+    judged = json.loads(capsys.readouterr().out)["requirements"]["R1"]["verdict"]
+    assert main(["cross", *files, "--format", "json"]) == 0
+    crossed = json.loads(capsys.readouterr().out)
+    assert crossed["requirements"]["R1"]["verdict"] == judged == "P"
+    assert crossed["left_out"] == 1
+    assert main(["cross", *files]) == 0
+    assert "later than `max delay`: the sample at 3 s" in capsys.readouterr().out
