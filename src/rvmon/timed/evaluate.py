@@ -53,8 +53,6 @@ def apply_binary(op: BinaryOp, left: int, right: int) -> int:
 
 
 def _divide(left: int, right: int) -> int:
-    if right == 0:
-        raise model_error("TA007", "division by zero", None, "guard it with a test of the divisor")
     quotient = abs(left) // abs(right)
     return quotient if (left < 0) == (right < 0) else -quotient
 
@@ -99,8 +97,8 @@ def evaluator(expression: Expression) -> Evaluator:
             return _unary_evaluator(op, evaluator(operand))
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, _, _):
             return _chain_evaluator(op, _chain(op, expression))
-        case BinaryOperation(op, left, right):
-            return _binary_evaluator(op, evaluator(left), evaluator(right))
+        case BinaryOperation(op, left, right, span):
+            return _binary_evaluator(op, evaluator(left), evaluator(right), span)
         case Choice(condition, then, otherwise):
             test, yes, no = evaluator(condition), evaluator(then), evaluator(otherwise)
             return lambda locations, values: (
@@ -168,10 +166,23 @@ def _chain_evaluator(op: BinaryOp, expressions: Sequence[Expression]) -> Evaluat
     return some
 
 
-def _binary_evaluator(op: BinaryOp, left: Evaluator, right: Evaluator) -> Evaluator:
+def _binary_evaluator(
+    op: BinaryOp, left: Evaluator, right: Evaluator, span: Span | None
+) -> Evaluator:
     match op:
         case BinaryOp.IMPLY:
             return lambda ls, vs: int(not left(ls, vs) or bool(right(ls, vs)))
+        case BinaryOp.DIV | BinaryOp.MOD:
+            divide = _BINARY[op]
+
+            def quotient(ls: Locations, vs: Values) -> int:
+                divisor = right(ls, vs)
+                if divisor == 0:
+                    mend = "guard it with a test of the divisor"
+                    raise model_error("TA007", "division by zero", span, mend)
+                return divide(left(ls, vs), divisor)
+
+            return quotient
         case _:
             function = _BINARY[op]
             return lambda ls, vs: function(left(ls, vs), right(ls, vs))

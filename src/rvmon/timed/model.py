@@ -70,11 +70,12 @@ class UnaryOperation:
 
 @dataclass(frozen=True, slots=True)
 class BinaryOperation:
-    """An operator on two operands."""
+    """An operator on two operands; `span` is where a division stands."""
 
     op: BinaryOp
     left: Expression
     right: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

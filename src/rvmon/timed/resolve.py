@@ -357,6 +357,8 @@ def _binary(op: BinaryOp, left: Expression, right: Expression, span: Span) -> Ex
             return truth(other) if value else Constant(1)
         case BinaryOp.IMPLY, other, Constant(0):
             return UnaryOperation(UnaryOp.NOT, other)
+        case BinaryOp.DIV | BinaryOp.MOD, _, _:
+            return BinaryOperation(op, left, right, span)
         case _:
             return BinaryOperation(op, left, right)
 

@@ -295,3 +295,14 @@ def test_files_that_cannot_be_read_are_findings(tmp_path):
     (tmp_path / "binary.ta").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ModelError, match="is no text"):
         load_network(tmp_path / "binary.ta")
+
+
+@pytest.mark.parametrize("guard", ["1 / v > 0", "1 % v > 0"])
+def test_a_division_by_zero_has_its_place(guard):
+    """What only a run shows is told at the expression that it comes from."""
+    text = f"int[0,3] v automaton A {{ location a start a edge a -> a when {guard} }}"
+    with pytest.raises(ModelError) as caught:
+        verify(loads_network(text), "A[] A.a")
+    (found,) = caught.value.diagnostics
+    assert found.code == "TA007"
+    assert found.spans[0].span.text == guard.removesuffix(" > 0")
