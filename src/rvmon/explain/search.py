@@ -20,6 +20,9 @@ from rvmon.verdict.verdict import Verdict
 Goal = Callable[[Example], str | None]
 """What an example shows, or `None` if nothing that is looked for."""
 
+_PATIENCE = 6
+"""How often a run waits between two samples before each further wait counts as a sample."""
+
 
 def verdict_of(name: str) -> Goal:
     """The goal of an example for each verdict of a requirement."""
@@ -40,12 +43,21 @@ def difference_of(first: str, second: str) -> Goal:
 
 @dataclass(frozen=True, slots=True)
 class _Node:
-    """A run to be judged: its samples, its end, what is held then, and whether it waits there."""
+    """A run to be judged: its samples, its end, what is held then, and whether it waits there.
+
+    `waits` counts how often it waited since its last sample.
+    """
 
     samples: tuple[Sample, ...]
     end: int
     held: Valuation
     at_cut: bool = False
+    waits: int = 0
+
+    @property
+    def effort(self) -> int:
+        """How many samples there are; waiting on and on counts as much, lest nothing else comes."""
+        return len(self.samples) + max(0, self.waits - _PATIENCE)
 
 
 def shortest_examples(
@@ -58,7 +70,8 @@ def shortest_examples(
     """Look for the shortest example of each kind.
 
     All runs are judged by the monitor itself, so that an example shows what it is said to show.
-    They are tried in order of the number of samples, then of their end. A sample takes one of the
+    They are tried in order of the number of samples, then of their end; where waiting leads to ever
+    new situations, each wait beyond a few counts as a sample. A sample takes one of the
     valuations between which the formulas tell; it follows at a short step, or where a window opens
     or ends, or a tick before or after that.
 
@@ -81,7 +94,7 @@ def shortest_examples(
     runs = 0
 
     def add(node: _Node) -> None:
-        heappush(heap, (len(node.samples), node.end, _stir(node), next(number), node))
+        heappush(heap, (node.effort, node.end, _stir(node), next(number), node))
 
     for node in search.first():
         add(node)
@@ -137,7 +150,7 @@ class _Search:
         soon = cut - end <= self.gap and not node.at_cut
         for t in {end + self.step} if soon else {cut - 1, cut}:
             if end < t < TIME_LIMIT:
-                yield _Node(node.samples, t, node.held, at_cut=True)
+                yield _Node(node.samples, t, node.held, at_cut=True, waits=node.waits + 1)
 
     def _said(self, valuation: Valuation, held: Valuation) -> dict[str, Value]:
         """What a sample has to say: new values, all updates that matter, occurrences."""

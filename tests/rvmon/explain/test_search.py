@@ -133,3 +133,16 @@ def test_what_cannot_be_is_not_shown():
     found = examples_of(spec, budget=Budget(runs=50))
     assert set(found.examples) == {"P", "I"}
     assert found.runs <= 50
+
+
+def test_waiting_that_leads_ever_on_does_not_hide_the_other_runs():
+    """What starts again at all times is never at rest; runs of two samples are tried all the same.
+
+    What has to stay true as long as it is true fails when it ends, and can never pass.
+    """
+    head = "spec s\ntime held\nsignal a, b : bool\nrequirement R\n"
+    found = examples_of(rvmon.loads(head + " whenever a then for 1 s b").checked)
+    assert set(found.examples) == set(KINDS)
+    found = examples_of(rvmon.loads(head + " whenever a then for 1 s a").checked)
+    assert set(found.examples) == {"F", "NT", "I"}
+    assert len(found.examples["F"].samples) == 2
