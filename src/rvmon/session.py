@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.errors import SpecError, TraceError, UnknownNameError
+from rvmon.errors import SpecError, UnknownNameError
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -323,6 +323,7 @@ class Spec:
 
             return FileRecording(trace, self.schema, ordered=self.checked.max_delay is None)
         from rvmon.readers.columns import column_samples, columns_of
+        from rvmon.readers.pairs import pairs_of
         from rvmon.trace.sample import Sample, Trace
 
         if hasattr(trace, "names") and hasattr(trace, "end"):
@@ -332,24 +333,7 @@ class Spec:
             columns = columns_of(trace)
             names = frozenset(columns) & {*self.schema.signals, *self.schema.events}
             return Trace(tuple(column_samples(columns, self.schema, time)), names)
-        return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in _pairs(trace)))
-
-
-def _pairs(trace: Any) -> Iterator[tuple[Any, Mapping[str, Any]]]:
-    """The items of a trace, which have to be `(t, values)`."""
-    if not isinstance(trace, Iterable):
-        raise TraceError(
-            f"expected a path, columns by name or (t, values) pairs, found {type(trace).__name__}"
-        )
-    for number, item in enumerate(trace):
-        match item:
-            case [t, Mapping() as values]:
-                yield t, values
-            case _:
-                raise TraceError(
-                    f"item {number} of the trace: expected (t, values) with values by name, "
-                    f"found {item!r}"
-                )
+        return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in pairs_of(trace)))
 
 
 def _evaluate_here(

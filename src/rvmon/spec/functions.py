@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked import (
     Interval,
@@ -132,7 +132,6 @@ def _unknown(checker: Checker, call: Call) -> Diagnostic:
         return name_rules.unknown_function(
             call.function.span, name, f"put a space before the bracket: `{name} {rest[:20]}`"
         )
-    close = difflib.get_close_matches(name, [*FUNCTIONS, *checker.table.declared], 1, 0.6)
-    mend = f"did you mean `{close[0]}`?" if close else ""
+    mend = did_you_mean(name, [*FUNCTIONS, *checker.table.declared])
     mend = NEVER if name == "never" else mend
     return name_rules.unknown_function(call.function.span, name, mend)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 
 import lark
 
+from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Span
 from rvmon.spec.words import ITEM_WORDS, RESERVED
 
@@ -127,9 +127,9 @@ def _word_mend(found: str, accepted: set[str], parser: lark.Lark, before: str) -
     if "LBRACE" in accepted and found.lower() in _TYPES:
         return f"write `{_TYPES[found.lower()]}`"
     words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", _word_pattern(t, parser))]
-    close = difflib.get_close_matches(found, sorted({*words, *ITEM_WORDS}), 1, 0.75)
-    if close and close[0] != found:
-        return f"did you mean `{close[0]}`?"
+    close = nearest(found, sorted({*words, *ITEM_WORDS}), 0.75)
+    if close and close != found:
+        return f"did you mean `{close}`?"
     if "AND" not in accepted:
         return ""
     if found in ("within", "for"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from functools import cache
 from importlib import resources
@@ -12,6 +11,7 @@ import lark
 from lark.exceptions import UnexpectedInput, VisitError
 
 from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.build import Builder
 from rvmon.spec.expected import explain_unexpected
@@ -58,8 +58,7 @@ def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int |
     if place <= start or text[place - 1] != "\n":
         return None
     word = re.compile(r"\w+").match(text, place)
-    close = word and difflib.get_close_matches(word[0], ITEM_WORDS, 1, 0.75)
-    return place if close else None
+    return place if word and nearest(word[0], ITEM_WORDS, 0.75) else None
 
 
 def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic]]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rvmon.diagnostics.nearest import nearest
 from rvmon.spec.checked import Event, Signal, TimeModel
 from rvmon.spec.items import ConstItem, DefineItem
 from rvmon.spec.resolved import Declared, DeclaredEvent, DeclaredSignal
@@ -81,10 +81,8 @@ class Table:
 def close_name(table: Table, name: str, local: tuple[str, ...] = ()) -> str:
     """What to try in place of an unknown name, in words; empty if nothing is alike."""
     fields = [f"{e.name}.{f}" for e in table.events.values() for f in e.fields]
-    close = difflib.get_close_matches(name, [*local, *table.declared, *fields], 1, 0.6)
-    if not close:
-        return ""
-    return f"did you mean `{close[0]}`?{_described(table, close[0])}"
+    close = nearest(name, [*local, *table.declared, *fields])
+    return f"did you mean `{close}`?{_described(table, close)}" if close else ""
 
 
 def _described(table: Table, name: str) -> str:
@@ -106,5 +104,4 @@ def close_unit(part: str) -> str:
     singular = part.lower().removesuffix("s")
     if singular in _LONG_NAMES:
         return _LONG_NAMES[singular]
-    close = difflib.get_close_matches(part, list(unit_table()), 1, 0.6)
-    return close[0] if close else ""
+    return nearest(part, unit_table())

@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import product
 
 from rvmon.diagnostics import Span
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed import syntax
 from rvmon.timed.declare import Findings, Parts, refuse_double
 from rvmon.timed.guards import is_discrete, split_guard
@@ -24,7 +25,7 @@ from rvmon.timed.model import (
     Sync,
     Update,
 )
-from rvmon.timed.resolve import MAX_VALUES, Resolver, suggest, values_of
+from rvmon.timed.resolve import MAX_VALUES, Resolver, values_of
 from rvmon.timed.rules import model_error
 from rvmon.timed.scope import (
     ChannelSymbol,
@@ -81,7 +82,7 @@ def automaton_of(
 
 def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
     if name.name not in names:
-        mend = suggest(name.name, list(names))
+        mend = did_you_mean(name.name, list(names))
         raise model_error("TA002", f"no location `{name.name}`", name.span, mend)
     return names[name.name]
 

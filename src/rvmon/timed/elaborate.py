@@ -7,6 +7,7 @@ from dataclasses import replace
 from math import prod
 
 from rvmon.diagnostics import Severity, Source, Span
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed import syntax
 from rvmon.timed.automata import automaton_of, location_names
 from rvmon.timed.declare import Findings, Parts, declare, refuse_double
@@ -14,7 +15,7 @@ from rvmon.timed.guards import is_discrete
 from rvmon.timed.instantiate import processes_of
 from rvmon.timed.model import Automaton, Expression, LeadsToFormula, Network, Query, Signal
 from rvmon.timed.parse import parse_query
-from rvmon.timed.resolve import Resolver, suggest
+from rvmon.timed.resolve import Resolver
 from rvmon.timed.rules import finding, model_error
 from rvmon.timed.scope import AutomatonKey, AutomatonSymbol, Names, Scope
 from rvmon.timed.syntax import SignalText
@@ -85,7 +86,7 @@ def _with_constants(
         if isinstance(item, syntax.Declaration) and item.type.const and not item.sizes
     }
     for name in constants.keys() - known:
-        mend = suggest(name, sorted(known))
+        mend = did_you_mean(name, sorted(known))
         findings.add(finding("TA002", f"no constant `{name}` to set", None, mend))
     changed: list[syntax.Declared] = []
     for item in document.declarations:

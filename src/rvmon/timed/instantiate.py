@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed import syntax
 from rvmon.timed.declare import Findings, array_extent, check_range, refuse_double
-from rvmon.timed.resolve import MAX_VALUES, Resolver, suggest, values_of
+from rvmon.timed.resolve import MAX_VALUES, Resolver, values_of
 from rvmon.timed.rules import model_error
 from rvmon.timed.scope import (
     ChannelSymbol,
@@ -56,7 +57,7 @@ def processes_of(
     for name in system:
         with findings.collect():
             if name.name not in families:
-                mend = suggest(name.name, list(families))
+                mend = did_you_mean(name.name, list(families))
                 raise model_error("TA002", f"no automaton `{name.name}`", name.span, mend)
             processes += _instances(families[name.name], families, top, resolver)
     return processes
@@ -114,7 +115,7 @@ def _bind(
         return family, scope
     target = families.get(family.template.name)
     if target is None:
-        mend = suggest(family.template.name, list(families))
+        mend = did_you_mean(family.template.name, list(families))
         message = f"no template `{family.template.name}`"
         raise model_error("TA002", message, family.template.span, mend)
     if len(target.parameters) != len(family.arguments):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import assert_never
 
 from rvmon.diagnostics import Span
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import ModelError
 from rvmon.timed import syntax
 from rvmon.timed.evaluate import apply_binary, apply_unary
@@ -45,9 +45,6 @@ MAX_VALUES = 10_000
 
 MAX_UNROLLED = 100_000
 """The most conditions that the quantifiers of a model may stand for together."""
-
-MOST_NAMES = 1_000
-"""Names that a misspelt one is compared with."""
 
 INT16 = (-32768, 32767)
 """UPPAAL's `int` without a range."""
@@ -177,7 +174,7 @@ class Resolver:
                 if (reason := type_reason(written.name)) is not None:
                     raise model_error("TA016", reason[0], written.span, reason[1])
                 types = [n for n in scope.names() if isinstance(scope.find(n), TypeSymbol)]
-                mend = suggest(written.name, [*types, "int", "bool", "clock", "chan"])
+                mend = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
                 raise model_error("TA002", f"no type named `{written.name}`", written.span, mend)
             base = symbol.type
             return ResolvedType(
@@ -215,7 +212,9 @@ class Resolver:
                     raise refusal()  # why its declaration has no meaning is told there
                 if symbol is None:
                     candidates = [*scope.names(), *(n for n, _ in self.automata)]
-                    raise model_error("TA002", f"no name `{name}`", span, suggest(name, candidates))
+                    raise model_error(
+                        "TA002", f"no name `{name}`", span, did_you_mean(name, candidates)
+                    )
                 return symbol
             case syntax.Index(base, index, span):
                 position = self.expression(index, scope)
@@ -227,7 +226,7 @@ class Resolver:
                     return automaton.scope.symbols[name]
                 names = [*automaton.locations, *automaton.scope.symbols]
                 message = f"no location or variable `{name}` in this automaton"
-                raise model_error("TA002", message, span, suggest(name, names))
+                raise model_error("TA002", message, span, did_you_mean(name, names))
             case syntax.Call(name, _, span):
                 if any(name == known for known, _ in self.automata):
                     raise _no_value(span)
@@ -284,7 +283,9 @@ class Resolver:
                 key = ("", ())
         if key not in self.automata:
             families = {name for name, _ in self.automata}
-            mend = suggest(key[0], sorted(families)) if self.automata else "only queries see them"
+            mend = (
+                did_you_mean(key[0], sorted(families)) if self.automata else "only queries see them"
+            )
             raise model_error("TA002", f"no automaton `{span.text}`", span, mend)
         return self.automata[key]
 
@@ -393,9 +394,3 @@ def values_of(kind: ResolvedType, span: Span) -> range:
         mend = "give a small range: int[low, high]"
         raise model_error("TA019", f"more than {MAX_VALUES:,} values", span, mend)
     return range(kind.low, kind.high + 1)
-
-
-def suggest(name: str, candidates: list[str]) -> str:
-    """The name that was probably meant, as a sentence; empty if none is near."""
-    near = difflib.get_close_matches(name, candidates[:MOST_NAMES], n=1)
-    return f"did you mean `{near[0]}`?" if near else ""

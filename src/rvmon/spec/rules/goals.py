@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
 from rvmon.spec.rules.syntax import short
@@ -103,8 +103,7 @@ def unwanted_in_point(span: Span) -> Diagnostic:
 
 def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
     """A cross over something else."""
-    close = difflib.get_close_matches(name, known, 1, 0.6)
-    mend = f"did you mean `{close[0]}`?" if close else "declare it with `coverpoint`"
+    mend = did_you_mean(name, known, "declare it with `coverpoint`")
     return finding(CROSS, f"no coverpoint named `{name}`", span, mend=mend)
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
 
@@ -210,9 +210,8 @@ def unknown_constant(name: str, known: Sequence[str]) -> Diagnostic:
 
 def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:
     """A label that the signal does not take."""
-    close = difflib.get_close_matches(name, labels, 1, 0.6)
     listed = ", ".join(labels[:12]) + (", …" if len(labels) > 12 else "")
-    mend = f"did you mean `{close[0]}`?" if close else f"the labels are {listed}"
+    mend = did_you_mean(name, labels, f"the labels are {listed}")
     return finding(UNKNOWN_LABEL, f"no label named `{name}`", span, mend=mend)
 
 

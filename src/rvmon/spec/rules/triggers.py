@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
 from rvmon.spec.rules.syntax import short
@@ -263,8 +263,7 @@ def double_clause(word: str, here: Span, first: Span) -> Diagnostic:
 
 def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:
     """A policy that does not exist."""
-    close = difflib.get_close_matches(span.text, policies, 1, 0.6)
-    mend = f"did you mean `{close[0]}`?" if close else f"there are {', '.join(policies)}"
+    mend = did_you_mean(span.text, policies, f"there are {', '.join(policies)}")
     return finding(UNKNOWN_POLICY, f"no policy named `{short(span.text)}`", span, mend=mend)
 
 

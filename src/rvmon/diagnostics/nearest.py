@@ -1,0 +1,35 @@
+"""The name that was probably meant where one is unknown."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from itertools import islice
+
+MOST_NAMES = 1_000
+"""Names that a misspelt one is compared with."""
+
+
+def nearest(name: str, known: Iterable[str], likeness: float = 0.6) -> str:
+    """The known name that is most alike; empty if none is.
+
+    Args:
+        name: as written.
+        known: those that exist; the first thousand are looked at.
+        likeness: from 0 to 1, how much alike it has to be (`difflib.SequenceMatcher.ratio`).
+
+    >>> nearest("gaze_okay", ["gaze_ok", "pressure_ok"])
+    'gaze_ok'
+    """
+    found = difflib.get_close_matches(name, list(islice(known, MOST_NAMES)), 1, likeness)
+    return found[0] if found else ""
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
+    """A question after the known name that is most alike, else `otherwise`.
+
+    >>> did_you_mean("relased", ["released"])
+    'did you mean `released`?'
+    """
+    close = nearest(name, known)
+    return f"did you mean `{close}`?" if close else otherwise
