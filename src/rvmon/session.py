@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from rvmon.codegen.plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
-    from rvmon.monitor.robustness import Margins
+    from rvmon.monitor.measured import Margins
+    from rvmon.monitor.robustness import RobustnessMonitor
     from rvmon.spec.checked import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
@@ -94,22 +95,22 @@ class Spec:
         Raises:
             UnknownNameError: `only`, `engine`, `settle` or `sources` names what does not exist.
         """
+        from rvmon.monitor import build_monitor
+
+        given, chosen = self._sources(sources), self._chosen(only)
+        return build_monitor(
+            self._compiled, only=chosen, engine=engine, settle=settle, sources=given
+        )
+
+    def _sources(self, sources: Iterable[str] | None) -> frozenset[str] | None:
+        """The names that can arrive, all of which are declared."""
         given = None if sources is None else frozenset(sources)
         declared = [*self.schema.signals, *self.schema.events]
         unknown = sorted((given or frozenset()).difference(declared))
         if unknown:
             known = ", ".join(declared)
             raise UnknownNameError(f"no signal or event named `{unknown[0]}`: there are {known}")
-        chosen = self._chosen(only)
-        from rvmon.monitor import build_monitor
-
-        return build_monitor(
-            self._compiled,
-            only=chosen,
-            engine=engine,
-            settle=settle,
-            sources=given,
-        )
+        return given
 
     def _chosen(self, only: Iterable[str] | None) -> tuple[str, ...] | None:
         """The ids that were asked for, all of which there are."""
@@ -278,6 +279,7 @@ class Spec:
         time: str = "t",
         only: Iterable[str] | None = None,
         until: float | None = None,
+        streams: bool = True,
     ) -> Margins:
         """By how much a finished trace meets each requirement, or fails to, in base units.
 
@@ -290,6 +292,7 @@ class Spec:
             time: the time column of columns.
             only: ids of the requirements; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
+            streams: whether to give a figure per sample, too; they are kept in memory.
 
         Returns:
             The figures of the attempts by requirement and number, and as streams.
@@ -310,6 +313,33 @@ class Spec:
             only=chosen,
             sources=recording.names,
             end=recording.end if until is None else ticks_of_seconds(until),
+            streams=streams,
+        )
+
+    def robustness_monitor(
+        self,
+        *,
+        only: Iterable[str] | None = None,
+        settle: str = "now",
+        sources: Iterable[str] | None = None,
+        streams: bool = False,
+    ) -> RobustnessMonitor:
+        """Make an online monitor that gives figures of robustness; see `robustness`.
+
+        Args:
+            only: as for `monitor`; so are `settle` and `sources`.
+            settle: when a sample is taken for complete.
+            sources: the names that can arrive.
+            streams: whether to give a figure per sample as well as per attempt.
+
+        Raises:
+            UnknownNameError: `only`, `settle` or `sources` names what does not exist.
+        """
+        from rvmon.monitor.robustness import RobustnessMonitor
+
+        given, chosen = self._sources(sources), self._chosen(only)
+        return RobustnessMonitor(
+            self._compiled, only=chosen, settle=settle, sources=given, streams=streams
         )
 
     def recording(self, trace: Any, *, time: str = "t") -> Recording:

@@ -14,10 +14,11 @@ from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec, load
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample, Trace
+from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
+    from rvmon.monitor.measured import Measured
     from rvmon.trace.sample import Recording
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -116,12 +117,14 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
             _refuse_mismatch(recording, spec)
         end = None if options.until is None else ticks_of_seconds(options.until)
         report = None
-        if options.robustness:
-            report = _with_robustness(spec, recording, end, options, ordered=ordered)
-        elif end is None:
+        meter = None
+        if end is None and not options.robustness:
             report = spec.evaluate_file(trace, engine=options.engine, only=options.only)
         if report is None:
             samples = _up_to(end, shown_while_reading(recording), ordered=ordered)
+            if options.robustness:
+                meter = _Meter(spec, options.only, recording.names)
+                samples = meter.seeing(samples)
             if options.engine == "c":
                 cut = _Cut(samples, recording.names, end)
                 report = spec.evaluate(cut, engine="c", only=options.only)
@@ -132,6 +135,8 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
                 for sample in samples:
                     before.extend(monitor.step_ns(sample.t, sample.values))
                 report = monitor.finish_ns(end)
+        if meter is not None:
+            report = meter.told(report, end)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
@@ -142,15 +147,28 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
     return Judged(trace, _named(report, trace, recording.health()))
 
 
-def _with_robustness(
-    spec: Spec, recording: FileRecording, end: int | None, options: Options, *, ordered: bool
-) -> Report:
-    """The report with a figure for each attempt; the samples are kept, to be read twice."""
-    kept = tuple(_up_to(end, shown_while_reading(recording), ordered=ordered))
-    trace = Trace(kept, recording.names, end)
-    report = spec.evaluate(trace, engine=options.engine, only=options.only)
-    margins = spec.robustness(trace, only=options.only)
-    return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))
+class _Meter:
+    """Finds the robustness of attempts while their samples go by."""
+
+    def __init__(
+        self, spec: Spec, only: tuple[str, ...] | None, names: frozenset[str] | None
+    ) -> None:
+        self._monitor = spec.robustness_monitor(only=only, sources=names)
+        self._found: list[Measured] = []
+
+    def seeing(self, samples: Iterator[Sample]) -> Iterator[Sample]:
+        """The same samples, each measured once it was judged."""
+        for sample in samples:
+            yield sample
+            self._found.extend(self._monitor.step_ns(sample.t, sample.values))
+
+    def told(self, report: Report, end: int | None) -> Report:
+        """The report with a figure for each attempt."""
+        self._found.extend(self._monitor.finish_ns(end))
+        from rvmon.monitor.measured import margins_from
+
+        margins = margins_from(self._found)
+        return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))
 
 
 def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iterator[Sample]:

@@ -1,136 +1,127 @@
-"""The robustness of a formula at all positions, over the nodes of its delay network.
+"""One bound of the robustness of a formula while a trace goes by, over the nodes of its network.
 
-Source: SEMANTICS 5; Fainekos and Pappas 2009; Donze and Maler 2010.
+Source: SEMANTICS 5; Fainekos and Pappas 2009; Donze and Maler 2010; Deshmukh et al. 2017 (figures
+of a part of a trace).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from enum import Enum
-from typing import assert_never
+from copy import copy
 
-from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window, operands_of
+from rvmon.dataflow.cells import Cell, Horizon, Rest, cell_of
+from rvmon.dataflow.nodes import Junction, Plan, Sweep, Window, operands_of
 from rvmon.dataflow.pieces import FAR
 from rvmon.dataflow.positions import Positions
-from rvmon.dataflow.steps import (
-    INFINITE,
-    Steps,
-    at_positions,
-    constant,
-    extreme,
-    moved,
-    negated,
-    over_window,
-    replaced,
-    since,
-    until,
-)
+from rvmon.dataflow.steps import Step, Steps
+
+Value = tuple[int, float]
+"""A position, and the robustness there."""
 
 
-class Rest(Enum):
-    """What is assumed of the part of an operator that lies behind the end of the trace."""
-
-    LEAST = "least"
-    GREATEST = "greatest"
-    END = "end"
-    """The rule for the end: the greatest for an unbounded `R` that has begun, else the least."""
-
-
-@dataclass(frozen=True, slots=True)
-class Horizon:
-    """How much of a trace is known.
-
-    Attributes:
-        positions: all of them.
-        end: the last instant.
-        reached: the instant that time has come to.
-    """
-
-    positions: Positions
-    end: int
-    reached: int
-
-
-def robustness(plan: Plan, leaves: Sequence[Steps], known: Horizon, rest: Rest) -> Steps:
-    """The robustness of the plan's formula at each position.
+class Gauge:
+    """The robustness of a formula at the positions that it is asked for.
 
     Args:
         plan: of the formula.
-        leaves: the robustness of each of its leaves, in the plan's order.
-        known: how much of the trace is known.
-        rest: what is assumed of the rest.
+        gap: ticks between two positions; `None` if only samples are positions.
 
-    Cost: a pass over the steps per node.
+    Memory: what is not settled; see `rvmon.dataflow.cells`.
     """
-    evaluating = _Evaluating(known, rest)
-    given = {place: steps for (place, _), steps in zip(plan.leaves, leaves, strict=True)}
-    made: list[Steps] = []
-    for place, node in enumerate(plan.nodes):
-        if isinstance(node, Leaf):
-            made.append(given[place])
-        else:
-            made.append(evaluating.node(node, [made[operand] for operand in operands_of(node)]))
-    return made[-1]
+
+    def __init__(self, plan: Plan, gap: int | None) -> None:
+        self.plan = plan
+        self.horizon = Horizon(Positions(gap))
+        thin = _asked_alone(plan)
+        self._cells: list[Cell | None] = [
+            cell_of(node, thin=place in thin) for place, node in enumerate(plan.nodes)
+        ]
+        self._given = [-FAR - 1] * len(plan.nodes)
+        """Per node, the integer up to which it is settled."""
+        self._by_positions = {
+            operand
+            for node in plan.nodes
+            if isinstance(node, Window | Sweep)
+            for operand in operands_of(node)
+        }
+
+    def copy(self) -> Gauge:
+        """The same, independent from now on."""
+        made = copy(self)
+        own = self.horizon
+        made.horizon = Horizon(own.positions.copy(), own.now, own.reached, list(own.asked))
+        made._cells = [cell and cell.copy() for cell in self._cells]
+        made._given = list(self._given)
+        return made
+
+    def visit(self, position: int) -> None:
+        """Come to a position."""
+        self.horizon.positions.visit(position)
+
+    def ask(self, position: int) -> None:
+        """Want the value at a position of which the letter is not known yet."""
+        asked = self.horizon.asked
+        if not asked or asked[-1] < position:
+            asked.append(position)
+
+    def take(self, leaves: Sequence[Steps], now: int, reached: int) -> list[Value]:
+        """Let the leaves be known up to an integer.
+
+        Args:
+            leaves: the steps that go on from those before, in the order of the plan's leaves.
+            now: where they end.
+            reached: the instant that time has come to, ticks.
+
+        Returns:
+            The values that are asked for and became settled, in order.
+        """
+        self.horizon.now, self.horizon.reached = now, reached
+        found = self._spread(leaves)
+        settled = min((self._given[place] for place in self._by_positions), default=now)
+        self.horizon.positions.forget(settled + 1)
+        return found
+
+    def finish(self, leaves: Sequence[Steps], end: int, reached: int, rest: Rest) -> list[Value]:
+        """End the trace; returns the values that are asked for and were not settled.
+
+        Args:
+            leaves: as `take` has them, up to `FAR`.
+            end: the last instant, ticks.
+            reached: the instant that time has come to.
+            rest: what is assumed of what lies behind the end.
+        """
+        horizon = self.horizon
+        horizon.positions.end(end // horizon.positions.gap)
+        horizon.now, horizon.reached, horizon.end, horizon.rest = FAR, reached, end, rest
+        return self._spread(leaves)
+
+    def _spread(self, leaves: Sequence[Steps]) -> list[Value]:
+        fresh: list[Steps] = [()] * len(self.plan.nodes)
+        for (place, _), steps in zip(self.plan.leaves, leaves, strict=True):
+            fresh[place] = steps
+        for place, (node, cell) in enumerate(zip(self.plan.nodes, self._cells, strict=True)):
+            if cell is not None:
+                operands = [fresh[operand] for operand in operands_of(node)]
+                fresh[place] = cell.take(operands, self.horizon)
+            if fresh[place]:
+                self._given[place] = fresh[place][-1][1]
+        return self._answers(fresh[-1])
+
+    def _answers(self, steps: Sequence[Step]) -> list[Value]:
+        asked = self.horizon.asked
+        found: list[Value] = []
+        for _, right, value in steps:
+            while len(found) < len(asked) and asked[len(found)] <= right:
+                found.append((asked[len(found)], value))
+        del asked[: len(found)]
+        return found
 
 
-class _Evaluating:
-    def __init__(self, known: Horizon, rest: Rest) -> None:
-        self.known = known
-        self.rest = rest
-        self.pending = INFINITE if rest is Rest.GREATEST else -INFINITE
-
-    def node(self, node: Node, operands: Sequence[Steps]) -> Steps:
-        match node:
-            case Leaf():
-                raise ValueError("leaves are given")
-            case Junction(every=every):
-                result = operands[0]
-                for operand in operands[1:]:
-                    result = extreme(result, operand, greatest=not every)
-                return result
-            case Window():
-                return self._window(node, operands[0])
-            case Shift(offset=offset, opens=opens):
-                result = moved(operands[0], offset)
-                if self.rest is not Rest.END:
-                    return result
-                last = (self.known.end - opens) // self.known.positions.gap
-                return replaced(result, last + 1, FAR, -INFINITE)
-            case Sweep(dual=dual):
-                return self._sweep(node, *(negated(o) if dual else o for o in operands))
-            case _:
-                assert_never(node)
-
-    def _window(self, node: Window, operand: Steps) -> Steps:
-        nothing = INFINITE if node.every else -INFINITE
-        if node.low > node.high:
-            result = constant(nothing)
-        else:
-            there = at_positions(operand, self.known.positions, nothing)
-            result = over_window(there, node.low, node.high, greatest=not node.every)
-        if node.over is None:
-            return result
-        last = (self.known.reached - node.over) // self.known.positions.gap
-        ahead = constant(self.pending)
-        whole = extreme(result, ahead, greatest=not node.every)
-        return _joined(result, whole, last)
-
-    def _sweep(self, node: Sweep, left: Steps, right: Steps) -> Steps:
-        """As `until` or `since`, of negated operands for a dual one, whose result is negated."""
-        stays = at_positions(left, self.known.positions, INFINITE)
-        meets = at_positions(right, self.known.positions, -INFINITE)
-        if not node.future:
-            found = since(stays, meets)
-        else:
-            kept = self.rest is Rest.END and node.kept
-            tail = INFINITE if kept else self.pending
-            found = until(stays, meets, -tail if node.dual else tail)
-        return negated(found) if node.dual else found
-
-
-def _joined(first: Steps, second: Steps, last: int) -> Steps:
-    """One function up to `last`, another one behind it."""
-    before = [(left, min(right, last), value) for left, right, value in first if left <= last]
-    behind = [(max(left, last + 1), r, value) for left, r, value in second if r > last]
-    return [*before, *behind]
+def _asked_alone(plan: Plan) -> set[int]:
+    """The nodes whose value matters only at the positions that the formula is asked for at."""
+    alone, elsewhere = {len(plan.nodes) - 1}, set[int]()
+    for place in range(len(plan.nodes) - 1, -1, -1):
+        node = plan.nodes[place]
+        joins = isinstance(node, Junction) and place in alone - elsewhere
+        (alone if joins else elsewhere).update(operands_of(node))
+    return alone - elsewhere

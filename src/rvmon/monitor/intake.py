@@ -10,6 +10,9 @@ from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT, format_ticks
 
+WAYS_TO_SETTLE = ("now", "next")
+"""When a sample is taken for complete: at once, or when another stamp follows."""
+
 MOST_HELD = 65_536
 """So many samples at most wait for late ones; with more, the oldest are judged early."""
 

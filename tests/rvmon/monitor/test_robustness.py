@@ -1,8 +1,13 @@
 """Robustness as users ask for it."""
 
+import doctest
+from collections import deque
+from pathlib import Path
+
 import pytest
 
 import rvmon
+from rvmon.errors import UnknownNameError
 
 HEAD = "spec s\nsignal x : real [cm]\nsignal p : bool\nevent e\nrequirement R1\n  "
 INFINITE = float("inf")
@@ -72,3 +77,99 @@ def test_until_decides_how_much_is_looked_at():
     samples = [(0, {"x": 3, "e": True})]
     found = margins("upon e then within 3 s x > 10 cm", samples, until=2.0).attempts["R1", 1]
     assert (found.low, found.high) == (pytest.approx(-0.07), INFINITE)
+
+
+def online(requirement, **options):
+    """A monitor of a requirement that gives figures."""
+    return rvmon.loads(HEAD + requirement + "\n").robustness_monitor(**options)
+
+
+def test_a_figure_is_given_as_soon_as_its_window_is_over():
+    """What is known of an open attempt draws closer, until nothing can change it."""
+    monitor = online("upon e then within 3 s x > 10 cm")
+    assert monitor.step(0, {"x": 2, "e": True}) == []
+    assert monitor.step(1, {"x": 12}) == []
+    [known] = monitor.open
+    assert (known.number, known.robustness.low) == (1, pytest.approx(0.02))
+    assert known.robustness.high == INFINITE
+    [found] = monitor.step(4, {"x": 50})
+    assert (found.requirement, found.number, found.t) == ("R1", 1, 0)
+    assert found.robustness.low == found.robustness.high == pytest.approx(0.02)
+    assert monitor.open == []
+    assert monitor.finish() == []
+
+
+def test_time_alone_settles_a_figure():
+    """A window is over when time has passed its end, whether or not a sample came."""
+    monitor = online("upon e then within 3 s x > 10 cm")
+    monitor.step(0, {"x": 2, "e": True})
+    assert monitor.advance(3) == []
+    [found] = monitor.advance(3.5)
+    assert found.robustness.high == pytest.approx(-0.08)
+
+
+def test_a_stream_is_given_as_it_goes():
+    """Each position of a stream is settled when its own window is over."""
+    monitor = online("always within 1 s x > 10 cm", streams=True)
+    found = [one for t in range(4) for one in monitor.step(t, {"x": 10 + t})]
+    ends = monitor.finish()
+    assert [one.number for one in found] == []
+    assert [one.t for one in ends if one.number is None] == [n * 10**9 for n in range(4)]
+    monitor = online("upon e then within 1 s x > 10 cm", streams=True)
+    found = [one for t in range(4) for one in monitor.step(t, {"x": 10 + t})]
+    assert [(one.t, one.robustness.low) for one in found] == [
+        (0, pytest.approx(0.01)),
+        (10**9, pytest.approx(0.02)),
+    ]
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+@pytest.mark.parametrize(
+    "requirement",
+    [
+        "upon e then within 50 ms x > 10 cm",
+        "upon e then (x > 1 cm) until (x > 20 cm)",
+        "upon e then (always x > 0 cm) and within 50 ms p",
+        "always within 50 ms x > 10 cm",
+        "upon e then immediately once[0, 50 ms] x > 10 cm",
+    ],
+)
+def test_memory_does_not_grow_with_the_run(time, requirement):
+    """What is kept for one open attempt after a long run is what was kept after a short one."""
+    text = HEAD.replace("spec s\n", f"spec s\ntime {time}\n") + requirement + "\n"
+    monitor = rvmon.loads(text).robustness_monitor()
+    sizes = []
+    for step in range(900):
+        monitor.step_ns(step * 5_000_000, {"x": step * 7 % 13, "e": step == 0, "p": False})
+        if step in (299, 899):
+            sizes.append(kept_by(monitor))
+    assert sizes[1] <= sizes[0] + 20
+
+
+def kept_by(value, seen=None):
+    """How many entries containers hold, all that a run refers to."""
+    seen = set() if seen is None else seen
+    if id(value) in seen or isinstance(value, str | int | float | type):
+        return 0
+    seen.add(id(value))
+    if isinstance(value, dict):
+        return sum(1 + kept_by(one, seen) for one in value.values())
+    if isinstance(value, list | tuple | set | deque):
+        return sum(1 + kept_by(one, seen) for one in value)
+    if type(value).__module__.startswith("rvmon"):
+        names = [*getattr(value, "__dict__", ()), *getattr(type(value), "__slots__", ())]
+        return sum(kept_by(getattr(value, name, None), seen) for name in names)
+    return 0
+
+
+def test_a_way_to_settle_that_there_is_not_is_refused():
+    """The message names the ways there are."""
+    with pytest.raises(UnknownNameError, match="now, next"):
+        online("always p", settle="soon")
+
+
+def test_the_page_about_it_is_true():
+    """What the reference shows of the online monitor is what it gives."""
+    page = Path(__file__).parents[3] / "docs" / "reference" / "robustness.md"
+    failures, tried = doctest.testfile(str(page), module_relative=False)
+    assert (failures, tried > 4) == (0, True)

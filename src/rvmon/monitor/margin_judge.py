@@ -1,0 +1,237 @@
+"""Open attempts whose robustness is followed in the place of their truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from rvmon.automaton.location import PASSED
+from rvmon.automaton.machine import INFINITY
+from rvmon.dataflow.cells import Rest
+from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.leaves import reads
+from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
+from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.pieces import FAR
+from rvmon.dataflow.robust import Gauge
+from rvmon.dataflow.steps import Step, add
+from rvmon.formula.core import Constant, Literal, Sense
+from rvmon.formula.state import FALSE, TRUE
+from rvmon.monitor.bench import Bench, Clerk, Open
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.measured import Robustness
+from rvmon.spec.checked import CheckedSpec
+from rvmon.trace.sample import Scalar
+
+_SIDES = {Rest.LEAST: 0, Rest.GREATEST: 1, Rest.END: 0}
+
+
+class Gauger(Clerk, Protocol):
+    """Keeps the figures."""
+
+    def settled(self, judge: MarginJudge, attempt: Open, found: Robustness) -> None:
+        """Take the figure of an attempt that nothing can change any more."""
+
+    def passed(self, judge: MarginJudge, t: int, found: Robustness) -> None:
+        """Take the figure of a position that nothing can change any more."""
+
+
+class MarginJudge(Bench):
+    """Follows the robustness of its attempts: its least value, and its greatest if that differs.
+
+    Args:
+        compiled: the requirement.
+        plan: of the nodes of what it owes.
+        flow: gives what is read.
+        clerk: takes the figures.
+        captured: values of `let` and `for each`.
+        spec: gives the units.
+        every: whether each position is measured, and not those of attempts alone.
+
+    Memory: what is not settled of the formula's operators; nothing while nothing is asked for.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledRequirement,
+        plan: Plan,
+        flow: Flow,
+        clerk: Gauger,
+        captured: Mapping[str, Scalar],
+        spec: CheckedSpec,
+        *,
+        every: bool,
+    ) -> None:
+        super().__init__(compiled, flow, clerk, captured)
+        self.restless = True
+        self.gauger = clerk
+        self.every = every
+        self._gap = flow.gap or 1
+        self._plan = plan
+        self._readers = [self._reader(core, spec) for _, core in plan.leaves]
+        self._least: Gauge | None = None
+        self._greatest: Gauge | None = None
+        self._own: list[Margin] = []
+        """What the leaves are at the position that was read last."""
+        self._later: list[Margin] = []
+        """What they are behind it."""
+        self._at = -FAR
+        """That position."""
+        self._known = -FAR - 1
+        """The integer up to which the gauges know the leaves."""
+        self._lows: dict[int, float] = {}
+        self._highs: dict[int, float] = {}
+
+    def _reader(
+        self, core: Literal | Constant, spec: CheckedSpec
+    ) -> tuple[Callable[[], Margin], Margin | None]:
+        """Reads a leaf; and what it is at the next position, if that is not the same."""
+        if isinstance(core, Constant):
+            fixed = OF_TRUTH[TRUE if core.value else FALSE]
+            return (lambda: fixed), None
+        flow, state = self.flow, core.proposition
+        place = flow.graph.index[state]
+
+        def truth() -> int:
+            return flow.values[place]
+
+        if core.sense is Sense.KNOWN_FALSE or state.leaf is None:
+            return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
+        read = margin_reader(state.leaf, truth, flow.inputs, self.captured, spec)
+        about = reads(state.leaf)
+        passes = about.momentary and not about.names & flow.inputs.absent
+        later = OF_TRUTH[FALSE] if passes else None
+        if core.sense is Sense.TRUE:
+            return read, later
+        return (lambda: _negated(read())), None if later is None else _negated(later)
+
+    def begin(self, t: int, triggered: int) -> Open:
+        """Start an attempt at the position `t`, which the flow is at."""
+        if self.position < t or self._least is None:
+            self.position = t
+            self._enter(t // self._gap)
+        self._ask(t // self._gap)
+        attempt = Open(triggered, (PASSED + 1, (t,)), ())
+        self.attempts.append(attempt)
+        return attempt
+
+    def visit(self, t: int) -> None:
+        """Note what all leaves are at the position `t`, which the flow is at."""
+        self.position = t
+        position = t // self._gap
+        self._pass(position - 1, t)
+        if self.every or self._plan.looks_back or self._least is not None:
+            self._enter(position)
+        if self.every:
+            self._ask(position)
+
+    def _enter(self, position: int) -> None:
+        """Read the leaves at a position; up to the one before it, they are known."""
+        self._at = position
+        self._own = [read() for read, _ in self._readers]
+        self._later = [
+            own if later is None else later
+            for own, (_, later) in zip(self._own, self._readers, strict=True)
+        ]
+        if self._least is None:
+            self._least = Gauge(self._plan, self.flow.gap)
+            self._known = -FAR - 1
+        if self._greatest is None and any(low != high for low, high in self._own):
+            self._greatest = self._least.copy()
+        for gauge in self._gauges:
+            gauge.visit(position)
+
+    @property
+    def _gauges(self) -> list[Gauge]:
+        return [gauge for gauge in (self._least, self._greatest) if gauge is not None]
+
+    def _ask(self, position: int) -> None:
+        for gauge in self._gauges:
+            gauge.ask(position)
+
+    def settle(self, reached: int) -> None:
+        """Tell what has become known, all positions up to an instant having been visited."""
+        if self.compiled.obligation.trigger is None:
+            return  # The last position may be asked for when all is over.
+        seen = reached if self.position == reached else reached - 1
+        self._pass(seen // self._gap, reached)
+
+    def _pass(self, now: int, reached: int) -> None:
+        """Let the leaves be known up to an integer."""
+        if self._least is None or now < self._known:
+            return
+        lows = self._least.take(self._steps(now, 0), now, reached)
+        self._lows.update(lows)
+        if self._greatest is not None:
+            lows_or_highs = self._greatest.take(self._steps(now, 1), now, reached)
+        else:
+            lows_or_highs = lows
+        self._highs.update(lows_or_highs)
+        self._known = now
+        for position in sorted(self._lows.keys() & self._highs.keys()):
+            low, high = self._lows.pop(position), self._highs.pop(position)
+            self._tell(position * self._gap, Robustness(low, high, low))
+        if not (self.attempts or self.every or self._plan.looks_back):
+            self._least = self._greatest = None
+
+    def _tell(self, t: int, found: Robustness) -> None:
+        while self.attempts and self.attempts[0].token[1][0] == t:
+            self.gauger.settled(self, self.attempts.pop(0), found)
+        if self.every:
+            self.gauger.passed(self, t, found)
+
+    def _steps(self, last: int, side: int) -> list[list[Step]]:
+        """The leaves behind what is known, up to an integer."""
+        at = self._at
+        made = []
+        for own, later in zip(self._own, self._later, strict=True):
+            steps: list[Step] = []
+            add(steps, self._known + 1, min(at, last), own[side])
+            add(steps, max(self._known, at) + 1, last, later[side])
+            made.append(steps)
+        return made
+
+    def figures(self, end: int, reached: int) -> dict[int, Robustness]:
+        """The robustness at each instant that is asked for, if the trace has ended.
+
+        Args:
+            end: the last instant of the trace.
+            reached: the instant that time has come to.
+        """
+        if self._least is None:
+            return {}
+        found: dict[Rest, dict[int, float]] = {}
+        for rest, side in _SIDES.items():
+            gauge = self._least if self._greatest is None or not side else self._greatest
+            told = self._highs if side else self._lows
+            values = gauge.copy().finish(self._steps(FAR, side), end, reached, rest)
+            found[rest] = {**told, **dict(values)}
+        return {
+            position * self._gap: Robustness(low, found[Rest.GREATEST][position], kept)
+            for (position, low), kept in zip(
+                sorted(found[Rest.LEAST].items()), _in_order(found[Rest.END]), strict=True
+            )
+        }
+
+    def pass_to(self, t: int) -> None:
+        """Nothing is decided by time here."""
+
+    def reach(self, t: int) -> None:
+        """Nothing is decided by time here."""
+
+    @property
+    def next_due(self) -> int:
+        """Nothing is decided by time here."""
+        return INFINITY
+
+    def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
+        """Nothing is judged here."""
+        raise NotImplementedError
+
+
+def _in_order(values: Mapping[int, float]) -> list[float]:
+    return [value for _, value in sorted(values.items())]
+
+
+def _negated(margin: Margin) -> Margin:
+    return -margin[1], -margin[0]

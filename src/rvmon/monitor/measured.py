@@ -1,0 +1,90 @@
+"""Figures of robustness."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Robustness:
+    """How far a formula is from the other truth value, in base units.
+
+    Attributes:
+        low: the least that it can be, whatever is not known and whatever had come after the end.
+        high: the greatest.
+        kept: the least, if all is well behind the end that only has to be kept up.
+    """
+
+    low: float
+    high: float
+    kept: float
+
+    def of(self, attempt: Attempt) -> float | None:
+        """The figure for a decided attempt: its distance from the other verdict, at least."""
+        if self.low == self.high:
+            return self.low
+        match attempt.decision, attempt.verdict:
+            case Decision.HELD_TO_END, _:
+                return self.kept
+            case Decision.PREFIX, Verdict.PASS:
+                return self.low
+            case Decision.PREFIX, Verdict.FAIL:
+                return self.high
+            case _:
+                return None
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A figure of a run.
+
+    Attributes:
+        requirement: its id.
+        number: of the attempt; `None` for what the requirement owes at a position, as in a stream.
+        t: the instant of the trigger, or of the position, ticks.
+        robustness: the figure.
+    """
+
+    requirement: str
+    number: int | None
+    t: int
+    robustness: Robustness
+
+
+Key = tuple[str, int]
+"""Requirement and number of an attempt."""
+
+
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """The robustness of all attempts of a run.
+
+    Attributes:
+        attempts: by requirement and number.
+        streams: by requirement, at the instants of samples: the robustness of what it owes there.
+            Requirements with `let` or `for each` have none: it would depend on the attempt.
+    """
+
+    attempts: Mapping[Key, Robustness]
+    streams: Mapping[str, Sequence[tuple[int, Robustness]]]
+
+    def of(self, attempt: Attempt) -> Attempt:
+        """An attempt with its figure."""
+        found = self.attempts.get((attempt.requirement, attempt.number))
+        return attempt if found is None else replace(attempt, robustness=found.of(attempt))
+
+
+def margins_from(found: Iterable[Measured]) -> Margins:
+    """The figures of a run, by what they are of."""
+    attempts: dict[Key, Robustness] = {}
+    streams: dict[str, list[tuple[int, Robustness]]] = {}
+    for one in found:
+        if one.number is None:
+            streams.setdefault(one.requirement, []).append((one.t, one.robustness))
+        else:
+            attempts[one.requirement, one.number] = one.robustness
+    return Margins(attempts, streams)
