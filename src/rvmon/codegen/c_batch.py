@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.codegen.c_build import built
+from rvmon.codegen.c_build import NATIVE, built
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_rows import value_type
+from rvmon.codegen.c_samples import value_type
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
@@ -80,7 +80,7 @@ class BatchLibrary:
         self.names = Names(plan)
         self.plan = plan
         made = c_files(plan)
-        flags = ["-O3" if optimised else "-O0", "-shared", "-fPIC"]
+        flags = [*(("-O3", NATIVE) if optimised else ("-O0",)), "-shared", "-fPIC"]
         path = built(made.texts, [f"{made.prefix}_batch.c"], ".so", flags)
         library = ctypes.CDLL(str(path))
         address, number = ctypes.c_void_p, ctypes.c_int64

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -13,7 +14,11 @@ from pathlib import Path
 
 from rvmon.errors import RvmonError
 
-FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic")
+FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-ffp-contract=off")
+"""Of every build: numbers are computed as the specification says, product and sum apart."""
+
+NATIVE = "-march=native"
+"""Has the compiler use all that this machine's processor can do."""
 
 
 def compiler() -> str:
@@ -50,6 +55,16 @@ def cache_directory() -> Path:
     return path
 
 
+def processor() -> str:
+    """What tells this machine's processor from others that share the cache."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return repr(platform.uname())
+    marks = ("model name", "flags", "Features", "CPU part", "isa")
+    return "\n".join(dict.fromkeys(line for line in lines if line.startswith(marks)))
+
+
 def built(
     texts: Mapping[str, str],
     sources: Sequence[str],
@@ -70,7 +85,8 @@ def built(
         RvmonError: there is no compiler, or it failed.
     """
     command = [compiler(), *FLAGS, *flags]
-    key = hashlib.sha256(repr((sorted(texts.items()), command, sys.platform)).encode()).hexdigest()
+    machine = processor() if NATIVE in flags else sys.platform
+    key = hashlib.sha256(repr((sorted(texts.items()), command, machine)).encode()).hexdigest()
     target = cache_directory() / f"{key[:40]}{suffix}"
     if target.exists():
         return target
@@ -79,8 +95,15 @@ def built(
             (Path(scratch) / name).write_text(text, encoding="utf-8")
         made = Path(scratch) / "made"
         words = [*command, *sources, "-o", str(made), *libraries]
-        done = subprocess.run(words, cwd=scratch, capture_output=True, text=True, check=False)  # noqa: S603
+        done = _run(words, scratch)
+        if done.returncode and NATIVE in words:  # not every compiler has it for every processor
+            words.remove(NATIVE)
+            done = _run(words, scratch)
         if done.returncode:
             raise RvmonError(f"the C compiler failed: {' '.join(words)}\n{done.stderr}")
         made.replace(target)  # atomic: others see the whole file or none
     return target
+
+
+def _run(words: Sequence[str], folder: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)  # noqa: S603

@@ -9,7 +9,7 @@ import numpy as np
 
 from rvmon.codegen.c_batch import NO, UNKNOWN, YES, Column
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_rows import value_type
+from rvmon.codegen.c_samples import value_type
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.time import format_ticks

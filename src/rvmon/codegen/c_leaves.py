@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import assert_never
 
-from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_names import Memory, Names, memory_of
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import events_of
 from rvmon.formula.state import Elapsed, Leaf, State, StateOp
@@ -70,14 +70,21 @@ def _value(plan: Plan, names: Names, place: int, state: State) -> str:
         case StateOp.PREVIOUS:
             return f"previous(m, {place}, {names.memory[place]}, t, {operands[0]})"
         case StateOp.SINCE:
-            high = "NEVER" if state.high is None else _integer(state.high)
-            bounds = f"{_integer(state.low)}, {high}"
-            slot = names.memory[place]
-            return f"since(m, {place}, {slot}, t, {operands[0]}, {operands[1]}, {bounds})"
+            return _since(names, place, state, ", ".join(operands))
         case StateOp.LEAF:
             raise ValueError("a leaf reads something")
         case _:
             assert_never(state.op)
+
+
+def _since(names: Names, place: int, state: State, operands: str) -> str:
+    slot = names.memory[place]
+    memory = memory_of(state)
+    if memory is Memory.SEEN:
+        return f"since_ever(m, {slot}, {operands})"
+    high = "NEVER" if state.high is None else _integer(state.high)
+    function = "since_edge" if memory is Memory.EDGE else "since"
+    return f"{function}(m, {place}, {slot}, t, {operands}, {_integer(state.low)}, {high})"
 
 
 def leaf_value(names: Names, leaf: Leaf) -> str:

@@ -3,10 +3,30 @@
 from __future__ import annotations
 
 import re
+from enum import Enum
 from functools import cached_property
 
 from rvmon.codegen.plan import Plan
-from rvmon.formula.state import StateOp
+from rvmon.formula.state import State, StateOp
+
+
+class Memory(Enum):
+    """What a node remembers: a truth value, an instant, stretches of instants."""
+
+    SEEN = "seen"
+    EDGE = "edge"
+    PAST = "past"
+
+
+def memory_of(state: State) -> Memory | None:
+    """What a state formula has to remember; `None`: nothing."""
+    if state.op is StateOp.PREVIOUS:
+        return Memory.SEEN
+    if state.op is not StateOp.SINCE:
+        return None
+    if state.low == 0:
+        return Memory.SEEN if state.high is None else Memory.EDGE
+    return Memory.EDGE if state.high is None else Memory.PAST
 
 
 class Names:
@@ -70,15 +90,16 @@ class Names:
 
     @cached_property
     def memory(self) -> dict[int, int]:
-        """For each node that remembers, the number of its memory; `since` and `previous` apart."""
+        """For each node that remembers, the number of its memory; each kind is counted apart."""
         slots: dict[int, int] = {}
-        counts = {StateOp.SINCE: 0, StateOp.PREVIOUS: 0}
+        counts = dict.fromkeys(Memory, 0)
         for place, state in enumerate(self.plan.graph.nodes):
-            if state.op in counts:
-                slots[place] = counts[state.op]
-                counts[state.op] += 1
+            kind = memory_of(state)
+            if kind is not None:
+                slots[place] = counts[kind]
+                counts[kind] += 1
         return slots
 
-    def identifier(self, name: str) -> str:
-        """A name as part of a C identifier."""
-        return re.sub(r"[^A-Za-z0-9]", "_", name).upper()
+    def memories(self, kind: Memory) -> int:
+        """How many memories of a kind there are."""
+        return sum(memory_of(state) is kind for state in self.plan.graph.nodes)

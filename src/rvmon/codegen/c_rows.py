@@ -6,11 +6,17 @@ from collections.abc import Iterator
 
 from rvmon.codegen.c_leaves import real
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_samples import is_instant, read_events, read_signals
+from rvmon.codegen.c_samples import (
+    ROW,
+    is_instant,
+    read_events,
+    read_signals,
+    take_source,
+    value_type,
+)
 from rvmon.codegen.c_text import comment
 from rvmon.codegen.plan import Plan
 from rvmon.spec.checked import Compare, CompareOp, Literal, SignalValue
-from rvmon.trace.schema import Kind
 
 _MOST_BITS = 7
 _MIRRORED = {
@@ -23,19 +29,16 @@ _MIRRORED = {
 }
 
 
-def value_type(plan: Plan, name: str) -> str:
-    """The C type of a signal's column."""
-    return "uint8_t" if plan.spec.signals[name].type.kind is Kind.BOOL else "double"
-
-
 def rows_source(plan: Plan, names: Names) -> Iterator[str]:
-    """The functions `mark_rows`, `refresh` and `fill` of the batch source."""
+    """The functions `mark_rows`, `refresh` and `take_row` of the batch source."""
     for name in read_signals(plan):
         if not _every(plan, name):
             yield from _code(plan, names, name)
     yield from _marking(plan, names)
     yield from _refreshing(plan, names)
-    yield from _filling(plan, names)
+    if read_signals(plan):
+        yield from _saying(names)
+    yield from take_source(plan, names, ROW)
 
 
 def _every(plan: Plan, name: str) -> bool:
@@ -162,31 +165,15 @@ def _refreshing(plan: Plan, names: Names) -> Iterator[str]:
     yield "}"
 
 
-def _filling(plan: Plan, names: Names) -> Iterator[str]:
+def _saying(names: Names) -> Iterator[str]:
     prefix = names.prefix
     yield ""
-    yield "/* A row as a sample. */"
-    yield f"static void fill(const batch_in *in, int64_t row, {prefix}_sample *sample)"
+    yield "/* What a row says of a signal. */"
+    yield "static uint8_t said(const void *column, const uint8_t *states, int64_t row)"
     yield "{"
-    for name in plan.signals:
-        number = names.signal(name)
-        yield f"    if (in->value[{number}] != NULL) {{ /* {comment(name)} */"
-        yield f"        const {value_type(plan, name)} *x = in->value[{number}];"
-        yield f"        const uint8_t *state = in->signal[{number}];"
-        yield f"        sample->value[{number}] = (double)x[row];"
-        yield f"        sample->signal[{number}] ="
-        yield f"            (state == NULL) ? (uint8_t){prefix}_YES : state[row];"
-        yield "    }"
-    for name in plan.events:
-        number = names.event(name)
-        yield f"    if (in->event[{number}] != NULL) {{ /* {comment(name)} */"
-        yield f"        sample->event[{number}] = in->event[{number}][row];"
-        yield "    }"
-    for number in names.fields.values():
-        yield f"    if (in->field[{number}] != NULL) {{"
-        yield f"        sample->field[{number}] = in->field[{number}][row];"
-        yield "    }"
-    yield "    (void)in;"
-    yield "    (void)row;"
-    yield "    (void)sample;"
+    yield f"    uint8_t state = (uint8_t){prefix}_NOTHING;"
+    yield "    if (column != NULL) {"
+    yield f"        state = (states == NULL) ? (uint8_t){prefix}_YES : states[row];"
+    yield "    }"
+    yield "    return state;"
     yield "}"

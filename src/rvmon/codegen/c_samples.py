@@ -1,35 +1,87 @@
-"""How a compiled monitor takes the updates of a sample."""
+"""How a compiled monitor takes the updates of an instant: of a sample, or of a row of columns."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from rvmon.codegen.c_leaves import leaf_value
 from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_nodes import group_count, groups_of
 from rvmon.codegen.c_text import comment
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.state import Leaf
 from rvmon.spec.checked import Compare, SignalAtom
+from rvmon.trace.schema import Kind
 
 
-def take_source(plan: Plan, names: Names) -> Iterator[str]:
-    """The function `take` of the source."""
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where generated C finds the updates of an instant, as expressions of a number `n`.
+
+    Attributes:
+        name: of the function.
+        arguments: types and names of what it gets beside the instant.
+        signal: what is said of a signal.
+        value: its value, if one is given; of the C type `kind` in a column.
+        event: what is said of an event.
+        field: the value of a payload's field.
+        chosen: whether the instant is one at which something is known to change.
+    """
+
+    name: str
+    arguments: tuple[tuple[str, str], ...]
+    signal: str
+    value: str
+    event: str
+    field: str
+    chosen: bool
+
+
+SAMPLE = Source(
+    name="take",
+    arguments=(("const {prefix}_sample *", "sample"),),
+    signal="sample->signal[{n}]",
+    value="sample->value[{n}]",
+    event="sample->event[{n}]",
+    field="sample->field[{n}]",
+    chosen=False,
+)
+
+ROW = Source(
+    name="take_row",
+    arguments=(("const batch_in *", "in"), ("int64_t ", "row")),
+    signal="said(in->value[{n}], in->signal[{n}], row)",
+    value="(double)((const {kind} *)in->value[{n}])[row]",
+    event="(in->event[{n}] == NULL) ? (uint8_t){prefix}_NOTHING : in->event[{n}][row]",
+    field="(in->field[{n}] == NULL) ? unknown_value() : in->field[{n}][row]",
+    chosen=True,
+)
+
+
+def take_source(plan: Plan, names: Names, source: Source) -> Iterator[str]:
+    """A function that takes the updates of an instant and tells whether something may change."""
+    arguments = ", ".join(
+        kind.format(prefix=names.prefix) + name for kind, name in source.arguments
+    )
     yield ""
-    yield "/* Take the updates of a sample; tells whether something may have changed. */"
-    yield "static void soil(monitor *m, int32_t place);"
-    yield f"static bool take(monitor *m, int64_t t, const {names.prefix}_sample *sample)"
+    yield f"static bool {source.name}(monitor *m, int64_t t, {arguments})"
     yield "{"
     yield "    bool dirty = false;"
     for name in read_signals(plan):
-        yield from (f"    {line}" for line in _take_signal(plan, names, name))
+        yield from (f"    {line}" for line in _take_signal(plan, names, name, source))
     for name in read_events(plan):
-        yield from (f"    {line}" for line in _take_event(plan, names, name))
-    yield "    (void)t;"
-    yield "    (void)m;"
-    yield "    (void)sample;"
+        yield from (f"    {line}" for line in _take_event(plan, names, name, source))
+    for argument in ("t", "m", *(name for _, name in source.arguments)):
+        yield f"    (void){argument};"
     yield "    return dirty;"
     yield "}"
+
+
+def value_type(plan: Plan, name: str) -> str:
+    """The C type of a signal's column."""
+    return "uint8_t" if plan.spec.signals[name].type.kind is Kind.BOOL else "double"
 
 
 def read_signals(plan: Plan) -> list[str]:
@@ -58,51 +110,74 @@ def is_instant(plan: Plan, name: str, leaf: Leaf | None) -> bool:
     )
 
 
-def _take_signal(plan: Plan, names: Names, name: str) -> Iterator[str]:
+def _take_signal(plan: Plan, names: Names, name: str, source: Source) -> Iterator[str]:
     prefix = names.prefix
     number = names.signal(name)
     uses = plan.uses.get(name)
     places = plan.graph.by_name.get(name, ())
     stale_after = plan.spec.signals[name].stale_after
-    yield f"if (sample->signal[{number}] != {prefix}_NOTHING) {{ /* {comment(name)} */"
-    yield f"    const bool known = sample->signal[{number}] == {prefix}_YES;"
-    yield f"    const double value = known ? sample->value[{number}] : unknown_value();"
+    given = source.value.format(n=number, kind=value_type(plan, name))
+    yield "{" + f" /* {comment(name)} */"
+    yield f"    const uint8_t state = {source.signal.format(n=number)};"
+    yield f"    if (state != {prefix}_NOTHING) {{"
+    yield f"        const bool known = state == {prefix}_YES;"
+    yield f"        const double value = known ? {given} : unknown_value();"
     if stale_after is not None:
-        yield f"    m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
+        yield f"        m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
         # The update may change no value: then nothing else has the timer seen to.
-        yield f"    m->alarm = least(m->alarm, m->stale_at[{number}]);"
+        yield f"        m->alarm = least(m->alarm, m->stale_at[{number}]);"
     if uses is not None and (uses.history or uses.marked):
-        yield f"    m->updated[{number}] = 1;"
+        yield f"        m->updated[{number}] = 1;"
         if uses.history:
-            yield f"    m->changed[{number}] = either(m->changed[{number}],"
-            yield f"        remember(&m->history[{number}], t, value));"
-        yield "    m->gathered = true;"
-        yield from (f"    {line}" for line in _soil(places))
-    yield f"    if (!same(value, m->value[{number}])) {{"
-    yield f"        m->value[{number}] = value;"
-    for place in places:
-        leaf = plan.graph.nodes[place].leaf
-        if leaf is not None and is_instant(plan, name, leaf):
-            yield f"        if ({leaf_value(names, leaf)} != m->truth[{place}]) {{"
-            yield from (f"            {line}" for line in _soil([place]))
-            yield "        }"
-        else:
-            yield from (f"        {line}" for line in _soil([place]))
+            yield f"        m->changed[{number}] = either(m->changed[{number}],"
+            yield f"            remember(&m->history[{number}], t, value));"
+        yield "        m->gathered = true;"
+        yield from (f"        {line}" for line in _soil(places))
+    if source.chosen and group_count(plan) == 1:
+        # All nodes are worked out anyway.
+        yield f"        m->value[{number}] = value;"
+        yield from (f"        {line}" for line in _soil(places))
+    else:
+        yield from (f"        {line}" for line in _change(plan, names, name))
     yield "    }"
     yield "}"
 
 
-def _take_event(plan: Plan, names: Names, name: str) -> Iterator[str]:
+def _change(plan: Plan, names: Names, name: str) -> Iterator[str]:
+    """Take a value; only where it differs, and then those leaves only that may differ."""
+    number = names.signal(name)
+    yield f"if (!same(value, m->value[{number}])) {{"
+    yield f"    m->value[{number}] = value;"
+    places = plan.graph.by_name.get(name, ())
+    for place in places:
+        leaf = plan.graph.nodes[place].leaf
+        if leaf is not None and is_instant(plan, name, leaf):
+            yield f"    if ({leaf_value(names, leaf)} != m->truth[{place}]) {{"
+            yield from (f"        {line}" for line in _soil([place]))
+            yield "    }"
+    yield from (
+        f"    {line}"
+        for line in _soil(
+            place for place in places if not is_instant(plan, name, plan.graph.nodes[place].leaf)
+        )
+    )
+    yield "}"
+
+
+def _take_event(plan: Plan, names: Names, name: str, source: Source) -> Iterator[str]:
     prefix = names.prefix
     number = names.event(name)
     places = plan.graph.by_name[name]
-    yield f"if (sample->event[{number}] != {prefix}_NOTHING) {{ /* {comment(name)} */"
+    yield "{" + f" /* {comment(name)} */"
+    yield f"    const uint8_t state = {source.event.format(n=number, prefix=prefix)};"
     if plan.uses[name].marked:
-        yield f"    m->updated[{names.number(name)}] = 1;"
-        yield "    m->gathered = true;"
-        yield from (f"    {line}" for line in _soil(places))
-    yield f"    if (sample->event[{number}] != {prefix}_NO) {{"
-    yield f"        const bool known = sample->event[{number}] == {prefix}_YES;"
+        yield f"    if (state != {prefix}_NOTHING) {{"
+        yield f"        m->updated[{names.number(name)}] = 1;"
+        yield "        m->gathered = true;"
+        yield from (f"        {line}" for line in _soil(places))
+        yield "    }"
+    yield f"    if ((state != {prefix}_NOTHING) && (state != {prefix}_NO)) {{"
+    yield f"        const bool known = state == {prefix}_YES;"
     yield "        m->gathered = true;"
     yield f"        m->occurs[{number}] = either(m->occurs[{number}], truth_of(known, true));"
     fields = [names.field(name, field) for field in plan.spec.events[name].fields]
@@ -112,7 +187,7 @@ def _take_event(plan: Plan, names: Names, name: str) -> Iterator[str]:
         yield f"            const int32_t p = m->payloads[{number}];"
         yield f"            m->payload_known[p][{number}] = known ? 1U : 0U;"
         for field in fields:
-            yield f"            m->payload[p][{field}] = sample->field[{field}];"
+            yield f"            m->payload[p][{field}] = {source.field.format(n=field)};"
         yield f"            m->payloads[{number}]++;"
         yield "        } else {"
         yield "            m->overflow = true;"
@@ -123,6 +198,7 @@ def _take_event(plan: Plan, names: Names, name: str) -> Iterator[str]:
 
 
 def _soil(places: Iterable[int]) -> Iterator[str]:
-    for place in places:
-        yield f"soil(m, {place});"
+    """Have the groups of some nodes worked out at the next position."""
+    for group in groups_of(places):
+        yield f"m->soiled[{group}] = 1;"
         yield "dirty = true;"

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rvmon.codegen.c_leaves import node_body, uses_library
-from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_leaves import uses_library
+from rvmon.codegen.c_names import Memory, Names, memory_of
+from rvmon.codegen.c_nodes import (
+    group_count,
+    group_of,
+    groups_of,
+    momentary_counts,
+    needs,
+    nodes_source,
+)
 from rvmon.codegen.c_rows import rows_source
-from rvmon.codegen.c_samples import take_source
+from rvmon.codegen.c_samples import SAMPLE, take_source
 from rvmon.codegen.c_tables import array, automata_source, lists
-from rvmon.codegen.c_text import comment, filled, template, without, without_function
+from rvmon.codegen.c_text import comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
 from rvmon.formula.state import Elapsed, StateOp
-from rvmon.spec.checked import ProbeAtom
+
+_LIBRARY = ("helpers.c.in", "monitor_past.c.in")
+"""Functions of which a source has those that it calls."""
 
 _PARTS = (
     "monitor_head.c.in",
-    "monitor_past.c.in",
     "monitor_tokens.c.in",
     "monitor_attempts.c.in",
     "monitor_clock.c.in",
@@ -71,11 +79,6 @@ class _Writer:
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }
         source = "".join(template(part) for part in _PARTS)
-        if not self._count(StateOp.SINCE):
-            source = without(source, "PAST")
-        source = source.replace("@PAST_BEGIN@\n", "").replace("@PAST_END@\n", "")
-        if not self._count(StateOp.PREVIOUS):
-            source = without_function(source, "static uint8_t previous(")
         return CFiles(
             prefix,
             {
@@ -86,14 +89,10 @@ class _Writer:
             },
         )
 
-    def _count(self, op: StateOp) -> int:
-        return sum(state.op is op for state in self.plan.graph.nodes)
-
     def _constants(self) -> Iterator[str]:
         plan, names = self.plan, self.names
         upper = names.prefix.upper()
         clocks = max((r.automaton.clocks for r in plan.rules if r.automaton), default=0)
-        memory = max(self._count(StateOp.SINCE), self._count(StateOp.PREVIOUS))
         sizes = {
             "SIGNALS": len(plan.signals),
             "EVENTS": len(plan.events),
@@ -102,14 +101,15 @@ class _Writer:
             "NODES": len(plan.graph.nodes),
             "RULES": len(plan.rules),
             "CLOCKS": clocks,
-            "PAST": memory,
+            "GROUPS": group_count(plan),
+            **{kind.name: names.memories(kind) for kind in Memory},
         }
         for name, size in sizes.items():
             yield f"#define {upper}_{name} {size}"
             yield f"#define {upper}_{name}_MIN {max(size, 1)}"
         yield f"#define {upper}_TIMED {len(self._timed())}"
         yield f"#define {upper}_PERISHABLE {len(self._perishable())}"
-        yield f"#define {upper}_STATEFUL {len(plan.graph.stateful)}"
+        yield f"#define {upper}_STATEFUL {len(groups_of(plan.graph.stateful))}"
         for what, listed in (
             ("SIGNAL", plan.signals),
             ("EVENT", plan.events),
@@ -127,7 +127,9 @@ class _Writer:
         return [
             place
             for place, state in enumerate(self.plan.graph.nodes)
-            if state.op in (StateOp.SINCE, StateOp.PREVIOUS) or isinstance(state.leaf, Elapsed)
+            if isinstance(state.leaf, Elapsed)
+            or state.op is StateOp.PREVIOUS
+            or memory_of(state) in (Memory.EDGE, Memory.PAST)
         ]
 
     def _perishable(self) -> list[int]:
@@ -140,14 +142,10 @@ class _Writer:
 
     def _helpers(self) -> Iterator[str]:
         """Functions of the library of helpers that the nodes call."""
-        calls = "\n".join(
-            line for place in range(len(self.plan.graph.nodes)) for line in self._body(place)
-        )
-        calls += "\n".join(take_source(self.plan, self.names))
-        if self._count(StateOp.SINCE):
-            calls += "sum("
+        calls = "\n".join((*nodes_source(self.plan, self.names), *self._taking()))
         chosen: list[str] = []
-        for block in reversed(template("helpers.c.in").split("\n\n")):
+        library = "\n".join(template(part) for part in _LIBRARY)
+        for block in reversed(library.split("\n\n")):
             name = block.split("(", 1)[0].rsplit(" ", 1)[-1]
             if f"{name}(" in calls:
                 chosen.append(block)
@@ -156,90 +154,35 @@ class _Writer:
             yield ""
             yield from block.strip("\n").split("\n")
 
-    def _body(self, place: int) -> list[str]:
-        return node_body(self.plan, self.names, place)
+    def _taking(self) -> Iterator[str]:
+        return take_source(self.plan, self.names, SAMPLE)
 
     def _tables(self) -> Iterator[str]:
-        graph = self.plan.graph
         yield ""
         yield "/* The state formulas. */"
-        yield from self._node_functions()
-        yield ""
-        yield "static uint8_t evaluate(monitor *m, int32_t place, int64_t t)"
-        yield "{"
-        yield "    uint8_t value = IS_FALSE;"
-        yield "    switch (place) {"
-        for place in range(len(graph.nodes)):
-            body = self._body(place)
-            if len(body) > 1:
-                yield f"    case {place}: value = node{place}(m, t); break;"
-            else:
-                text = body[0].removeprefix("return ").removesuffix(";")
-                yield f"    case {place}: value = {text}; break;"
-        yield "    default: break;"
-        yield "    }"
-        yield "    (void)t;"
-        yield "    return value;"
-        yield "}"
-        yield from take_source(self.plan, self.names)
+        yield from nodes_source(self.plan, self.names)
+        yield from self._taking()
         yield from self._index_tables()
         yield from automata_source(self.plan)
         yield from self._letters()
 
-    def _node_functions(self) -> Iterator[str]:
-        for place in range(len(self.plan.graph.nodes)):
-            body = self._body(place)
-            if len(body) > 1:
-                yield ""
-                yield f"static uint8_t node{place}(monitor *m, int64_t t)"
-                yield "{"
-                yield from (f"    {line}" for line in body)
-                yield "}"
-
     def _index_tables(self) -> Iterator[str]:
+        """Timers and what else makes groups of nodes be worked out anew."""
         graph, plan = self.plan.graph, self.plan
-        count = len(graph.nodes)
-        letters: list[list[int]] = [[] for _ in range(count)]
-        triggers: list[list[int]] = [[] for _ in range(count)]
-        for index, rule in enumerate(plan.rules):
-            for state in rule.alphabet.propositions:
-                letters[graph.index[state]].append(index)
-            if rule.trigger is not None:
-                triggers[graph.index[rule.trigger]].append(index)
+        readers = [groups_of(graph.by_name.get(name, ())) for name in plan.signals]
         yield ""
-        yield from lists("parent_first", "parents", graph.parents)
-        yield from lists("letter_first", "letter_of", letters)
-        yield from lists("trigger_first", "trigger_of", triggers)
-        readers = [graph.by_name.get(name, ()) for name in plan.signals]
         if self._perishable():
             yield from lists("reader_first", "readers", readers)
         else:
             yield "static const int32_t reader_first[] = {0, 0};"
             yield "static const int32_t readers[] = {0};"
-        yield from lists("need_first", "needs", self._needs())
+        yield from lists("need_first", "needs", needs(plan))
         yield array("int32_t", "timed", self._timed())
+        yield array("int32_t", "timed_group", [group_of(place) for place in self._timed()])
         yield array("int32_t", "perishable", self._perishable())
-        yield array("int32_t", "stateful", graph.stateful)
+        yield array("int32_t", "stateful", groups_of(graph.stateful))
         # Counted down for each name without a source; at 0 the leaf stays as it is.
-        named = Counter(place for places in self._needs() for place in places)
-        momentary = [
-            max(named[place], int(graph.reads[place].momentary)) if place in graph.reads else 0
-            for place in range(count)
-        ]
-        yield array("uint8_t", "momentary", momentary)
-
-    def _needs(self) -> list[list[int]]:
-        """Per name, the leaves that speak of one position if that or another one has a source."""
-        graph, plan = self.plan.graph, self.plan
-        return [
-            [
-                place
-                for place in graph.by_name.get(name, ())
-                if graph.reads[place].momentary
-                and (name in plan.events or isinstance(graph.nodes[place].leaf, ProbeAtom))
-            ]
-            for name in (*plan.signals, *plan.events)
-        ]
+        yield array("uint8_t", "momentary", momentary_counts(plan))
 
     def _letters(self) -> Iterator[str]:
         graph = self.plan.graph

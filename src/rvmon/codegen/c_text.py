@@ -20,17 +20,3 @@ def filled(text: str, places: dict[str, str]) -> str:
     for name, part in places.items():
         text = text.replace(f"@{name}@", part)
     return text
-
-
-def without(text: str, part: str) -> str:
-    """A text without what stands between the marks of a part."""
-    before, rest = text.split(f"@{part}_BEGIN@\n", 1)
-    return before + rest.split(f"@{part}_END@\n", 1)[1]
-
-
-def without_function(text: str, start: str) -> str:
-    """A text without the function that starts so."""
-    if start not in text:
-        return text
-    before, rest = text.split(start, 1)
-    return before + rest.split("\n}\n", 1)[1]

@@ -1,0 +1,183 @@
+"""The state formulas of a plan as straight-line C, so many nodes to a function.
+
+A node whose operand changed is worked out together with all nodes of its group: that is cheaper
+than finding out which of them have to be.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import chain
+
+from rvmon.codegen.c_leaves import node_body
+from rvmon.codegen.c_names import Names
+from rvmon.codegen.plan import Plan
+from rvmon.spec.checked import ProbeAtom
+
+GROUP = 32
+"""Nodes of a group: what changed in one stands in a word of so many bits."""
+
+
+def group_of(place: int) -> int:
+    """The group of a node."""
+    return place // GROUP
+
+
+def group_count(plan: Plan) -> int:
+    """How many groups there are; at least one."""
+    return max(-(-len(plan.graph.nodes) // GROUP), 1)
+
+
+def groups_of(places: Iterable[int]) -> list[int]:
+    """The groups of some nodes, each once."""
+    return list(dict.fromkeys(map(group_of, places)))
+
+
+@dataclass(slots=True)
+class _Heard:
+    """Who is to hear of changes in a group, by number: of which of its nodes, as bits."""
+
+    letters: dict[int, int] = field(default_factory=dict)
+    triggers: dict[int, int] = field(default_factory=dict)
+    groups: dict[int, int] = field(default_factory=dict)
+
+    def masks(self) -> Iterator[int]:
+        """All sets of nodes that somebody is to hear of."""
+        return chain(self.letters.values(), self.triggers.values(), self.groups.values())
+
+
+def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
+    """The functions of groups, and `look`, which calls that of a number."""
+    heard = _heard(plan)
+    momentary = momentary_counts(plan)
+    stored = _stored(plan)
+    for place in range(len(plan.graph.nodes)):
+        yield from _node_function(place, node_body(plan, names, place))
+    for group in range(group_count(plan)):
+        yield ""
+        yield f"static void look{group}(monitor *m, int64_t t, bool *letters, bool *asked)"
+        yield "{"
+        yield "    uint32_t changed = 0;"
+        for place in range(GROUP * group, min(GROUP * (group + 1), len(plan.graph.nodes))):
+            yield from (f"    {line}" for line in _node(plan, names, place, momentary[place]))
+            if place in stored:
+                yield f"    {_storing(place, heard[group])}"
+        own = heard[group]
+        for index, mask in own.letters.items():
+            yield f"    letters[{index}] |= {_any(mask)};"
+        for index, mask in own.triggers.items():
+            yield f"    asked[{index}] |= {_any(mask)};"
+        for other, mask in own.groups.items():
+            yield f"    m->soiled[{other}] |= (uint8_t){_any(mask)};"
+        yield "    (void)m;"
+        yield "    (void)t;"
+        yield "    (void)changed;"
+        yield "    (void)letters;"
+        yield "    (void)asked;"
+        yield "}"
+    yield ""
+    yield "static void look(monitor *m, int32_t group, int64_t t, bool *letters, bool *asked)"
+    yield "{"
+    yield "    switch (group) {"
+    for group in range(group_count(plan)):
+        yield f"    case {group}: look{group}(m, t, letters, asked); break;"
+    yield "    default: break;"
+    yield "    }"
+    yield "}"
+
+
+def _any(mask: int) -> str:
+    return f"((changed & UINT32_C({mask:#x})) != 0U)"
+
+
+def _heard(plan: Plan) -> list[_Heard]:
+    graph = plan.graph
+    heard = [_Heard() for _ in range(group_count(plan))]
+
+    def note(place: int, whom: dict[int, int], number: int) -> None:
+        whom[number] = whom.get(number, 0) | 1 << place % GROUP
+
+    for place, parents in enumerate(graph.parents):
+        own = heard[group_of(place)]
+        for other in groups_of(parents):
+            if other != group_of(place):
+                note(place, own.groups, other)
+    for index, rule in enumerate(plan.rules):
+        for state in rule.alphabet.propositions:
+            place = graph.index[state]
+            note(place, heard[group_of(place)].letters, index)
+        if rule.trigger is not None:
+            place = graph.index[rule.trigger]
+            note(place, heard[group_of(place)].triggers, index)
+    return heard
+
+
+def _node_function(place: int, body: list[str]) -> Iterator[str]:
+    if len(body) > 1:
+        yield ""
+        yield f"static uint8_t node{place}(monitor *m, int64_t t)"
+        yield "{"
+        yield from (f"    {line}" for line in body)
+        yield "}"
+
+
+def _node(plan: Plan, names: Names, place: int, momentary: int) -> Iterator[str]:
+    body = node_body(plan, names, place)
+    text = body[0].removeprefix("return ").removesuffix(";")
+    if len(body) > 1:
+        text = f"node{place}(m, t)"
+    for operand in plan.graph.operands[place]:
+        if group_of(operand) == group_of(place):
+            text = re.sub(rf"m->truth\[{operand}\]", f"n{operand}", text)
+    yield f"const uint8_t n{place} = {text};"
+    if momentary:
+        yield f"if ((n{place} != IS_FALSE) && (m->momentary[{place}] != 0U)) {{"
+        yield f"    m->fades[{group_of(place)}] = 1;"
+        yield "    m->fading = true;"
+        yield "}"
+
+
+def _storing(place: int, heard: _Heard) -> str:
+    if any(mask >> place % GROUP & 1 for mask in heard.masks()):
+        return f"changed |= noted(m, {place}, n{place}) << {place % GROUP}U;"
+    return f"m->truth[{place}] = n{place};"
+
+
+def _stored(plan: Plan) -> set[int]:
+    """The nodes whose truth is read elsewhere than in their group."""
+    graph = plan.graph
+    roots = [state for rule in plan.rules for state in rule.alphabet.propositions]
+    roots += [rule.trigger for rule in plan.rules if rule.trigger is not None]
+    found = {graph.index[state] for state in roots}
+    found |= set(graph.reads)  # samples are compared with the leaves
+    for place, parents in enumerate(graph.parents):
+        if any(group_of(parent) != group_of(place) for parent in parents):
+            found.add(place)
+    return found
+
+
+def momentary_counts(plan: Plan) -> list[int]:
+    """Per node, how many names with a source make it one that speaks of one position only."""
+    graph = plan.graph
+    named = Counter(place for places in needs(plan) for place in places)
+    return [
+        max(named[place], int(graph.reads[place].momentary)) if place in graph.reads else 0
+        for place in range(len(graph.nodes))
+    ]
+
+
+def needs(plan: Plan) -> list[list[int]]:
+    """Per name, the leaves that speak of one position if that or another one has a source."""
+    graph = plan.graph
+    return [
+        [
+            place
+            for place in graph.by_name.get(name, ())
+            if graph.reads[place].momentary
+            and (name in plan.events or isinstance(graph.nodes[place].leaf, ProbeAtom))
+        ]
+        for name in (*plan.signals, *plan.events)
+    ]
