@@ -2,14 +2,16 @@
 
     python -m benchmarks.columns --pairs 10000 --engine c
 
-Traces are filled up, as each row of a column holds a value; prints every disagreement with its
-seed, and exits with 1 if there is one.
+Traces are filled up, as each row of a column holds a value, and given in blocks of random length.
+With `--samples 150` they are longer than what compiled code looks at together. Prints every
+disagreement with its seed, and exits with 1 if there is one.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import random
 import sys
 import tempfile
 from collections import Counter
@@ -25,15 +27,18 @@ from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.law import judge
 
 
-def judge_seed(seed: str, engine: str, each: int, count: Counter[str]) -> None:
+def judge_seed(seed: str, options: argparse.Namespace, count: Counter[str]) -> None:
     """Judge the cases of a seed, counting pairs, attempts and disagreements."""
     profile = Profile(captures=False, for_each=False)
+    traces = TraceProfile(samples=options.samples, span=4 * options.samples)
+    dice = random.Random(f"cuts/{seed}")
     compiled = None
-    for case in cases_of(seed, profile, TraceProfile(), each):
+    for case in cases_of(seed, profile, traces, options.each):
         whole = filled(case)
         try:
             compiled = compiled or compile_spec(whole.spec)
-            report = judge_columns(compiled, whole, engine)
+            cuts = random_cuts(dice, len(whole.samples))
+            report = judge_columns(compiled, whole, options.engine, cuts)
         except RvmonError as error:
             print(f"seed {seed}: {error}")
             count["disagreements"] += 1
@@ -50,11 +55,17 @@ def judge_seed(seed: str, engine: str, each: int, count: Counter[str]) -> None:
             print(f"seed {seed}: {line}")
 
 
+def random_cuts(dice: random.Random, rows: int) -> list[int]:
+    """Up to three places between rows."""
+    return sorted(dice.sample(range(1, rows), dice.randrange(min(rows, 4)))) if rows > 1 else []
+
+
 def main(argv: Sequence[str]) -> int:
     """Judge until there are so many pairs, and print the figures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--pairs", type=int, default=1_000)
     parser.add_argument("--each", type=int, default=10, help="traces per specification")
+    parser.add_argument("--samples", type=int, default=12, help="of a trace, at most")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--engine", choices=("auto", "c"), default="auto")
     options = parser.parse_args(argv)
@@ -63,7 +74,7 @@ def main(argv: Sequence[str]) -> int:
     with tempfile.TemporaryDirectory() as cache:
         os.environ["XDG_CACHE_HOME"] = cache  # nobody runs these monitors again
         while count["pairs"] < options.pairs:
-            judge_seed(f"{options.seed}/{number}", options.engine, options.each, count)
+            judge_seed(f"{options.seed}/{number}", options, count)
             number += 1
     shown = ", ".join(
         f"{name} {count[name]}" for name in ("pairs", "refused", "attempts", "disagreements")

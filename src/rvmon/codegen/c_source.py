@@ -18,7 +18,7 @@ from rvmon.codegen.c_nodes import (
 from rvmon.codegen.c_rows import rows_source
 from rvmon.codegen.c_samples import SAMPLE, take_source
 from rvmon.codegen.c_tables import array, automata_source, lists
-from rvmon.codegen.c_text import comment, filled, template
+from rvmon.codegen.c_text import called, comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
 from rvmon.formula.state import Elapsed, StateOp
@@ -143,16 +143,7 @@ class _Writer:
     def _helpers(self) -> Iterator[str]:
         """Functions of the library of helpers that the nodes call."""
         calls = "\n".join((*nodes_source(self.plan, self.names), *self._taking()))
-        chosen: list[str] = []
-        library = "\n".join(template(part) for part in _LIBRARY)
-        for block in reversed(library.split("\n\n")):
-            name = block.split("(", 1)[0].rsplit(" ", 1)[-1]
-            if f"{name}(" in calls:
-                chosen.append(block)
-                calls += block.split("{", 1)[1]
-        for block in reversed(chosen):
-            yield ""
-            yield from block.strip("\n").split("\n")
+        return called(calls, "\n".join(template(part) for part in _LIBRARY))
 
     def _taking(self) -> Iterator[str]:
         return take_source(self.plan, self.names, SAMPLE)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from rvmon.codegen.c_batch import BatchLibrary
@@ -42,13 +44,16 @@ def filled(case: Case) -> Case:
     return replace(case, actions=tuple(samples), names=frozenset((*signals, *events)))
 
 
-def judge_columns(compiled: CompiledSpec, case: Case, engine: str) -> Report | None:
+def judge_columns(
+    compiled: CompiledSpec, case: Case, engine: str, cuts: Sequence[int] = ()
+) -> Report | None:
     """Judge a filled case as `Spec.evaluate` judges arrays.
 
     Args:
         compiled: the case's specification.
         case: from `filled`.
         engine: `auto` or `c`.
+        cuts: rows at which a new block of columns begins, in order.
 
     Returns:
         `None` if the specification, or a trace without samples, is not judged by columns.
@@ -66,7 +71,11 @@ def judge_columns(compiled: CompiledSpec, case: Case, engine: str) -> Report | N
         return np.array([sample.values[name] for sample in case.samples], types[kind])
 
     times = np.array([sample.t for sample in case.samples], np.int64)
-    blocks = [(times, {name: column(name) for name in names})]
+    columns = {name: column(name) for name in names}
+    blocks = [
+        (times[start:stop], {name: column[start:stop] for name, column in columns.items()})
+        for start, stop in pairwise((0, *cuts, len(times)))
+    ]
     if engine == "c":
         return evaluate_c_blocks(compiled, names, blocks, only=None, until=case.end)
     return evaluate_blocks(compiled, names, blocks, only=None, engine=engine, until=case.end)

@@ -1,0 +1,196 @@
+"""Columns for compiled monitors: at which of 64 rows something can change, as the bits of a word.
+
+State formulas that the rows alone decide are worked out for 64 rows at once. What the automata and
+timed operators read of them is watched: rows at which none of it changes are passed over.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from rvmon.codegen.c_leaves import leaf_value
+from rvmon.codegen.c_names import Memory, Names, memory_of
+from rvmon.codegen.c_samples import read_events, read_signals, value_type
+from rvmon.codegen.plan import Plan
+from rvmon.formula.state import Leaf, State, StateOp
+from rvmon.spec.checked import Compare, Constant, Probe, ProbeAtom, SignalAtom
+
+
+def words_source(plan: Plan, names: Names) -> Iterator[str]:
+    """The functions `is_plain`, `begin_words` and `changes` of the batch source."""
+    words = [place for place in range(len(plan.graph.nodes)) if _in_words(plan, place)]
+    watched = {place: number for number, place in enumerate(_watched(plan, words))}
+    for place in words:
+        leaf = plan.graph.nodes[place].leaf
+        if leaf is not None and not isinstance(leaf, Constant):
+            yield from _leaf(plan, names, place, leaf)
+    yield ""
+    yield f"#define N_WATCHED {len(watched)}"
+    yield from _plain(plan, names)
+    yield from _beginning(plan, names, watched)
+    yield from _changes(plan, names, words, watched)
+
+
+def _in_words(plan: Plan, place: int) -> bool:
+    """Whether the rows up to one decide a state formula there, if each of them has all values."""
+    state = plan.graph.nodes[place]
+    if state.leaf is not None:
+        return _leaf_in_words(plan, state.leaf, place)
+    whole = all(_in_words(plan, operand) for operand in plan.graph.operands[place])
+    if state.op is StateOp.SINCE:
+        return whole and memory_of(state) is Memory.SEEN and _unbroken(plan)
+    return whole and state.op in (StateOp.NOT, StateOp.AND, StateOp.OR)
+
+
+def _unbroken(plan: Plan) -> bool:
+    """Whether what rows say is so at all positions from one to the next."""
+    signals = plan.spec.signals.values()
+    return plan.gap == 1 and all(signal.stale_after is None for signal in signals)
+
+
+def _leaf_in_words(plan: Plan, leaf: Leaf, place: int) -> bool:
+    match leaf:
+        case Constant() | SignalAtom():
+            return True
+        case ProbeAtom(probe=probe, name=name):
+            return probe is Probe.KNOWN and name in plan.signals
+        case Compare():
+            names = plan.graph.reads[place].names
+            return all(name in plan.signals and not plan.uses[name].history for name in names)
+        case _:
+            return False
+
+
+def _watched(plan: Plan, words: list[int]) -> list[int]:
+    """The nodes in words of which each change matters elsewhere, or to themselves."""
+    graph = plan.graph
+    roots = [state for rule in plan.rules for state in rule.alphabet.propositions]
+    roots += [rule.trigger for rule in plan.rules if rule.trigger is not None]
+    read = {graph.index[state] for state in roots}
+    return [
+        place
+        for place in words
+        if place in read
+        or graph.nodes[place].op is StateOp.SINCE
+        or any(parent not in words for parent in graph.parents[place])
+    ]
+
+
+def _leaf(plan: Plan, names: Names, place: int, leaf: Leaf) -> Iterator[str]:
+    """A leaf over the columns that it reads."""
+    columns = sorted(map(names.signal, plan.graph.reads[place].names))
+    absent = "IS_FALSE" if isinstance(leaf, ProbeAtom) else "IS_UNKNOWN"
+    given = " && ".join(f"(in->value[{number}] != NULL)" for number in columns)
+    yield ""
+    yield f"static words leaf{place}(const batch_in *in, int64_t first, int64_t n)"
+    yield "{"
+    yield f"    words made = all_rows({absent});"
+    yield f"    if ({given}) {{"
+    for number in columns:
+        kind = value_type(plan, plan.signals[number])
+        yield f"        const {kind} *x{number} = (const {kind} *)in->value[{number}] + first;"
+    if isinstance(leaf, SignalAtom):
+        yield f"        made.is = above(x{columns[0]}, n, 0);"
+        yield "        made.may = made.is;"
+    else:
+        yield from (f"        {line}" for line in _rows(columns, leaf_value(names, leaf)))
+    yield "    }"
+    yield "    return made;"
+    yield "}"
+
+
+def _rows(columns: list[int], text: str) -> Iterator[str]:
+    for number in columns:
+        text = re.sub(rf"m->value\[{number}\]", f"v{number}", text)
+    yield "uint8_t is[WORD] = {0};"
+    yield "uint8_t may[WORD] = {0};"
+    yield "int64_t i;"
+    yield "for (i = 0; i < n; i++) {"
+    for number in columns:
+        yield f"    const double v{number} = (double)x{number}[i];"
+    yield f"    const uint8_t truth = {text};"
+    yield "    is[i] = (truth == IS_TRUE) ? 1U : 0U;"
+    yield "    may[i] = (truth != IS_FALSE) ? 1U : 0U;"
+    yield "}"
+    yield "made.is = gathered(is);"
+    yield "made.may = gathered(may);"
+
+
+def _plain(plan: Plan, names: Names) -> Iterator[str]:
+    """Rows of which each has all values; no update counts for itself."""
+    yield ""
+    yield "/* Whether values alone say which rows matter. */"
+    yield "static bool is_plain(const batch_in *in)"
+    yield "{"
+    yield "    bool plain = in->advance == NULL;"
+    for name in read_signals(plan):
+        number = names.signal(name)
+        uses = plan.uses.get(name)
+        yield f"    plain = plain && ((in->value[{number}] == NULL)"
+        counts = uses is not None and (uses.history or uses.marked)
+        other = "false" if counts else f"(in->signal[{number}] == NULL)"
+        yield f"                      || {other});"
+    yield "    return plain;"
+    yield "}"
+
+
+def _beginning(plan: Plan, names: Names, watched: dict[int, int]) -> Iterator[str]:
+    yield ""
+    yield "/* What is watched, as it was before the rows that come. */"
+    yield "static void begin_words(const monitor *m, words *before)"
+    yield "{"
+    for place, number in watched.items():
+        if plan.graph.nodes[place].op is StateOp.SINCE:
+            yield f"    before[{number}] = all_rows(m->seen[{names.memory[place]}]);"
+        else:
+            yield f"    before[{number}] = all_rows(IS_FALSE);"
+    yield "    (void)m;"
+    yield "    (void)before;"
+    yield "}"
+
+
+def _changes(plan: Plan, names: Names, words: list[int], watched: dict[int, int]) -> Iterator[str]:
+    yield ""
+    yield "/* The rows at which something that matters changes, among the `n` from `first` on. */"
+    yield "static uint64_t changes(const batch_in *in, int64_t first, int64_t n, words *before)"
+    yield "{"
+    yield "    uint64_t found = 0;"
+    for place in words:
+        yield f"    const words w{place} = {_word(plan, place, watched)};"
+        if place in watched:
+            yield f"    found |= differing(w{place}, &before[{watched[place]}]);"
+    for place in words:
+        yield f"    (void)w{place};"
+    for name in read_events(plan):
+        least = "NOTHING" if plan.uses[name].marked else "NO"
+        column = f"in->event[{names.event(name)}]"
+        yield f"    if ({column} != NULL) {{"
+        yield f"        found |= above({column} + first, n, {names.prefix}_{least});"
+        yield "    }"
+    yield "    (void)in;"
+    yield "    (void)first;"
+    yield "    (void)n;"
+    yield "    (void)before;"
+    yield "    return found;"
+    yield "}"
+
+
+def _word(plan: Plan, place: int, watched: dict[int, int]) -> str:
+    state: State = plan.graph.nodes[place]
+    operands = [f"w{operand}" for operand in plan.graph.operands[place]]
+    match state.op:
+        case StateOp.NOT:
+            return f"not_words({operands[0]})"
+        case StateOp.AND | StateOp.OR:
+            function = "and_words" if state.op is StateOp.AND else "or_words"
+            whole = operands[0]
+            for operand in operands[1:]:
+                whole = f"{function}({whole}, {operand})"
+            return whole
+        case StateOp.SINCE:
+            return f"since_words({operands[0]}, {operands[1]}, before[{watched[place]}])"
+        case _ if isinstance(state.leaf, Constant):
+            return f"all_rows({'IS_TRUE' if state.leaf.value else 'IS_FALSE'})"
+        case _:
+            return f"leaf{place}(in, first, n)"
