@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind
 
-_RUNTIME = ("past", "table", "rule", "bulk", "nodes", "unit", "alone")
+_RUNTIME = ("past", "table", "rule", "solo", "bulk", "nodes", "unit", "alone")
 
 _HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 and nothing else.
 
@@ -29,7 +29,7 @@ import math
 from array import array
 from bisect import bisect_right
 from collections import deque, namedtuple
-from heapq import heapify, heappop, heappush
+from heapq import heapify, heappop, heappush, heapreplace
 from itertools import product
 from operator import add, eq, ge, gt, le, lt, mul, ne, neg, sub, truediv
 from typing import TYPE_CHECKING, Any
@@ -70,7 +70,7 @@ def _body(name: str) -> str:
     text = files("rvmon.codegen").joinpath("runtime", f"{name}.py").read_text(encoding="utf-8")
     text = text.split('"""', 2)[2]
     text = re.sub(r"^if TYPE_CHECKING:\n(?:    .*\n|\n)+?(?=\S)", "", text, flags=re.MULTILINE)
-    text = re.sub(r"^(?:from|import) .*\n", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^(?:from|import) (?:.*\(\n(?: .*\n)*\)|.*)\n", "", text, flags=re.MULTILINE)
     text = text.replace("  # noqa: B905", "")
     return "\n" + text.strip("\n") + "\n\n\n"
 

@@ -44,18 +44,35 @@ class IntakeWriter:
         self.span = visit.span()
         self.whole = 0 < len(arriving) <= _WHOLE
         self.instant = self._instant_leaves()
+        self.every = [line for n, name in enumerate(arriving) for line in self._every(n, name)]
+        """What updates do though their values are the same."""
+        self.single = [
+            (n, name)
+            for n, name in enumerate(arriving)
+            if len(arriving) > 1 and self._is_single(name)
+        ]
 
     def lines(self) -> Iterator[str]:
         """All of them, and the tables that they look up."""
         yield "def step(self, t, values):"
         yield '    """Take one sample; returns what it decided."""'
+        yield from indented(self._quick())
         yield "    if t.__class__ is not int or not self.after < t < LIMIT:"
         yield "        return self.clerk.other(t, values)"
-        if self.whole:
-            yield from indented(self._whole())
-        else:
-            yield "    return self.some(t, values)"
+        if self.single:
+            yield "    if one is not None:"
+            yield "        return one(self, t, x, values)"
+        yield "    if not whole:"
+        yield "        return self.some(t, values)"
+        yield from indented(self._whole() if self.whole else [])
         yield ""
+        for number, name in self.single:
+            yield from self._one(number, name)
+            yield ""
+        if self.single:
+            listed = ", ".join(f"{name!r}: one{number}" for number, name in self.single)
+            yield f"ONE = {{{listed}}}"
+            yield ""
         yield from self._some()
         yield ""
         yield from self._take()
@@ -77,37 +94,54 @@ class IntakeWriter:
 
     # A sample that holds all names.
 
-    def _whole(self) -> Iterator[str]:
-        yield f"if len(values) != {len(self.arriving)}:"
-        yield "    return self.some(t, values)"
+    def _quick(self) -> Iterator[str]:
+        """See what a sample holds; be done with one that brings nothing new."""
+        quiet = f"self.after < {self._quiet()} and t.__class__ is int"
+        names = list(enumerate(self.arriving)) if self.whole else []
+        if self.single:
+            yield "one = None"
         yield "try:"
-        for number, name in enumerate(self.arriving):
-            yield f"    x{number} = values[{name!r}]"
-        yield "except KeyError:"
-        yield "    return self.some(t, values)"
+        yield f"    whole = {f'len(values) == {len(names)}' if names else False}"
+        yield "    if whole:"
+        for number, name in names:
+            yield f"        x{number} = values[{name!r}]"
+        if names and not self.every:
+            yield "        last = self.last"
+            same = " and ".join(f"x{n} is {self._before(name)}" for n, name in names)
+            yield f"        if {same} and {quiet}:"
+            yield from indented(self._done(), 3)
+        yield "            return ()" if names and not self.every else "        pass"
+        yield "    elif not values:"
+        yield f"        if {quiet}:"
+        yield from indented(self._done(), 3)
+        yield "            return ()"
+        if self.single:
+            yield "    elif len(values) == 1:"
+            yield "        for name, x in values.items():"
+            yield "            one = self.ONE.get(name)"
+        yield "except (AttributeError, LookupError, TypeError, ValueError):"
+        yield "    return self.clerk.other(t, values)"
+
+    def _before(self, name: str) -> str:
+        """What a value is compared with: the one before."""
+        return "False" if name in self.plan.events else f"last[{self.plan.signals.index(name)}]"
+
+    def _whole(self) -> Iterator[str]:
         yield "changed = 0"
         lines: list[str] = []
         for number, name in enumerate(self.arriving):
             lines += self._noticed(number, name)
-        yield from at_hand(lines)
+        yield from at_hand(lines, *(() if self.every else ("last",)))
         yield from lines
-        always = [line for n, name in enumerate(self.arriving) for line in self._every(n, name)]
-        quiet = self._quiet()
-        if not always:
-            yield f"if not changed and {quiet}:"
-            yield from indented(self._done())
-            yield "    return ()"
         yield from self._time()
         yield from indented(self._expired())
         yield "dirty = 0"
-        yield from at_hand(always)
-        yield from always
-        yield "if changed:"
-        lines = []
+        lines = list(self.every)
         for number, name in enumerate(self.arriving):
             lines.append(f"if changed & {1 << number}:")
             lines += indented(self._new(f"x{number}", name))
-        yield from indented([*at_hand(lines), *lines])
+        yield from at_hand(lines, "last")
+        yield from lines
         yield from self._after()
 
     def _expired(self) -> Iterator[str]:
@@ -121,8 +155,7 @@ class IntakeWriter:
     def _noticed(self, number: int, name: str) -> Iterator[str]:
         """See whether a value is another; refuse what needs a closer look."""
         x = f"x{number}"
-        last = "False" if name in self.plan.events else f"last[{self.plan.signals.index(name)}]"
-        yield f"if {x} is not {last}:"
+        yield f"if {x} is not {self._before(name)}:"
         yield f"    if {self._is_odd(x, name)}:"
         yield "        return self.clerk.other(t, values)"
         yield f"    changed |= {1 << number}"
@@ -162,23 +195,38 @@ class IntakeWriter:
         else:
             yield from self._changed(variable, name, given=True)
 
+    # A sample of one name.
+
+    def _is_single(self, name: str) -> bool:
+        """Whether an update does nothing but bring a value."""
+        return not list(self._every(0, name))
+
+    def _one(self, number: int, name: str) -> Iterator[str]:
+        yield f"def one{number}(self, t, x, values):"
+        yield f"    # {name!a}"
+        lines = [f"if x is {self._before(name)}:", f"    if {self._quiet()}:"]
+        lines += indented([*self._done(), "return ()"], 2)
+        lines += [f"elif {self._is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
+        lines += [*self._time(), "dirty = 0", f"if x is not {self._before(name)}:"]
+        lines += indented(self._new("x", name))
+        yield from indented([*at_hand(lines), *lines, *self._after()])
+
     # A sample of any names.
 
     def _some(self) -> Iterator[str]:
         yield "def some(self, t, values):"
         yield '    """Take a sample of which only the time was checked."""'
         yield "    takers = self.TAKERS"
-        yield "    taken = []"
-        yield "    for name, x in values.items():"
-        yield "        if name not in takers:"
-        yield "            return self.clerk.other(t, values)"
-        yield "        classes, labels, take = takers[name]"
+        yield "    try:"
+        yield "        found = [(*takers[name], x) for name, x in values.items()]"
+        yield "    except (AttributeError, LookupError, TypeError):"
+        yield "        return self.clerk.other(t, values)"
+        yield "    for classes, labels, _, x in found:"
         yield "        if x.__class__ not in classes or x != x or (labels and x not in labels):"
         yield "            return self.clerk.other(t, values)"
-        yield "        taken.append((take, x))"
         yield from indented(self._time())
         yield "    dirty = 0"
-        yield "    for take, x in taken:"
+        yield "    for _, _, take, x in found:"
         yield "        dirty |= take(self, t, x)"
         yield from indented(self._after())
 
@@ -221,7 +269,7 @@ class IntakeWriter:
         others = bits(self.plan.graph.by_name.get(name, ()))
         for place in self.plan.graph.by_name.get(name, ()):
             leaf = self.plan.graph.nodes[place].leaf
-            if place in self.instant and leaf is not None:
+            if place in self.instant and leaf is not None and not isinstance(leaf, SignalAtom):
                 others &= ~(1 << place)
                 yield f"if ({leaf_expression(self.plan, place, leaf)}) != v[{place}]:"
                 yield f"    dirty |= {1 << place}"
@@ -275,7 +323,10 @@ class IntakeWriter:
 
     def _after(self) -> Iterator[str]:
         """Go on with what changed."""
-        yield f"if dirty or not ({self._quiet()}):"
+        busy = "t >= self.wake"
+        if self.sparse:
+            busy += f" or t - self.position > {self.span}"
+        yield f"if dirty or {busy}:"
         yield "    self.dirty |= dirty"
         yield f"    self.{self._go_on}(t)"
         yield from self._done()

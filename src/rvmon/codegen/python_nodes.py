@@ -13,8 +13,16 @@ from rvmon.spec.checked import Constant
 
 NEVER = 1 << 63
 
+_WATCHED = 4
+"""So few nodes that change by time alone are looked at one by one; more stand in a queue."""
+
 _DEEPEST = 12
 """So many operators at most stand in one expression."""
+
+
+_TRUTHS = ("0", "2")
+
+_DENIED = {"0": "2", "2": "0"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +106,16 @@ class NodeWriter:
     def __init__(self, plan: Plan, roles: Roles) -> None:
         self.plan = plan
         self.roles = roles
+        timed = tuple(
+            place
+            for place in range(len(plan.graph.nodes))
+            if roles.kept >> place & 1 and self._is_timed(place)
+        )
+        stale = any(signal.stale_after is not None for signal in plan.spec.signals.values())
+        self.watched = None if stale or len(timed) > _WATCHED else timed
+        """The nodes that change by time alone, if each is looked at; `None`: they are queued."""
+        self.settled: dict[int, str] = {}
+        """The values that are known as something is written."""
 
     def statements(self, place: int) -> Iterator[str]:
         """Put the value of a node at `t` into `n`; the other names are those of `ARRAYS`."""
@@ -120,26 +138,37 @@ class NodeWriter:
 
     def value(self, place: int) -> str:
         """A node as an operand."""
+        if place in self.settled:
+            return self.settled[place]
         state = self.plan.graph.nodes[place]
         if isinstance(state.leaf, Constant):
             return leaf_expression(self.plan, place, state.leaf)
-        return f"v[{place}]" if self.roles.kept >> place & 1 else f"({self._formula(place)})"
+        if self.roles.kept >> place & 1:
+            return f"v[{place}]"
+        made = self._formula(place)
+        return made if made in _TRUTHS else f"({made})"
+
+    def settling(self, place: int, value: str) -> bool:
+        """Take it that a node has this value, where that settles it; returns whether it does."""
+        if value in _TRUTHS:
+            self.settled[place] = value
+        return value in _TRUTHS
 
     def _formula(self, place: int) -> str:
         state = self.plan.graph.nodes[place]
         if state.leaf is not None:
             return leaf_expression(self.plan, place, state.leaf)
-        operands = self.plan.graph.operands[place]
+        operands = [self.value(operand) for operand in self.plan.graph.operands[place]]
         if state.op is StateOp.NOT:
-            return f"2 - {self.value(operands[0])}"
-        sign = "<" if state.op is StateOp.AND else ">"
-        made = self.value(operands[0])
-        for number, operand in enumerate(operands[1:]):
+            return _DENIED.get(operands[0], f"2 - {operands[0]}")
+        sign, decisive = ("<", "0") if state.op is StateOp.AND else (">", "2")
+        if decisive in operands:
+            return decisive
+        open_ones = [operand for operand in operands if operand not in _TRUTHS]
+        made = open_ones[0] if open_ones else _DENIED[decisive]
+        for number, operand in enumerate(open_ones[1:]):
             first, second = f"a{place}_{number}", f"b{place}_{number}"
-            made = (
-                f"({first} if ({first} := {made}) {sign} ({second} := {self.value(operand)}) "
-                f"else {second})"
-            )
+            made = f"({first} if ({first} := {made}) {sign} ({second} := {operand}) else {second})"
         return made
 
     def _since(self, place: int, state: State) -> Iterator[str]:
@@ -159,56 +188,81 @@ class NodeWriter:
         yield f"l = {left}"
         yield f"r = {right}"
         if keeps_stretches(state):
-            yield f"n = self.since_({place}, t, l, r)"
+            yield f"n, e = self.since_({place}, t, l, r)"
+            yield from self._wake(place, "e", "")
             return
         yield f"e = w[{place}]"
+        unknown = [
+            f"{name} == 1"
+            for name, own in zip("lr", (left, right), strict=True)
+            if own not in _TRUTHS
+        ]
+        yield f"if {' or '.join([*unknown, f'b[{place}] != e'])}:"
         slow = "beyond_" if high is None else "within_"
-        yield f"if l == 1 or r == 1 or b[{place}] != e:"
         yield f"    n = self.{slow}({place}, t, l, r, {low if high is None else high})"
-        yield "else:"
-        yield from self._beyond(place, low) if high is None else self._within(place, high)
-        yield f"    w[{place}] = b[{place}] = e"
+        if high is None:
+            yield from self._beyond(place, low, left, right)
+        else:
+            yield from self._within(place, high, left, right)
 
-    def _within(self, place: int, high: int) -> Iterator[str]:
+    def _within(self, place: int, high: int, left: str, right: str) -> Iterator[str]:
         """As `rvmon.codegen.runtime.past.within`, both readings at once."""
-        yield "    n = 0"
+        if right != "0":
+            yield "elif r:" if right != "2" else "else:"
+            yield f"    w[{place}] = b[{place}] = {NEVER}"
+            yield f"    wakes[{place}] = {NEVER}"
+            yield "    n = 2"
+        if right == "2":
+            return
+        if left != "2":
+            yield "elif not l:" if left != "0" else "else:"
+            yield f"    w[{place}] = b[{place}] = -{NEVER}"
+            yield f"    wakes[{place}] = {NEVER}"
+            yield "    n = 0"
+        if left == "0":
+            return
+        yield "else:"
         yield f"    if e == {NEVER}:"
-        yield f"        e = before + {high}"
-        yield "    if r:"
-        yield f"        e = {NEVER}"
-        yield "        n = 2"
-        yield f"        wakes[{place}] = {NEVER}"
-        yield "    elif not l:"
-        yield f"        e = -{NEVER}"
-        yield f"        wakes[{place}] = {NEVER}"
-        yield "    elif e >= t:"
+        yield f"        e = w[{place}] = b[{place}] = before + {high}"
+        yield "    n = 0"
+        yield "    if e >= t:"
         yield "        n = 2"
         yield from self._wake(place, "e + 1", "        ")
 
-    def _beyond(self, place: int, low: int) -> Iterator[str]:
+    def _beyond(self, place: int, low: int, left: str, right: str) -> Iterator[str]:
         """As `rvmon.codegen.runtime.past.beyond`, both readings at once."""
-        yield "    n = 0"
+        if left != "2":
+            yield "elif not l:" if left != "0" else "else:"
+            ended = {"0": f"{NEVER}", "2": f"-{NEVER}"}.get(right, f"-{NEVER} if r else {NEVER}")
+            yield f"    w[{place}] = b[{place}] = {ended}"
+            yield f"    wakes[{place}] = {NEVER}"
+            yield "    n = 0"
+        if left == "0":
+            return
+        yield "else:"
         yield f"    if e == -{NEVER}:"
-        yield f"        e = before + {low}"
-        yield "    if not l:"
-        yield f"        e = -{NEVER} if r else {NEVER}"
-        yield f"        wakes[{place}] = {NEVER}"
-        yield "    else:"
-        yield f"        if r and e == {NEVER}:"
-        yield f"            e = t + {low}"
-        yield "        if e <= t:"
-        yield "            n = 2"
-        yield f"        elif e < {NEVER}:"
-        yield from self._wake(place, "e", "            ")
+        yield f"        e = w[{place}] = b[{place}] = before + {low}"
+        if right != "0":
+            asked = "" if right == "2" else "r and "
+            yield f"    if {asked}e == {NEVER}:"
+            yield f"        e = w[{place}] = b[{place}] = t + {low}"
+        yield "    n = 0"
+        yield "    if e <= t:"
+        yield "        n = 2"
+        yield f"    elif e < {NEVER}:"
+        yield from self._wake(place, "e", "        ")
 
     def _wake(self, place: int, instant: str, indent: str) -> Iterator[str]:
+        if self.watched is not None:
+            yield f"{indent}wakes[{place}] = {instant}"
+            return
         yield f"{indent}m = {instant}"
         yield f"{indent}wakes[{place}] = m"
         yield f"{indent}if m < queued[{place}]:"
         yield f"{indent}    queued[{place}] = m"
         yield f"{indent}    heappush(timers, (m, {place}))"
 
-    def is_timed(self, place: int) -> bool:
+    def _is_timed(self, place: int) -> bool:
         """Whether a node can change by time alone."""
         state = self.plan.graph.nodes[place]
         if state.op is StateOp.SINCE:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.python_intake import IntakeWriter
@@ -15,8 +15,13 @@ from rvmon.codegen.python_nodes import (
     value_before,
 )
 from rvmon.codegen.python_visit import VisitWriter, indented
+from rvmon.codegen.runtime.solo import only_location
+from rvmon.codegen.tables import tables_of
 from rvmon.spec.checked import Compare, Mode, ProbeAtom, SignalAtom
 from rvmon.spec.printer import format_formula
+
+_TABULATED = 5
+"""The letters of so many propositions stand in a table."""
 
 
 def unit_source(plan: Plan, arriving: frozenset[str] | None = None) -> str:
@@ -38,7 +43,9 @@ class _Writer:
         self.roles = roles_of(plan)
         names = (*plan.signals, *plan.events)
         present = tuple(name for name in names if arriving is None or name in arriving)
-        self.visit = VisitWriter(plan, self.roles, NodeWriter(plan, self.roles))
+        self.judges = [_judge(rule) for rule in plan.rules]
+        calm = all(judge == "SoloRule" for judge in self.judges)
+        self.visit = VisitWriter(plan, self.roles, NodeWriter(plan, self.roles), calm=calm)
         self.intake = IntakeWriter(plan, self.roles, self.visit, present)
 
     def lines(self) -> Iterator[str]:
@@ -48,10 +55,12 @@ class _Writer:
         yield "class Generated(Unit):"
         yield f'    """Judges {", ".join(rule.requirement.id for rule in self.plan.rules)}."""'
         yield ""
+        yield "    __slots__ = ()"
         yield from indented(self._constants())
         yield ""
         yield from indented(self.intake.lines())
         yield ""
+        yield from indented(self.visit.watch())
         yield from indented(self.visit.lines())
         yield ""
         yield from indented(self.visit.cones())
@@ -65,15 +74,20 @@ class _Writer:
 
     def _letters(self) -> Iterator[str]:
         for index, rule in enumerate(self.plan.rules):
-            yield f"def letters{index}(v):"
-            for name, weights in (
-                ("worse", rule.alphabet.pessimistic),
-                ("better", rule.alphabet.optimistic),
-            ):
-                places = [self.plan.graph.index[state] for state in rule.alphabet.propositions]
-                terms = [f"{w}[v[{p}]]" for p, w in zip(places, weights, strict=True)]
-                yield f"    {name} = {' + '.join(terms) or '0'}"
-            yield "    return worse, better"
+            alphabet = rule.alphabet
+            places = [self.plan.graph.index[state] for state in alphabet.propositions]
+            if len(places) <= _TABULATED:
+                listed = f"{tuple(alphabet.pessimistic)!r}, {tuple(alphabet.optimistic)!r}"
+                yield f"LETTERS{index} = letter_table({listed})"
+                yield ""
+                yield ""
+                yield f"def letters{index}(v):"
+                yield f"    return LETTERS{index}[{_counted(places)}]"
+            else:
+                yield f"def letters{index}(v):"
+                yield f"    worse = {_weighed(places, alphabet.pessimistic)}"
+                yield f"    better = {_weighed(places, alphabet.optimistic)}"
+                yield "    return worse, better"
             yield ""
             yield ""
 
@@ -107,15 +121,15 @@ class _Writer:
         yield f"MARKED = {marked!r}"
         yield f"HISTORIES = {histories!r}"
         yield "RULES = ("
-        for index, rule in enumerate(plan.rules):
-            yield f"    (letters{index}, {self._trigger(rule)}),  # {rule.requirement.id}"
+        for index, (rule, judge) in enumerate(zip(plan.rules, self.judges, strict=True)):
+            yield f"    ({judge}, letters{index}, {self._trigger(rule)}),  # {rule.requirement.id}"
         yield ")"
 
     def _trigger(self, rule: PlannedRule) -> str:
         place = -1 if rule.trigger is None else self.plan.graph.index[rule.trigger]
         requirement = rule.requirement
         episodic = requirement.mode is Mode.WHENEVER
-        return f"{place}, {requirement.pulse!r}, {episodic!r}, {rule.in_runs!r}"
+        return f"{place}, {requirement.pulse!r}, {episodic!r}"
 
     def _momentary(self) -> tuple[tuple[int, tuple[str, ...]], ...]:
         """The leaves that speak of one position, with the names of which they need one."""
@@ -134,6 +148,30 @@ class _Writer:
             for place, reads in graph.reads.items()
             if reads.momentary
         )
+
+
+def _judge(rule: PlannedRule) -> str:
+    """The class that judges a requirement."""
+    if rule.requirement.mode is Mode.WHENEVER and rule.automaton is not None:
+        tables = tables_of(rule.automaton)
+        if only_location(tables.initial, tables.cuts, tables.bases, tables.rows) is not None:
+            return "SoloRule"
+    return "BulkRule" if rule.in_runs else "Rule"
+
+
+def _counted(places: Sequence[int]) -> str:
+    """The number of what some nodes are, counted through in threes."""
+    terms = [
+        f"{3**power} * v[{place}]" if power else f"v[{place}]"
+        for power, place in zip(reversed(range(len(places))), places, strict=True)
+    ]
+    return " + ".join(terms) or "0"
+
+
+def _weighed(places: Sequence[int], weights: Sequence[Sequence[int]]) -> str:
+    return " + ".join(
+        f"{tuple(own)!r}[v[{place}]]" for place, own in zip(places, weights, strict=True)
+    )
 
 
 def _tuple(parts: Iterable[str]) -> str:

@@ -9,9 +9,12 @@ from typing import Any
 
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_source import unit_source
+from rvmon.codegen.runtime.bulk import BulkRule
 from rvmon.codegen.runtime.nodes import LIMIT, MISSING
 from rvmon.codegen.runtime.past import compared, finite, number
-from rvmon.codegen.runtime.table import NEVER, Table
+from rvmon.codegen.runtime.rule import Rule
+from rvmon.codegen.runtime.solo import SoloRule
+from rvmon.codegen.runtime.table import NEVER, Table, letter_table
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.codegen.tables import tables_of
 
@@ -27,6 +30,8 @@ def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]
     namespace: dict[str, Any] = {name: getattr(operator, name) for name in operations}
     namespace |= {"__name__": "rvmon.generated", "math": math, "NEVER": NEVER, "LIMIT": LIMIT}
     namespace |= {"MISSING": MISSING, "Unit": Unit, "heappush": heapq.heappush}
+    namespace |= {"Rule": Rule, "BulkRule": BulkRule, "SoloRule": SoloRule}
+    namespace["letter_table"] = letter_table
     namespace |= {"compared": compared, "finite": finite, "number": number}
     source = unit_source(plan, arriving)
     # The source holds names and numbers of the specification as literals only.

@@ -7,12 +7,10 @@ from collections.abc import Iterator
 
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_nodes import NEVER, NodeWriter, Roles, bits, keeps_stretches
+from rvmon.spec.checked import Mode
 
 _ARRAYS = ("v", "s", "last", "w", "b", "wakes", "queued", "timers", "since", "until", "before")
 """Attributes of the monitor that statements have at hand under their own name."""
-
-_CONCERNS = ("self.gathered", "self.restless", "self.repeating", "self.dues")
-"""If one of these holds, a position is to be judged though no letter changed."""
 
 _STRAIGHT = 40
 """Up to so many nodes stand one after the other; more are looked up by what changed."""
@@ -41,12 +39,24 @@ class VisitWriter:
         plan: what to judge.
         roles: of its nodes.
         nodes: writes their values.
+        calm: whether no requirement is ever asked because of time alone.
     """
 
-    def __init__(self, plan: Plan, roles: Roles, nodes: NodeWriter) -> None:
+    def __init__(self, plan: Plan, roles: Roles, nodes: NodeWriter, *, calm: bool) -> None:
         self.plan = plan
         self.roles = roles
         self.nodes = nodes
+        self.calm = calm
+        self.momentary = bits(
+            tuple(place for place, reads in plan.graph.reads.items() if reads.momentary)
+        )
+        self.gathers = any(uses.history or uses.marked for uses in plan.uses.values()) or any(
+            name in plan.uses for name in plan.events
+        )
+        self.repeats = any(
+            rule.requirement.pulse and rule.requirement.mode is not Mode.WHENEVER
+            for rule in plan.rules
+        )
         self.kept = [place for place in range(len(plan.graph.nodes)) if roles.kept >> place & 1]
         self.straight = len(self.kept) <= _STRAIGHT
 
@@ -80,64 +90,130 @@ class VisitWriter:
     def lines(self) -> Iterator[str]:
         """The method `visit`."""
         nodes = list(self._nodes() if self.straight else self._many())
+        given = "self.dirty | self.fading" if self.momentary else "self.dirty"
         before = "self.position" if self.plan.gap is None else f"t - {self.plan.gap}"
         yield "def visit(self, t):"
         yield '    """Move to the position at `t`."""'
         yield "    if self.origin is None:"
         yield "        self.start(t)"
         yield "        return"
-        yield "    dirty = self.dirty | self.fading"
+        yield f"    dirty = {given}"
         yield f"    before = self.before = {before}"
         if self.sparse():
             yield f"    if t - before > {self.span()}:"
             yield f"        dirty |= {self.sparse()}"
-        yield "    timers = self.timers"
-        yield "    if timers and timers[0][0] <= t:"
-        yield "        dirty |= self.ring(t)"
+        yield from indented(self._rung())
         yield "    fading = letters = triggers = 0"
         yield "    if dirty:"
-        yield from indented(at_hand(nodes, "before", "timers"), 2)
+        held = "timers" if self.nodes.watched is None else "wakes"
+        yield from indented(at_hand(nodes, "before", held), 2)
         yield from indented(nodes, 2)
         yield "        self.dirty = 0"
-        yield "    self.fading = fading"
+        if self.momentary:
+            yield "    self.fading = fading"
         yield "    self.position = t"
-        asked = ("letters", "triggers", "fading", *_CONCERNS)
         if self.plan.gap is not None and self.plan.gap > 1:
             yield "    self.conclude(t, letters, triggers)"
             return
-        yield f"    if {' or '.join(asked)}:"
+        if not self.calm:
+            yield "    dues = self.dues"
+        yield f"    if {' or '.join(self._concerns())}:"
         yield "        self.conclude(t, letters, triggers)"
-        yield "    else:"
-        yield f"        self.wake = timers[0][0] if timers else {NEVER}"
+        yield from indented(self._alarm())
 
-    def _nodes(self, places: list[int] | None = None) -> Iterator[str]:
-        """Nodes one after the other, by the bits of `dirty`: the n-th bit is the n-th of them."""
-        chosen = self.kept if places is None else places
-        number = {place: index for index, place in enumerate(chosen)}
-        if places is None:
-            number = {place: place for place in chosen}
-        momentary = bits(
-            tuple(place for place, reads in self.plan.graph.reads.items() if reads.momentary)
-        )
-        for place in chosen:
-            bit = 1 << place
+    def _concerns(self) -> Iterator[str]:
+        """If none of these holds, a position is not to be judged."""
+        yield "letters & self.active or triggers"
+        if self.momentary:
+            yield "fading"
+        if self.gathers:
+            yield "self.gathered"
+        if self.repeats:
+            yield "self.repeating"
+        if not self.calm:
+            yield "self.restless or (dues and dues[0][0] <= t)"
+
+    def _rung(self) -> Iterator[str]:
+        """See what time alone has changed."""
+        if self.nodes.watched is None:
+            yield "timers = self.timers"
+            yield "if timers and timers[0][0] <= t:"
+            yield "    dirty |= self.ring(t)"
+            return
+        yield "wakes = self.wakes"
+        for place in self.nodes.watched:
+            yield f"if wakes[{place}] <= t:"
+            yield f"    wakes[{place}] = {NEVER}"
+            yield f"    dirty |= {1 << place}"
+
+    def _alarm(self) -> Iterator[str]:
+        """Work out before when nothing happens; as `Unit.set_alarm`."""
+        waiting = ["self.fading"] if self.momentary else []
+        if self.repeats:
+            waiting.append("self.repeating")
+        if self.plan.gap is None and not self.calm:
+            waiting.append("self.restless")
+        if waiting:
+            yield f"if {' or '.join(waiting)}:"
+            yield "    self.wake = t + 1"
+            yield "    return"
+        yield "wake = LIMIT"
+        if self.nodes.watched is None:
+            yield "if timers and timers[0][0] < wake:"
+            yield "    wake = timers[0][0]"
+        for place in self.nodes.watched or ():
+            yield f"if wakes[{place}] < wake:"
+            yield f"    wake = wakes[{place}]"
+        if not self.calm:
+            yield "if dues and dues[0][0] < wake:"
+            yield "    wake = dues[0][0]"
+        yield "self.wake = wake"
+
+    def watch(self) -> Iterator[str]:
+        """The methods that take the place of a queue of timers."""
+        watched = self.nodes.watched
+        if watched is None:
+            return
+        yield "def set_wake(self, place, t):"
+        yield "    self.wakes[place] = t"
+        yield ""
+        yield "def next_timer(self):"
+        listed = "".join(f", self.wakes[{place}]" for place in watched)
+        yield f"    return {f'min(NEVER{listed})' if watched else 'NEVER'}"
+        yield ""
+        yield "def ring(self, t):"
+        yield "    dirty = 0"
+        yield from indented(self._rung())
+        yield "    return dirty"
+        yield ""
+
+    def _nodes(self) -> Iterator[str]:
+        """Nodes one after the other, by the bits of `dirty`."""
+        for place in self.kept:
             parents = self.roles.parents[place]
-            dirty = bits(tuple(number[other] for other in chosen if parents >> other & 1))
-            yield f"if dirty & {1 << number[place]}:"
+            dirty = bits(tuple(other for other in self.kept if parents >> other & 1))
+            yield f"if dirty & {1 << place}:"
             yield from indented(self.nodes.statements(place))
-            if momentary & bit:
-                yield f"    if n and self.momentary & {bit}:"
-                yield f"        fading |= {bit}"
+            yield from indented(self._momentary(place))
             yield f"    if n != v[{place}]:"
-            if self.roles.letters[place]:
-                yield f"        until[{3 * place} + v[{place}]] = before"
-                yield f"        since[{place}] = t"
-                yield f"        letters |= {self.roles.letters[place]}"
-            if self.roles.triggers[place]:
-                yield f"        triggers |= {self.roles.triggers[place]}"
-            if dirty:
-                yield f"        dirty |= {dirty}"
-            yield f"        v[{place}] = n"
+            yield from indented(self._changed(place, "n", dirty), 2)
+
+    def _momentary(self, place: int) -> Iterator[str]:
+        if self.momentary >> place & 1:
+            yield f"if n and self.momentary & {1 << place}:"
+            yield f"    fading |= {1 << place}"
+
+    def _changed(self, place: int, value: str, dirty: int) -> Iterator[str]:
+        """A node has another value: tell whom it concerns."""
+        if self.roles.letters[place]:
+            yield f"until[{3 * place} + v[{place}]] = before"
+            yield f"since[{place}] = t"
+            yield f"letters |= {self.roles.letters[place]}"
+        if self.roles.triggers[place]:
+            yield f"triggers |= {self.roles.triggers[place]}"
+        if dirty:
+            yield f"dirty |= {dirty}"
+        yield f"v[{place}] = {value}"
 
     def _many(self) -> Iterator[str]:
         yield "cone = self.CONES.get(dirty)"
@@ -157,15 +233,43 @@ class VisitWriter:
         if sum(map(len, found)) > _CONES:
             found = []
         for places in found:
-            lines = list(self._nodes(places))
             yield f"def cone{places[0]}(self, t):"
-            yield "    letters = triggers = fading = 0"
-            yield "    dirty = 1"
+            lines = [*self.nodes.statements(places[0]), *self._momentary(places[0])]
+            lines += [f"if n == v[{places[0]}]:", "    return 0, 0, fading"]
+            lines += ["if n == 2:", *indented(self._cone(places, "2"))]
+            lines += ["elif n == 0:", *indented(self._cone(places, "0"))]
+            lines += ["else:", *indented(self._cone(places, "1"))]
+            yield "    letters = triggers = fading = dirty = 0"
             yield from indented([*at_hand(lines), *lines])
             yield "    return letters, triggers, fading"
             yield ""
         cones = ", ".join(f"{1 << places[0]}: cone{places[0]}" for places in found)
         yield f"CONES = {{{cones}}}"
+
+    def _cone(self, places: list[int], value: str) -> Iterator[str]:
+        """What the new value of a leaf makes of the nodes above it."""
+        nodes = self.nodes
+        leaf, *above = places
+        number = {place: index for index, place in enumerate(places)}
+        nodes.settling(leaf, value)
+        yield from self._changed(leaf, value, 0)
+        sure = 1 << leaf
+        for place in above:
+            parents = self.roles.parents[place]
+            dirty = bits(tuple(number[other] for other in above if parents >> other & 1))
+            reached = any(
+                sure >> below & 1 and self.roles.parents[below] >> place & 1 for below in places
+            )
+            lines = list(nodes.statements(place))
+            if len(lines) == 1 and nodes.settling(place, lines[0].removeprefix("n = ")):
+                yield f"if v[{place}] != {nodes.settled[place]}:"
+                yield from indented(self._changed(place, nodes.settled[place], dirty))
+                continue
+            lines += [f"if n != v[{place}]:", *indented(self._changed(place, "n", dirty))]
+            if not reached:
+                yield f"if dirty & {1 << number[place]}:"
+            yield from indented(lines, 0 if reached else 1)
+        nodes.settled.clear()
 
     def _above(self, place: int) -> list[int]:
         """A node and those whose value depends on it, in order."""

@@ -50,7 +50,7 @@ _UNIT = (
     *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
     *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired", "timers"),
     *("began", "rules", "position", "after", "news", "dirty", "fading", "restless", "repeating"),
-    *("awaited", "dues", "due_at"),
+    *("awaited", "dues", "due_at", "active"),
 )
 
 _KEPT: Mapping[type, tuple[str, ...]] = {

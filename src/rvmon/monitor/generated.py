@@ -7,20 +7,19 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rvmon.automaton.letters import LetterDiagram
-from rvmon.automaton.machine import INFINITY, Token
+from rvmon.automaton.machine import INFINITY
 from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.planning import plan_of
 from rvmon.codegen.python_unit import machine_of, unit_class
 from rvmon.codegen.runtime.nodes import LIMIT
-from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.errors import RvmonError, TraceError, UnknownNameError
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.bench import Bench
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
-from rvmon.monitor.seat import Seat, packed, unpacked
+from rvmon.monitor.seat import Seat
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -133,10 +132,7 @@ class Forms:
         self.others = [one for one in requirements if not can_generate(one)]
         self.plan = plan_requirements(compiled, self.requirements)
         self.unit = unit_class(self.plan, sources)
-        self.machines: list[Any] = [
-            machine_of(self.plan, index) or one.machine("progression")
-            for index, one in enumerate(self.requirements)
-        ]
+        self.machines = [machine_of(self.plan, index) for index in range(len(self.requirements))]
 
 
 class GeneratedLanes(Lanes):
@@ -167,59 +163,13 @@ class GeneratedLanes(Lanes):
         super().__init__(spec, forms.others, engine, sources, ledger)
         self.alone = not forms.others
         self.unit = unit
-        unit.restart(self)
         self._counts = [0] * len(forms.requirements)
-        self._seats = [Seat(one, forms.plan, unit, ledger) for one in forms.requirements]
+        self._seats = [
+            Seat(one, forms.plan, unit, ledger, self._counts) for one in forms.requirements
+        ]
+        unit.restart(self, self._seats)
 
     # What the unit calls.
-
-    def opened(self, rule: Rule, triggered: int, token: Token) -> Open:
-        """A new attempt."""
-        self._counts[rule.index] += 1
-        attempt = Open(triggered, token, self._seats[rule.index].seen(self.unit.v))
-        attempt.number = self._counts[rule.index]
-        return attempt
-
-    def entered(self, rule: Rule) -> tuple[int, int]:
-        """The number of a new attempt, and what it sees at its trigger."""
-        self._counts[rule.index] += 1
-        return self._counts[rule.index], packed(self._seats[rule.index].seen(self.unit.v))
-
-    def reopened(self, rule: Rule, number: int, triggered: int, token: Token, seen: int) -> Open:
-        """An attempt that was moved together with others, by itself."""
-        seat = self._seats[rule.index]
-        attempt = Open(triggered, token, unpacked(seen, seat.leaf_count))
-        attempt.number = number
-        return attempt
-
-    def parted(self, rule: Rule, attempt: Open) -> None:
-        """Hear that unknown input made the two runs of an attempt part."""
-        attempt.doubt = self._seats[rule.index].judge_now(rule)._doubt()
-
-    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
-        """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
-        self.unit.news = True
-        seat = self._seats[rule.index]
-        record = seat.decided(
-            rule, attempt.number, attempt.triggered, attempt.seen, verdict, t, before
-        )
-        self.ledger.told(seat.compiled.rank, record)
-
-    def decided_in_run(
-        self,
-        rule: Rule,
-        number: int,
-        triggered: int,
-        seen: int,
-        verdict: bool,
-        t: int,
-        before: Token,
-    ) -> None:
-        """Hear of the decision of an attempt that was moved together with others."""
-        self.unit.news = True
-        seat = self._seats[rule.index]
-        record = seat.decided(rule, number, triggered, seen, verdict, t, before)
-        self.ledger.told(seat.compiled.rank, record)
 
     def told(self) -> Sequence[Attempt]:
         """The records of what was decided since the last call."""

@@ -91,8 +91,14 @@ class Ledger:
                 name = judge.compiled.requirement.id
                 attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
             self._started.clear()
-        if not self._decided and not self._told:
-            return ()
+        if not self._decided:
+            if not self._told:
+                return ()
+            if len(self._told) == 1:
+                [(_, record)] = self._told
+                self._told.clear()
+                self.attempts.append(record)
+                return [record]
         made, self._told = self._told, []
         made += [
             (judge.compiled.rank, replace(record, number=attempt.number))

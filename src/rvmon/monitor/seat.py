@@ -8,14 +8,15 @@ from typing import Any
 
 from rvmon.automaton.machine import Token
 from rvmon.codegen.plan import Plan
+from rvmon.codegen.runtime.bulk import unpacked
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.flow import Flow
-from rvmon.monitor.bench import Clerk, Open
+from rvmon.monitor.bench import Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.explain import explain_decision
 from rvmon.monitor.judge import Judge
-from rvmon.monitor.ledger import values_shown
+from rvmon.monitor.ledger import Ledger, values_shown
 from rvmon.verdict.attempt import Attempt, decided_attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -33,26 +34,35 @@ class Seat:
         compiled: the requirement.
         plan: that it is part of.
         unit: judges it.
-        clerk: whom a judge would tell.
+        ledger: takes the records.
+        counts: of the attempts of all requirements.
     """
 
-    def __init__(self, compiled: CompiledRequirement, plan: Plan, unit: Unit, clerk: Clerk) -> None:
-        self.compiled = compiled
+    def __init__(
+        self,
+        compiled: CompiledRequirement,
+        plan: Plan,
+        unit: Unit,
+        ledger: Ledger,
+        counts: list[int],
+    ) -> None:
+        self._compiled = compiled
         self._unit = unit
-        self._clerk = clerk
+        self._ledger = ledger
+        self._told = ledger.told
+        self._counts = counts
         graph = plan.graph
         places = tuple(graph.index[state] for state in compiled.alphabet.propositions)
         leaves = tuple(graph.index[leaf] for leaf, _ in compiled.leaves if leaf in graph.index)
-        self.seen = _picking(leaves)
-        """Gives the values of what it reads, from those of all nodes."""
+        self._seen_of = _picking(leaves)
         self._leaves = leaves
-        self.leaf_count = len(leaves)
         self._places = places
-        self._values_of = _picking(places)
+        self._values_of = _picking((*leaves, *places))
         self._since_of = _picking(places)
         self._until_of = _picking(tuple(3 * place + truth for place in places for truth in (0, 2)))
         self._plan = plan
         self._id = compiled.requirement.id
+        self._rank = compiled.rank
         self._upon_end = compiled.obligation.trigger is None
         self.details = self._details
 
@@ -66,13 +76,46 @@ class Seat:
     def _judge(
         self, flow: Flow, letters: tuple[int, int], position: int, attempts: list[Open]
     ) -> Judge:
-        judge = Judge(self.compiled, self.compiled.machine("auto"), flow, self._clerk, {})
+        judge = Judge(self._compiled, self._compiled.machine("auto"), flow, self._ledger, {})
         judge.letters = letters
         judge.position = position
         judge.attempts = attempts
         return judge
 
-    def decided(
+    # What the unit calls.
+
+    def opened(self, rule: Rule, triggered: int, token: Token) -> Open:
+        """A new attempt."""
+        attempt = Open(triggered, token, self._seen_of(self._unit.v))
+        self._counts[rule.index] += 1
+        attempt.number = self._counts[rule.index]
+        return attempt
+
+    def entered(self, rule: Rule) -> tuple[int, tuple[int, ...]]:
+        """The number of a new attempt, and what it sees at its trigger."""
+        counts = self._counts
+        number = counts[rule.index] = counts[rule.index] + 1
+        return number, self._seen_of(self._unit.v)
+
+    def reopened(
+        self, _: Rule, number: int, triggered: int, token: Token, seen: tuple[int, ...] | int
+    ) -> Open:
+        """An attempt that was moved together with others, by itself."""
+        attempt = Open(triggered, token, self._unpacked(seen))
+        attempt.number = number
+        return attempt
+
+    def parted(self, rule: Rule, attempt: Open) -> None:
+        """Hear that unknown input made the two runs of an attempt part."""
+        attempt.doubt = self.judge_now(rule)._doubt()
+
+    def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
+        """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
+        self.decided_in_run(
+            rule, attempt.number, attempt.triggered, attempt.seen, verdict, t, before
+        )
+
+    def decided_in_run(
         self,
         rule: Rule,
         number: int,
@@ -81,8 +124,8 @@ class Seat:
         verdict: bool,
         t: int,
         before: Token,
-    ) -> Attempt:
-        """The record of a decision.
+    ) -> None:
+        """Write the record of a decision.
 
         Args:
             rule: judged it.
@@ -94,33 +137,39 @@ class Seat:
             before: its token before that.
         """
         unit = self._unit
-        v = unit.v
-        return decided_attempt(
-            self._id,
-            number,
-            triggered,
-            triggered if self._upon_end else t,
-            _PASS if verdict else _FAIL,
-            self.details,
-            # One flat tuple, which costs the collector of garbage next to nothing.
-            (
-                *(seen, t, before, rule.letter, rule.other, rule.position),
-                *self.seen(v),
-                *self._values_of(v),
-                *self._since_of(unit.since),
-                *self._until_of(unit.until),
+        unit.news = True
+        self._told(
+            self._rank,
+            decided_attempt(
+                self._id,
+                number,
+                triggered,
+                triggered if self._upon_end else t,
+                _PASS if verdict else _FAIL,
+                self.details,
+                # One flat tuple, which costs the collector of garbage next to nothing.
+                (
+                    *(seen, t, before, rule.letter, rule.other, rule.position),
+                    *self._values_of(unit.v),
+                    *self._since_of(unit.since),
+                    *self._until_of(unit.until),
+                ),
             ),
         )
+
+    # What others ask.
+
+    def _unpacked(self, seen: tuple[int, ...] | int) -> tuple[int, ...]:
+        return unpacked(seen, len(self._leaves)) if isinstance(seen, int) else seen
 
     def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
         """All that a record says beside the verdict, from what was noted at the decision."""
         seen_then, t, before, letter, other, position, *rest = noted
-        if isinstance(seen_then, int):
-            seen_then = unpacked(seen_then, self.leaf_count)
-        count = len(self._places)
-        seen = tuple(rest[: self.leaf_count])
-        values, since = rest[self.leaf_count :][:count], rest[self.leaf_count + count :][:count]
-        until = rest[self.leaf_count + 2 * count :]
+        seen_then = self._unpacked(seen_then)
+        leaves, count = len(self._leaves), len(self._places)
+        seen = tuple(rest[:leaves])
+        values, since = rest[leaves:][:count], rest[leaves + count :][:count]
+        until = rest[leaves + 2 * count :]
         nodes: dict[int, int] = dict(zip(self._leaves, seen, strict=True))
         nodes |= zip(self._places, values, strict=True)
         instants = {}
@@ -167,24 +216,3 @@ def _picking(places: tuple[int, ...]) -> Pick:
         (place,) = places
         return lambda values: (values[place],)
     return itemgetter(*places)
-
-
-def packed(truths: tuple[int, ...]) -> int:
-    """Truth values as one number.
-
-    >>> unpacked(packed((2, 0, 1)), 3)
-    (2, 0, 1)
-    """
-    number = 0
-    for truth in truths:
-        number = 3 * number + truth
-    return number
-
-
-def unpacked(number: int, count: int) -> tuple[int, ...]:
-    """So many truth values that `packed` made one number of."""
-    truths = []
-    for _ in range(count):
-        number, truth = divmod(number, 3)
-        truths.append(truth)
-    return tuple(reversed(truths))

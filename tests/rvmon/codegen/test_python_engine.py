@@ -1,5 +1,7 @@
 """Generated Python monitors against the oracle, and as monitors."""
 
+from collections import UserDict
+
 import pytest
 
 import rvmon
@@ -100,3 +102,30 @@ def test_many_names_are_taken_entry_by_entry():
         found.append(monitor.finish(300))
     assert found[0] == found[1]
     assert {"P", "F"} <= {attempt.verdict for attempt in found[0].attempts}
+
+
+NO_SAMPLES = [5, None, "x", "ab", ["closed", "width"], ("a", "b", "c"), {"closed"}, 2.5, object()]
+
+
+@pytest.mark.parametrize("engine", ["python", "automaton", "progression", "network"])
+@pytest.mark.parametrize("values", NO_SAMPLES, ids=lambda value: type(value).__name__)
+def test_what_holds_no_values_by_name_is_refused(engine, values):
+    """Whatever stands where a mapping belongs, the error says so, and the run goes on."""
+    monitor = rvmon.loads(TEXT).monitor(engine=engine)
+    for t in (0, 7):
+        with pytest.raises(rvmon.TraceError, match="expected values by name"):
+            monitor.step_ns(t + 1, values)
+        monitor.step_ns(t + 2, {"closed": True})
+    assert monitor.finish_ns().end == 9
+
+
+def test_values_are_taken_from_any_mapping():
+    """What a sample holds is asked for by name, also where it comes one name at a time."""
+    found = []
+    for wrap in (dict, UserDict):
+        monitor = rvmon.loads(TEXT).monitor()
+        rows = [{"closed": True, "width": 0.5}, {"knock": True}, {}, {"width": 2.0}, {"width": 2.0}]
+        decided = [monitor.step(t, wrap(row)) for t, row in enumerate(rows)]
+        found.append(([[one.decided for one in step] for step in decided], monitor.finish()))
+    assert found[0] == found[1]
+    assert [len(step) for step in found[0][0]] == [0, 0, 0, 1, 1]

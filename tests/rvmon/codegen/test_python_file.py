@@ -70,6 +70,9 @@ def test_it_refuses_what_the_spec_does_not_know():
     for t, values in [(1, {"door": 1}), (1, {"closed": 1}), (1, {"mode": "mad"}), (0, {})]:
         with pytest.raises(ValueError, match=r"expect|no value|later"):
             monitor.step(t, values)
+    for values in (5, None, "ab", ["closed", "mode", "knock"]):
+        with pytest.raises(ValueError, match="expected values by name"):
+            monitor.step_ns(1, values)
     [failed] = monitor.step(2.5, {"mode": "busy"})
     assert (failed.requirement, failed.verdict, failed.decided) == ("D1", "F", 2 * 10**9 + 1)
     assert monitor.finish_ns() == {"D1": "F", "D2": "P", "D3": "F"}

@@ -55,7 +55,7 @@ class Monitor:
 
     def reset(self) -> None:
         """Forget the run."""
-        self.unit.restart(self)
+        self.unit.restart(self, [self] * len(self.NAMES))
         self.attempts: list[Attempt] = []
         self.fresh: list[Attempt] = []
         self.counts = [0] * len(self.NAMES)
@@ -70,17 +70,17 @@ class Monitor:
         self.counts[rule.index] += 1
         return Open(self.counts[rule.index], triggered, token)
 
-    def entered(self, rule: Rule) -> tuple[int, int]:
+    def entered(self, rule: Rule) -> tuple[int, tuple[int, ...]]:
         """The number of a new attempt, and nothing that was seen."""
         self.counts[rule.index] += 1
-        return self.counts[rule.index], 0
+        return self.counts[rule.index], ()
 
-    def reopened(self, _: Rule, number: int, triggered: int, token: Any, __: int) -> Open:
+    def reopened(self, _: Rule, number: int, triggered: int, token: Any, __: Any) -> Open:
         """An attempt that was moved together with others, by itself."""
         return Open(number, triggered, token)
 
     def decided_in_run(
-        self, rule: Rule, number: int, triggered: int, _: int, verdict: bool, t: int, __: Any
+        self, rule: Rule, number: int, triggered: int, _: Any, verdict: bool, t: int, __: Any
     ) -> None:
         """Hear of the decision of an attempt that was moved together with others."""
         self.decided(rule, Open(number, triggered, None), verdict, t, None)
@@ -91,7 +91,7 @@ class Monitor:
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, _: Any) -> None:
         """Hear of a decision."""
         self.unit.news = True
-        upon_end = self.unit.RULES[rule.index][1] < 0
+        upon_end = self.unit.RULES[rule.index][2] < 0
         at = attempt.triggered if upon_end else t
         self._record(rule, attempt, at, "P" if verdict else "F", "prefix")
 
@@ -121,6 +121,8 @@ class Monitor:
             raise ValueError(
                 f"sample at {t!r}: expected whole nanoseconds, later than {self.unit.after}"
             )
+        if not hasattr(values, "items"):
+            raise ValueError(f"sample at {t}: expected values by name, found {values!r}")
         plain = {name: self._plain(name, value) for name, value in values.items()}
         self.unit.through(t - 1)
         self.unit.take(t, plain)

@@ -105,7 +105,7 @@ class BulkRule(Rule):
         run = self.runs.get(target)
         if run is None:
             run = self.runs[target] = Run()
-        run.append(triggered, number, seen)
+        run.append(triggered, number, packed(seen))
         due = t + 1
         onward = machine.rows[machine.bases[target]][kind]
         if onward is not None and onward[0] == target:
@@ -304,6 +304,27 @@ class BulkRule(Rule):
                 found.append(self.clerk.reopened(self, number, triggered, token, seen))
         found.sort(key=lambda attempt: attempt.number)
         return found
+
+
+def packed(truths: Sequence[int]) -> int:
+    """Truth values as one number.
+
+    >>> unpacked(packed((2, 0, 1)), 3)
+    (2, 0, 1)
+    """
+    number = 0
+    for truth in truths:
+        number = 3 * number + truth
+    return number
+
+
+def unpacked(number: int, count: int) -> tuple[int, ...]:
+    """So many truth values that `packed` made one number of."""
+    truths = []
+    for _ in range(count):
+        number, truth = divmod(number, 3)
+        truths.append(truth)
+    return tuple(reversed(truths))
 
 
 def _first_trigger(part: tuple[int, Run, int, int, int]) -> int:

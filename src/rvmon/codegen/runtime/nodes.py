@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heapq import heappop, heappush
+from heapq import heappop, heappush, heapreplace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -36,9 +36,38 @@ class Nodes:
         w: per node, what it remembers, taking the unknown for the worse.
         b: the same, taking it for the better.
         wakes: per node, when it changes by itself.
-        wake: before this instant, no sample coming, nothing happens.
+        wake: before this instant, no sample coming, nothing happens; `LIMIT` at most.
         queued: per node, the instant at which `timers` has it next.
     """
+
+    __slots__ = (
+        "absent",
+        "b",
+        "before",
+        "c",
+        "expired",
+        "first",
+        "gathered",
+        "h",
+        "last",
+        "marked",
+        "momentary",
+        "o",
+        "origin",
+        "p",
+        "queued",
+        "s",
+        "silent",
+        "since",
+        "stale_at",
+        "timers",
+        "u",
+        "until",
+        "v",
+        "w",
+        "wake",
+        "wakes",
+    )
 
     SIGNALS: tuple[str, ...] = ()
     EVENTS: tuple[str, ...] = ()
@@ -103,12 +132,13 @@ class Nodes:
 
     # What nodes call.
 
-    def since_(self, place: int, t: int, left: int, right: int) -> int:
-        """The value of a `since` with both bounds."""
+    def since_(self, place: int, t: int, left: int, right: int) -> tuple[int, int]:
+        """The value of a `since` with both bounds, and when it changes by time alone."""
         node = self.marked[place]
-        value = node.step(t, self.before, left, right)
-        self.set_wake(place, node.wake)
-        return value
+        if left == UNKNOWN or right == UNKNOWN or node.pessimistic is not node.optimistic:
+            return node.step(t, self.before, left, right), node.wake
+        one = node.pessimistic
+        return (TRUE if one.step(t, self.before, left == TRUE, right == TRUE) else FALSE), one.wake
 
     def within_(self, place: int, t: int, left: int, right: int, high: int) -> int:
         """The value of a `since` with an upper bound, over what may be unknown."""
@@ -203,16 +233,26 @@ class Nodes:
     def ring(self, t: int) -> int:
         """The leaves and operators that time alone makes change at `t`."""
         dirty = 0
-        timers = self.timers
+        timers, wakes, queued = self.timers, self.wakes, self.queued
+        nodes = self.NODES
         while timers and timers[0][0] <= t:
-            at, code = heappop(timers)
-            if code < self.NODES:
-                if self.wakes[code] <= t:
-                    self.wakes[code] = self.queued[code] = NEVER
+            at, code = timers[0]
+            if code < nodes:
+                due = wakes[code]
+                if due <= t:
+                    heappop(timers)
+                    wakes[code] = queued[code] = NEVER
                     dirty |= 1 << code
+                elif queued[code] != at:
+                    heappop(timers)
+                elif due < NEVER:
+                    heapreplace(timers, (due, code))
+                    queued[code] = due
                 else:
-                    self.requeue(at, code)
+                    heappop(timers)
+                    queued[code] = NEVER
                 continue
+            heappop(timers)
             signal = code - self.NODES
             actual = self.stale_at[signal]
             if actual <= t:

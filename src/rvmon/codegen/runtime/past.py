@@ -19,7 +19,7 @@ class Stretches:
     Source: interval marking after Basin, Klaedtke and Zalinescu 2011.
     """
 
-    __slots__ = ("gap", "growing", "high", "left", "low", "right", "runs")
+    __slots__ = ("gap", "growing", "high", "left", "low", "right", "runs", "wake")
 
     def __init__(self, low: int, high: int | None, gap: int) -> None:
         self.low = low
@@ -29,25 +29,35 @@ class Stretches:
         self.right = False
         self.growing = False
         self.runs: deque[list[int]] = deque()
+        self.wake = NEVER
+        """When the value changes by time alone, the operands staying."""
 
     def step(self, t: int, last: int, left: bool, right: bool) -> bool:
         """Take the operands at `t`; those given before held at all positions up to `last`."""
+        runs = self.runs
         if self.growing:
-            self.runs[-1][1] = last + self.high
+            runs[-1][1] = last + self.high
             self.growing = False
-        if not self.left and self.right:
+        elif self.right and not self.left:
             self.mark(last + self.low, last + self.high)
         self.left, self.right = left, right
-        runs = self.runs
+        self.wake = NEVER
         if not left:
             runs.clear()
             return right and self.low == 0
         if right:
             self.mark(t + self.low, NEVER)
             self.growing = True
-        while runs and runs[0][1] < t:
+        while runs:
+            start, end = runs[0]
+            if end >= t:
+                if start > t:
+                    self.wake = start
+                    return False
+                self.wake = end + 1 if end < NEVER else NEVER
+                return True
             runs.popleft()
-        return bool(runs) and runs[0][0] <= t
+        return False
 
     def mark(self, start: int, end: int) -> None:
         """Add the stretch from `start` to `end`."""
@@ -55,13 +65,6 @@ class Stretches:
             self.runs[-1][1] = end
         else:
             self.runs.append([start, end])
-
-    def next_change(self, t: int) -> int:
-        """The next instant after `t` at which the value changes, the operands staying."""
-        if not self.runs:
-            return NEVER
-        start, end = self.runs[0]
-        return start if start > t else min(end + 1, NEVER)
 
     def copy(self) -> Stretches:
         """The same, independent from now on."""
@@ -94,12 +97,12 @@ class Since:
         if worse is better:
             if left != UNKNOWN and right != UNKNOWN:
                 holds = worse.step(t, last, left == TRUE, right == TRUE)
-                self.wake = worse.next_change(t)
+                self.wake = worse.wake
                 return TRUE if holds else FALSE
             better = self.optimistic = worse.copy()
         holds = worse.step(t, last, left == TRUE, right == TRUE)
         may_hold = better.step(t, last, left != FALSE, right != FALSE)
-        self.wake = min(worse.next_change(t), better.next_change(t))
+        self.wake = min(worse.wake, better.wake)
         if worse.same(better):
             self.optimistic = worse
         return TRUE if holds else UNKNOWN if may_hold else FALSE

@@ -2,9 +2,20 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.table import FAILED, NEVER, PASSED, next_cut, run, settle
+from rvmon.codegen.runtime.table import (
+    BARE,
+    FAILED,
+    FRESH,
+    HELD,
+    NEVER,
+    PASSED,
+    next_cut,
+    run,
+    settle,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,7 +32,7 @@ class Rule:
 
     Args:
         index: of the requirement.
-        machine: judges its attempts.
+        machine: judges its attempts; `None`: somebody else does.
         letters: gives, from the values, the letters with the unknown taken for worse and better.
         pulse: whether it starts an attempt at every position where its trigger holds.
         episodic: whether one attempt runs at a time, until the trigger is false.
@@ -49,6 +60,7 @@ class Rule:
         "letter",
         "letters",
         "machine",
+        "moves",
         "other",
         "position",
         "pulse",
@@ -72,6 +84,7 @@ class Rule:
     ) -> None:
         self.index = index
         self.machine = machine
+        self.moves: Any = None if machine is None else machine.moves
         self.letters = letters
         self.pulse = pulse
         self.episodic = episodic
@@ -145,16 +158,54 @@ class Rule:
                 kept.append(attempt)
                 if own < due:
                     due = own
-        self.attempts = kept
+        if len(kept) < len(attempts):
+            self.attempts = kept
         self.due = due
 
     def stepped(self, attempt: Any, t: int) -> int | None:
         """Step an attempt at the position `t`; returns when it is due, `None` if it was decided."""
         if attempt.better is None and self.letter == self.other:
             before = attempt.token
+            if self.moves is not None:
+                return self._quick(attempt, before, t)
             token, due = self._step(before, self.letter, t)
             return self._moved(attempt, before, token, due)
         return self._both(attempt, lambda token, letter: self._step(token, letter, t))
+
+    def _quick(self, attempt: Any, before: Token, t: int) -> int | None:
+        """As `_step`, by the moves of an automaton with one clock at most."""
+        machine = self.machine
+        location, anchors = before
+        kind = machine.class_of[self.letter]
+        if anchors:
+            cuts = machine.cuts_of[location][0]
+            region = bisect_right(cuts, t - anchors[0])
+            target, how, leads_on = self.moves[location][region][kind]
+            if how == HELD:
+                return anchors[0] + cuts[region] if region < len(cuts) else NEVER
+        else:
+            target, how, leads_on = self.moves[location][0][kind]
+            if how == HELD:
+                return NEVER
+        if target <= PASSED:
+            self.clerk.decided(self, attempt, target == PASSED, t, before)
+            return None
+        if how == BARE:
+            attempt.token = machine.bare[target]
+            due = NEVER
+        elif how == FRESH:
+            attempt.token = (target, (t,))
+            cuts = machine.cuts_of[target][0]
+            due = t + cuts[0] if cuts else NEVER
+        else:
+            attempt.token = (target, anchors)
+            due = next_cut(machine, attempt.token, t)
+            if leads_on is None:
+                leads_on = not machine.stays(attempt.token, t, self.letter)
+        if leads_on:
+            self.restless = True
+            return t + 1
+        return due
 
     def _step(self, token: Token, letter: int, t: int) -> tuple[Token, int]:
         moved = self.machine.step(token, t, letter)

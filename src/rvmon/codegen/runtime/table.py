@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -56,6 +57,7 @@ class Table:
         self.end_clauses = end_clauses
         self.kept = [tuple(range(count)) for count in range(1 + max(map(len, cuts)))]
         self.bare: list[Token] = [(location, ()) for location in range(len(cuts))]
+        self.moves = moves_of(self) if len(self.kept) <= 2 else None
 
     def row(self, token: Token, t: int) -> int:
         """The row of a token at `t`."""
@@ -107,6 +109,70 @@ class Table:
             )
             for clause in self.end_clauses[location]
         )
+
+
+HELD, BARE, FRESH, KEPT = 0, 1, 2, 3
+"""How a token of one clock at most moves: not at all; to a location without a clock; to one whose
+clock is started now; to another location with its clock."""
+
+Move = Any
+"""Target, how the token moves, and whether the same letter would lead on from there; `None` if
+that depends on the age."""
+
+
+def moves_of(table: Table) -> list[list[list[Move]]]:
+    """What each edge of an automaton with one clock at most does, worked out before.
+
+    Returns:
+        Per location, region and class of letters the move; `None` where no run comes.
+    """
+    found = []
+    for location, cuts in enumerate(table.cuts_of):
+        count = len(cuts[0]) + 1 if cuts else 1
+        stride = table.strides[location][0] if cuts else 0
+        rows = [table.rows[table.bases[location] + region * stride] for region in range(count)]
+        found.append(
+            [[_move(table, location, kind, edge) for kind, edge in enumerate(row)] for row in rows]
+        )
+    return found
+
+
+def _move(table: Table, location: int, kind: int, edge: Any) -> Move:
+    if edge is None:
+        return None
+    target, sources = edge
+    if target <= PASSED:
+        return target, BARE, False
+    if target == location and sources == table.kept[len(table.cuts_of[location])]:
+        return target, HELD, False
+    loops = _loops_of(table, target, kind)
+    if not sources:
+        return target, BARE, not loops[0]
+    if sources[0] < 0:
+        return target, FRESH, not loops[bisect_right(table.cuts_of[target][0], 0)]
+    return target, KEPT, not loops[0] if len(set(loops)) == 1 else None
+
+
+def _loops_of(table: Table, location: int, kind: int) -> list[bool]:
+    """Per region of a location, whether a token there stays as it is under a letter."""
+    cuts = table.cuts_of[location]
+    count = len(cuts[0]) + 1 if cuts else 1
+    stride = table.strides[location][0] if cuts else 0
+    edges = [table.rows[table.bases[location] + region * stride][kind] for region in range(count)]
+    return [edge is not None and edge == (location, table.kept[len(cuts)]) for edge in edges]
+
+
+def letter_table(worse: Sequence[Sequence[int]], better: Sequence[Sequence[int]]) -> list[Any]:
+    """The letters of all values of some propositions, counted through in threes.
+
+    Args:
+        worse: per proposition what each of its values adds, the unknown taken for the worse.
+        better: the same, taken for the better.
+
+    >>> letter_table([(0, 0, 1)], [(0, 1, 1)])
+    [(0, 0), (0, 1), (1, 1)]
+    """
+    return [(sum(one), sum(other)) for one, other in zip(product(*worse), product(*better))]  # noqa: B905
 
 
 def next_cut(machine: Any, token: Token, t: int) -> int:

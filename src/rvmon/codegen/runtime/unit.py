@@ -5,13 +5,13 @@ from __future__ import annotations
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.bulk import BulkRule
 from rvmon.codegen.runtime.nodes import LIMIT, Nodes
-from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.table import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+    from rvmon.codegen.runtime.rule import Rule
 
 
 class Unit(Nodes):
@@ -31,11 +31,30 @@ class Unit(Nodes):
         restless: the requirements to be asked at the next position whatever changes.
         repeating: the requirements that start an attempt at the next position if nothing changes.
         awaited: the next position at which samples that were taken will show.
+        active: the requirements that have open attempts.
         dues: when requirements are due; `due_at` says which entries still hold.
     """
 
-    RULES: tuple[tuple[Callable[[list[int]], tuple[int, int]], int, bool, bool, bool], ...] = ()
-    """Per requirement: the letters, the node of its trigger, pulse, episodic, moved in runs."""
+    __slots__ = (
+        "active",
+        "after",
+        "awaited",
+        "began",
+        "clerk",
+        "dirty",
+        "due_at",
+        "dues",
+        "fading",
+        "machines",
+        "news",
+        "position",
+        "repeating",
+        "restless",
+        "rules",
+    )
+
+    RULES: tuple[tuple[type[Rule], Callable[[list[int]], tuple[int, int]], int, bool, bool], ...]
+    """Per requirement: what judges it, its letters, the node of its trigger, pulse, episodic."""
 
     step: Callable[[int, Mapping[str, Any]], Sequence[Any]]
     """Take one sample; returns what it decided."""
@@ -48,23 +67,17 @@ class Unit(Nodes):
         super().__init__(absent)
         self.machines = machines
 
-    def restart(self, clerk: Any) -> None:
+    def restart(self, clerk: Any, clerks: Sequence[Any]) -> None:
         """Begin a run.
 
         Args:
-            clerk: makes attempts and hears of decisions.
+            clerk: takes samples that need a closer look, and tells of decisions.
+            clerks: per requirement, who makes attempts and hears of decisions.
         """
         self.clear()
         self.clerk = clerk
         self.began: int | None = None
-        self.rules = [
-            (BulkRule if bulk else Rule)(
-                index, machine, letters, pulse, episodic, self.GAP, self.v, clerk
-            )
-            for index, ((letters, _, pulse, episodic, bulk), machine) in enumerate(
-                zip(self.RULES, self.machines)  # noqa: B905
-            )
-        ]
+        self.rules = [self._rule(index, one) for index, one in enumerate(clerks)]
         self.position = 0
         self.after = -LIMIT
         self.news = False
@@ -75,6 +88,12 @@ class Unit(Nodes):
         self.awaited = NEVER
         self.dues: list[tuple[int, int]] = []
         self.due_at = [NEVER] * len(self.rules)
+        self.active = 0
+
+    def _rule(self, index: int, clerk: Any) -> Rule:
+        class_, letters, _, pulse, episodic = self.RULES[index]
+        machine = self.machines[index]
+        return class_(index, machine, letters, pulse, episodic, self.GAP, self.v, clerk)
 
     # Positions.
 
@@ -85,11 +104,11 @@ class Unit(Nodes):
         self.origin = self.position = t
         self.before = t - (self.GAP or 1)
         self.since[:] = [t] * self.NODES
-        if self.timers and self.timers[0][0] <= t:
-            self.ring(t)
+        self.ring(t)
         _, _, self.fading = self.evaluate(t, self.KEPT)
         self.dirty = 0
         self.conclude(t, 0, (1 << len(self.rules)) - 1)
+        self.set_alarm()
 
     def evaluate(self, t: int, dirty: int) -> tuple[int, int, int]:
         """Evaluate nodes and what depends on them.
@@ -123,50 +142,46 @@ class Unit(Nodes):
     def conclude(self, t: int, letters: int, triggers: int) -> None:
         """Have the position judged by those whom it concerns."""
         self.awaited = NEVER
-        letters |= self.restless
+        letters = (letters | self.restless) & self.active
         dues = self.dues
         while dues and dues[0][0] <= t:
             due, index = heappop(dues)
             if self.due_at[index] == due:
                 self.due_at[index] = NEVER
-                letters |= 1 << index
+                letters |= 1 << index & self.active
         rules = self.rules
         while letters:
             bit = letters & -letters
             letters ^= bit
             rule = rules[bit.bit_length() - 1]
-            if rule.attempts or rule.runs:
-                rule.visit(t)
-                self.note(rule)
+            rule.visit(t)
+            self.note(rule)
         triggers |= self.repeating
         while triggers:
             bit = triggers & -triggers
             triggers ^= bit
             index = bit.bit_length() - 1
-            place = self.RULES[index][1]
+            place = self.RULES[index][2]
             if place < 0:
                 continue
             rule = rules[index]
             if rule.starts(self.v[place]):
                 rule.begin(t, t)
                 self.note(rule)
-            self.repeating = self.repeating | bit if rule.repeats else self.repeating & ~bit
+            if rule.pulse:
+                self.repeating = self.repeating | bit if rule.repeats else self.repeating & ~bit
         if self.gathered:
             self.leave()
-        self.set_alarm()
 
     def set_alarm(self) -> None:
         """Work out before when nothing happens; it may come to nothing at that instant."""
         if self.origin is None:
             return
-        timers, dues = self.timers, self.dues
-        wake = timers[0][0] if timers else NEVER
-        if dues and dues[0][0] < wake:
-            wake = dues[0][0]
+        wake = min(LIMIT, self.next_timer(), self.awaited)
+        if self.dues:
+            wake = min(wake, self.dues[0][0])
         if self.fading or self.repeating or (self.restless and self.GAP is None):
-            wake = self.position + 1
-        if self.awaited < wake:
-            wake = self.awaited
+            wake = min(wake, self.position + 1)
         self.wake = wake
 
     # Time.
@@ -199,6 +214,7 @@ class Unit(Nodes):
     def note(self, rule: Rule) -> None:
         """Note when a requirement is due, and whether it has to be asked at the next position."""
         bit = 1 << rule.index
+        self.active = self.active | bit if rule.attempts or rule.runs else self.active & ~bit
         self.restless = self.restless | bit if rule.restless else self.restless & ~bit
         if rule.due != self.due_at[rule.index]:
             self.due_at[rule.index] = rule.due
@@ -261,7 +277,7 @@ class Unit(Nodes):
         """Come to the end of the trace; time has come to `end` before."""
         for rule in self.rules:
             rule.pass_to(end)
-        for rule, (_, place, *_) in zip(self.rules, self.RULES):  # noqa: B905
+        for rule, (_, _, place, *_) in zip(self.rules, self.RULES):  # noqa: B905
             if place < 0 and self.origin is not None:
                 rule.begin(self.last_position(end), end)
         for rule in self.rules:
