@@ -4,7 +4,8 @@
 
 Formulas are drawn until so many temporal operators are nested in each as was asked for; every other
 is owed from the start, the others `whenever p`. CPU times are of construction and reduction
-together. Exits 1 if one takes longer than the budget of `--most` seconds.
+together; then of forecasts, ten at most for each automaton. Exits 1 if one takes longer
+than the budget of `--most` seconds.
 """
 
 from __future__ import annotations
@@ -15,11 +16,13 @@ import statistics
 import sys
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
+from rvmon.automaton.forecast import Forecaster
+from rvmon.automaton.location import PASSED
 from rvmon.automaton.reduce import reduce
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
@@ -69,6 +72,7 @@ def main(argv: Sequence[str]) -> int:
     seconds: list[tuple[float, str]] = []
     sizes: list[tuple[Size, Size, Size]] = []
     refused: Counter[str] = Counter()
+    forecasts: list[tuple[float, str]] = []
     drawn = 0
     while len(seconds) < options.formulas:
         dice = random.Random(f"{options.seed}/{drawn}")
@@ -78,24 +82,41 @@ def main(argv: Sequence[str]) -> int:
             continue
         mode = {"upon": start} if len(seconds) % 2 else {"whenever": p}
         began = time.process_time()
+        found: Automaton | None = None
         try:
-            sizes.append(_built(owed, mode))
+            found, own = _built(owed, mode)
+            sizes.append(own)
         except DoesNotCloseError as error:
             refused[str(error)] += 1
         seconds.append((time.process_time() - began, show(owed)))
+        if found is not None:
+            forecasts += [(spent, show(owed)) for spent in _forecast(found, dice)]
     _print(options, sizes, refused, seconds)
-    return int(max(seconds)[0] > options.most)
+    print(f"  {len(forecasts)} forecasts, of what may be owed at the end of a trace")
+    _print_seconds(forecasts)
+    return int(max(max(seconds), max(forecasts))[0] > options.most)
 
 
-def _built(owed: Formula, mode: dict[str, Formula]) -> tuple[Size, Size, Size]:
-    """As constructed, as people are told of it, and as verdicts alone want it."""
+def _forecast(automaton: Automaton, dice: random.Random) -> Iterator[float]:
+    """Seconds for the forecasts of some locations, each at ages about its bounds."""
+    forecaster = Forecaster()
+    waiting = automaton.locations[PASSED + 1 :]
+    for location in dice.sample(waiting, min(len(waiting), 10)):
+        ages = [dice.choice((0, *cuts)) for cuts in location.cuts]
+        began = time.process_time()
+        forecaster.of(location.residual, sorted(ages, reverse=True), 1)
+        yield time.process_time() - began
+
+
+def _built(owed: Formula, mode: dict[str, Formula]) -> tuple[Automaton, tuple[Size, Size, Size]]:
+    """The automaton, and its size as constructed, as people are told of it, and as verdicts alone want it."""
     factory = Factory()
     obligation = lower(
         requirement(owed, upon=mode.get("upon"), whenever=mode.get("whenever")), factory
     )
     whole = construct(factory.next(obligation.owed), alphabet_of(obligation.owed), Budget())
     told = reduce(whole, Words(obligation.origins).told)
-    return Size.of(whole), Size.of(told), Size.of(reduce(told))
+    return told, (Size.of(whole), Size.of(told), Size.of(reduce(told)))
 
 
 def _print(
@@ -115,7 +136,11 @@ def _print(
             values = [getattr(size, what) for size in own]
             middle = statistics.median(values)
             print(f"  {name}: {what} median {middle:g}, largest {max(values)}, sum {sum(values)}")
-    ordered = sorted(seconds)
+    _print_seconds(seconds)
+
+
+def _print_seconds(seconds: Sequence[tuple[float, str]]) -> None:
+    ordered, count = sorted(seconds), len(seconds)
     shown = {
         f"p{share}": ordered[min(count * share // 100, count - 1)][0] for share in (50, 90, 99)
     }

@@ -21,10 +21,10 @@ from rvmon.formula.progress import step
 from rvmon.formula.residual import NO_CLOCK, Clause, Residual, TooManyClausesError
 from rvmon.formula.state import State
 
-MOST_TRIED = 500
+MOST_TRIED = 200
 """Steps of states, and combinations of regions in which they might be made."""
 
-MOST_CLAUSES = 200
+MOST_CLAUSES = 100
 """Of one step of a clause."""
 
 _NEVER = 1 << 62
