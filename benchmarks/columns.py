@@ -3,8 +3,9 @@
     python -m benchmarks.columns --pairs 10000 --engine c
 
 Traces are filled up, as each row of a column holds a value, and given in blocks of random length.
-With `--samples 150` they are longer than what compiled code looks at together. Prints every
-disagreement with its seed, and exits with 1 if there is one.
+With `--samples 150` they are longer than what compiled code looks at together. By the engines
+without C, records and input health have to be those of a monitor, too. Prints every disagreement
+with its seed, and exits with 1 if there is one.
 """
 
 from __future__ import annotations
@@ -15,21 +16,30 @@ import random
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from benchmarks.differential import MODELS
 
 from rvmon.errors import RvmonError
-from rvmon.monitor import compile_spec
-from rvmon.testing.compare import differences
+from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
+from rvmon.monitor.columns.records import JudgedAttempts
+from rvmon.testing.case import Case
+from rvmon.testing.compare import differences, frame_differences
 from rvmon.testing.differential import cases_of
 from rvmon.testing.filled import filled, judge_columns
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.law import judge
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
 
 
 def judge_seed(seed: str, options: argparse.Namespace, count: Counter[str]) -> None:
     """Judge the cases of a seed, counting pairs, attempts and disagreements."""
-    profile = Profile(captures=False, for_each=False)
+    profile = Profile(
+        MODELS.get(options.time or ""), depth=options.depth, captures=False, for_each=False
+    )
     traces = TraceProfile(samples=options.samples, span=4 * options.samples)
     dice = random.Random(f"cuts/{seed}")
     compiled = None
@@ -48,11 +58,36 @@ def judge_seed(seed: str, options: argparse.Namespace, count: Counter[str]) -> N
             continue
         expected = judge(whole)
         count["pairs"] += 1
+        count["by arrays"] += isinstance(report.attempts, JudgedAttempts)
         count["attempts"] += len(expected.attempts)
-        found = differences(expected, report)
+        found = differences(expected, report) + frame_differences(expected, report)
+        if options.engine != "c" and not found:
+            found = [*_told_differences(compiled, whole, report)]
         count["disagreements"] += bool(found)
         for line in found:
             print(f"seed {seed}: {line}")
+
+
+def _told_differences(compiled: CompiledSpec, case: Case, report: Report) -> Iterator[str]:
+    """One line per record, or finding on the input, that a monitor would have told otherwise."""
+    monitor = build_monitor(compiled, sources=case.names)
+    for sample in case.samples:
+        monitor.step_ns(sample.t, sample.values)
+    told = monitor.finish_ns(case.end)
+    for own, other in zip(told.attempts, report.attempts, strict=True):
+        if _without_doubt(own) != _without_doubt(other):
+            yield f"a monitor tells {own}, columns {other}"
+    if told.health != report.health:
+        yield f"a monitor finds {told.health}, columns {report.health}"
+    if told.counts != report.counts:
+        yield f"a monitor counts {told.counts}, columns {report.counts}"
+
+
+def _without_doubt(attempt: Attempt) -> Attempt:
+    """The record without the position at which unknown input was noticed."""
+    if attempt.decision is not Decision.OPEN or " unknown at " not in attempt.reason:
+        return attempt
+    return replace(attempt, reason="it was unknown")
 
 
 def random_cuts(dice: random.Random, rows: int) -> list[int]:
@@ -67,7 +102,9 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--each", type=int, default=10, help="traces per specification")
     parser.add_argument("--samples", type=int, default=12, help="of a trace, at most")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--engine", choices=("auto", "c"), default="auto")
+    parser.add_argument("--engine", choices=("auto", "rows", "c"), default="auto")
+    parser.add_argument("--time", choices=tuple(MODELS), help="the time model; default: any")
+    parser.add_argument("--depth", type=int, default=4, help="of the deepest consequent")
     options = parser.parse_args(argv)
     count: Counter[str] = Counter()
     number = 0
@@ -77,7 +114,8 @@ def main(argv: Sequence[str]) -> int:
             judge_seed(f"{options.seed}/{number}", options, count)
             number += 1
     shown = ", ".join(
-        f"{name} {count[name]}" for name in ("pairs", "refused", "attempts", "disagreements")
+        f"{name} {count[name]}"
+        for name in ("pairs", "by arrays", "refused", "attempts", "disagreements")
     )
     print(f"columns, engine {options.engine}, seed {options.seed}: {shown}")
     return 1 if count["disagreements"] else 0

@@ -253,7 +253,7 @@ class Spec:
         """The fast way for NumPy arrays and Arrow tables; `None` where it does not lead."""
         if not (hasattr(trace, "column_names") or isinstance(trace, Mapping)):
             return None
-        from rvmon.monitor.batch import arrays_of, can_batch, evaluate_blocks, in_order
+        from rvmon.monitor.batch import arrays_of, evaluate_plain, in_order
 
         arrays = arrays_of(trace, self.checked, time)
         if arrays is None:
@@ -265,11 +265,15 @@ class Spec:
             return evaluate_c_blocks(
                 self._compiled, list(columns), [(times, columns)], only=only, until=until
             )
-        if not can_batch(self._compiled, only) or not in_order(times):
+        if not in_order(times):
             return None
-        blocks = [(times, columns)]
-        return evaluate_blocks(
-            self._compiled, list(columns), blocks, only=only, engine=engine, until=until
+        return evaluate_plain(
+            self._compiled,
+            list(columns),
+            lambda: [(times, columns)],
+            only=only,
+            engine=engine,
+            until=until,
         )
 
     def robustness(

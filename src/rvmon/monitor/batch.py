@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import reduce
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,27 +13,14 @@ from rvmon.codegen.plan import Plan
 from rvmon.dataflow.leaves import reads
 from rvmon.formula.state import Leaf
 from rvmon.monitor.build import build_monitor
+from rvmon.monitor.columns.evaluate import evaluate_columns
+from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.generated import can_generate, plan_requirements
+from rvmon.monitor.health import HealthLog, by_name
 from rvmon.readers.ticks import ticks_of_column
-from rvmon.spec.checked import (
-    Arithmetic,
-    Captured,
-    CheckedSpec,
-    Compare,
-    CompareOp,
-    FieldValue,
-    Literal,
-    Numeric,
-    NumericOp,
-    Probe,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    TimeModel,
-    UpdateValue,
-)
-from rvmon.trace.health import Health, HealthKind
+from rvmon.spec.checked import CheckedSpec, Compare, Probe, ProbeAtom, SignalAtom, TimeModel
+from rvmon.trace.health import HealthKind
 from rvmon.trace.schema import Kind
 from rvmon.verdict.report import Report
 
@@ -44,29 +30,8 @@ if TYPE_CHECKING:
 CHUNK = 1 << 17
 """Rows that are looked at together: temporary arrays do not grow with the recording."""
 
-Columns = Mapping[str, "NDArray[Any]"]
-
-_COMPARE = {
-    CompareOp.LT: np.less,
-    CompareOp.LE: np.less_equal,
-    CompareOp.EQ: np.equal,
-    CompareOp.NE: np.not_equal,
-    CompareOp.GE: np.greater_equal,
-    CompareOp.GT: np.greater,
-}
-
-_ARITHMETIC = {
-    NumericOp.ADD: np.add,
-    NumericOp.SUB: np.subtract,
-    NumericOp.MUL: np.multiply,
-    NumericOp.DIV: np.divide,
-    NumericOp.NEG: np.negative,
-    NumericOp.ABS: np.abs,
-    NumericOp.MIN: np.minimum,
-    NumericOp.MAX: np.maximum,
-    NumericOp.SQRT: np.sqrt,
-    NumericOp.HYPOT: np.hypot,
-}
+_BY_COLUMNS = ("auto", "python")
+"""Engines that leave it open how generated tables are looked up."""
 
 
 def _numeric_columns(table: Any, names: Sequence[str]) -> dict[str, NDArray[Any]] | None:
@@ -147,6 +112,38 @@ def can_batch(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
     return all(can_generate(one) for one in chosen)
 
 
+def evaluate_plain(
+    compiled: CompiledSpec,
+    names: Sequence[str],
+    blocks: Callable[[], Iterable[tuple[NDArray[np.int64], Columns]]],
+    *,
+    only: Sequence[str] | None,
+    engine: str,
+    until: int | None,
+) -> Report | None:
+    """Judge columns by arrays or, where these do not do, the rows of them that matter.
+
+    Args:
+        compiled: the specification.
+        names: of the columns; declared ones.
+        blocks: gives the blocks as `evaluate_blocks` takes them, from the first on, at each call.
+        only: ids of the requirements; default all.
+        engine: `auto` or the name of one that judges samples.
+        until: the end of the trace in ticks, if after its last row.
+
+    Returns:
+        `None` if each row has to be judged as a sample.
+    """
+    if engine in _BY_COLUMNS:
+        own = frozenset(names)
+        report = evaluate_columns(compiled, own, blocks(), only=only, until=until)
+        if report is not None:
+            return report
+    if not can_batch(compiled, only):
+        return None
+    return evaluate_blocks(compiled, names, blocks(), only=only, engine=engine, until=until)
+
+
 def evaluate_blocks(
     compiled: CompiledSpec,
     names: Sequence[str],
@@ -171,7 +168,7 @@ def evaluate_blocks(
     monitor = build_monitor(compiled, only=only, engine=engine, sources=frozenset(names))
     plan = plan_requirements(compiled, chosen)
     step = monitor.step_ns
-    unknown: Counter[str] = Counter()
+    unknown = HealthLog()
     last = None
     for times, columns in blocks:
         for start in range(0, len(times), CHUNK):
@@ -180,13 +177,16 @@ def evaluate_blocks(
             lists = [columns[name][rows].tolist() for name in names]
             for t, *values in zip(times[rows].tolist(), *lists, strict=True):
                 step(t, dict(zip(names, values, strict=True)))
-            for name, column in columns.items():
-                if column.dtype.kind == "f":
-                    unknown[name] += int(np.isnan(column[start:stop]).sum())
+            own = {name: column[start:stop] for name, column in columns.items()}
+            unknown.count_columns(times[start:stop], own)
         last = int(times[-1]) if len(times) else last
     if last is not None and until is not None:
         last = max(last, until)
-    return _with_counts(monitor.finish_ns(last), unknown)
+    report = monitor.finish_ns(last)
+    # Of the samples at which a signal was not known, only those that matter were judged.
+    kept = [entry for entry in report.health if entry.kind is not HealthKind.NAN]
+    health = sorted([*kept, *unknown.seen(chosen)], key=by_name)
+    return replace(report, health=tuple(health))
 
 
 def _rows_that_matter(
@@ -250,67 +250,15 @@ def _truth(leaf: Leaf, columns: Columns) -> NDArray[np.int8] | None:
         case SignalAtom(name=name):
             return columns[name].astype(np.int8)
         case ProbeAtom(probe=Probe.KNOWN, name=name):
-            known: NDArray[np.int8] = _known(columns[name]).astype(np.int8)
+            values = columns[name]
+            known: NDArray[np.int8] = (values == values).astype(np.int8)
             return known
-        case Compare(op=op, left=left, right=right):
-            with np.errstate(all="ignore"):
-                first, second = _number(left, columns), _number(right, columns)
-                if first is None or second is None:
-                    return None
-                truth: NDArray[np.int8] = np.where(
-                    _COMPARE[op](first, second), np.int8(2), np.int8(0)
-                )
-                truth[~(_known(first) & _known(second))] = 1
-                return truth
-        case _:
-            return None
-
-
-def _as_python_compares(values: NDArray[Any] | None) -> NDArray[Any] | None:
-    """The values in a type in which they compare as Python's own do; `None` if there is none."""
-    if values is None or values.dtype == np.float64:
-        return values
-    if values.dtype.kind == "f":
-        return values.astype(np.float64)
-    exact = values.dtype.kind == "i" and bool((np.abs(values.astype(np.float64)) < 2**53).all())
-    return values.astype(np.int64) if exact else None
-
-
-def _known(values: Any) -> Any:
-    return values == values
-
-
-def _number(expression: Numeric, columns: Columns) -> Any:
-    """The values per row; `None` if they cannot be had from the row alone, exactly."""
-    match expression:
-        case Literal(value=value):
-            return value if not isinstance(value, str) else None
-        case SignalValue(name=name):
-            return _as_python_compares(columns.get(name))
-        case Arithmetic(op=op, args=args):
-            values = [_number(arg, columns) for arg in args]
-            if any(value is None for value in values):
+        case Compare():
+            try:
+                truth = compared(leaf, columns, len(next(iter(columns.values()))))
+            except NotByColumnsError:
                 return None
-            if any(getattr(value, "dtype", np.dtype(float)).kind != "f" for value in values):
-                return None  # integers of Python do not overflow
-            made = (
-                reduce(_ARITHMETIC[op], values) if len(values) > 1 else _ARITHMETIC[op](values[0])
-            )
-            return np.where(np.isfinite(made), made, np.nan)
-        case FieldValue() | Captured() | UpdateValue():
-            return None
+            made: NDArray[np.int8] = truth.must.astype(np.int8) + truth.may
+            return made
         case _:
-            assert_never(expression)
-
-
-def _with_counts(report: Report, unknown: Mapping[str, int]) -> Report:
-    """The report with all rows counted at which a signal was not known, not only those judged."""
-
-    def counted() -> Iterator[Health]:
-        for entry in report.health:
-            if entry.kind is HealthKind.NAN and entry.name in unknown:
-                yield replace(entry, count=unknown[entry.name])
-            else:
-                yield entry
-
-    return replace(report, health=tuple(counted()))
+            return None

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from rvmon.monitor.batch import can_batch, evaluate_blocks
+from rvmon.monitor.batch import evaluate_plain
 from rvmon.monitor.batch_c import evaluate_c_blocks
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.generated import can_generate, plan_requirements
@@ -15,6 +15,10 @@ from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.parquet import parquet_blocks
 from rvmon.trace.schema import Schema
 from rvmon.verdict.report import Report
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 READERS: Mapping[str, Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]] = {
     ".csv": csv_blocks,
@@ -57,15 +61,18 @@ def evaluate_file(
         may matter.
     """
     reader = READERS.get(Path(path).suffix.lower())
-    if reader is None or (engine != "c" and not can_batch(compiled, only)):
+    if reader is None:
         return None
-    blocks = reader(path, schema, _fillable(compiled, only))
+    fillable = _fillable(compiled, only)
+
+    def blocks() -> Iterator[tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]]:
+        return ((block.times, block.columns) for block in reader(path, schema, fillable))
+
     try:
-        first = next(blocks)
-        names = list(first.columns)
-        pairs = ((block.times, block.columns) for block in chain([first], blocks))
+        _, columns = next(blocks())
+        names = list(columns)
         if engine == "c":
-            return evaluate_c_blocks(compiled, names, pairs, only=only, until=until)
-        return evaluate_blocks(compiled, names, pairs, only=only, engine=engine, until=until)
+            return evaluate_c_blocks(compiled, names, blocks(), only=only, until=until)
+        return evaluate_plain(compiled, names, blocks, only=only, engine=engine, until=until)
     except (NotPlainError, StopIteration):
         return None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.monitor.compiled import CompiledRequirement
@@ -11,6 +12,9 @@ from rvmon.monitor.intake import MOST_HELD, Intake
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 class HealthLog:
@@ -37,6 +41,24 @@ class HealthLog:
                         if scalar is None or scalar != scalar:
                             self._add(f"{name}.{field}", name, scalar, t)
 
+    def count_columns(self, times: NDArray[Any], columns: Mapping[str, NDArray[Any]]) -> None:
+        """Look through columns for NaN.
+
+        Args:
+            times: int64[n] ticks, later than all before.
+            columns: of signals and events by name, of the same length.
+        """
+        import numpy as np
+
+        for name, column in columns.items():
+            # Mostly one sum tells that there is none.
+            if column.dtype.kind == "f" and np.isnan(np.add.reduce(column)):
+                rows = np.flatnonzero(np.isnan(column))
+                if len(rows):
+                    key = (HealthKind.NAN, name, name)
+                    count, first = self._seen.get(key, (0, int(times[rows[0]])))
+                    self._seen[key] = (count + len(rows), first)
+
     def _add(self, shown: str, name: str, value: object, t: int) -> None:
         key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
         count, first = self._seen.get(key, (0, t))
@@ -55,14 +77,8 @@ class HealthLog:
             inputs: of the run, at its end.
             intake: of the run, if samples were held back.
         """
-        readers: dict[str, tuple[str, ...]] = {}
-        for compiled in requirements:
-            for name in compiled.reads:
-                readers[name] = (*readers.get(name, ()), compiled.requirement.id)
-        found = [
-            Health(kind, shown, count, first, readers.get(name, ()))
-            for (kind, shown, name), (count, first) in self._seen.items()
-        ]
+        readers = _readers(requirements)
+        found = self.seen(requirements)
         found += self._unfed(readers, inputs)
         found += [
             Health(HealthKind.STALE, name, count, first, readers.get(name, ()))
@@ -80,7 +96,15 @@ class HealthLog:
                 count, first = intake.crowded
                 early = f"judged before the delay was over: {MOST_HELD:,} samples were waiting"
                 found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
-        return sorted(found, key=lambda one: (one.name, one.kind))
+        return sorted(found, key=by_name)
+
+    def seen(self, requirements: Sequence[CompiledRequirement]) -> list[Health]:
+        """The unknown values that were counted."""
+        readers = _readers(requirements)
+        return [
+            Health(kind, shown, count, first, readers.get(name, ()))
+            for (kind, shown, name), (count, first) in self._seen.items()
+        ]
 
     def _unfed(self, readers: Mapping[str, tuple[str, ...]], inputs: Inputs) -> list[Health]:
         """Names without a source, and signals that were unknown at first."""
@@ -96,3 +120,17 @@ class HealthLog:
                     Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since + when)
                 )
         return found
+
+
+def by_name(entry: Health) -> tuple[str, HealthKind]:
+    """The order of findings."""
+    return entry.name, entry.kind
+
+
+def _readers(requirements: Sequence[CompiledRequirement]) -> dict[str, tuple[str, ...]]:
+    """By name the requirements that read it."""
+    readers: dict[str, tuple[str, ...]] = {}
+    for compiled in requirements:
+        for name in compiled.reads:
+            readers[name] = (*readers.get(name, ()), compiled.requirement.id)
+    return readers

@@ -1,23 +1,21 @@
-"""What is told of the attempts of one requirement that generated code judges."""
+"""The records of the decisions that generated code makes for one requirement."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from operator import itemgetter
 from typing import Any
 
 from rvmon.automaton.machine import Token
 from rvmon.codegen.plan import Plan
-from rvmon.codegen.runtime.bulk import unpacked
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
-from rvmon.dataflow.flow import Flow
 from rvmon.monitor.bench import Open
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.explain import explain_decision
 from rvmon.monitor.judge import Judge
-from rvmon.monitor.ledger import Ledger, values_shown
-from rvmon.verdict.attempt import Attempt, decided_attempt
+from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.witness import Stood, Witness
+from rvmon.verdict.attempt import decided_attempt
 from rvmon.verdict.verdict import Verdict
 
 _PASS, _FAIL = Verdict.PASS, Verdict.FAIL
@@ -25,10 +23,8 @@ _PASS, _FAIL = Verdict.PASS, Verdict.FAIL
 Pick = Callable[[list[Any]], tuple[Any, ...]]
 
 
-class Seat:
+class Seat(Witness):
     """Stands where the judge of a requirement would, and writes the records of its decisions.
-
-    A record costs little until someone asks for its reason: what that needs is noted.
 
     Args:
         compiled: the requirement.
@@ -46,41 +42,25 @@ class Seat:
         ledger: Ledger,
         counts: list[int],
     ) -> None:
-        self._compiled = compiled
+        super().__init__(compiled, plan, ledger)
         self._unit = unit
-        self._ledger = ledger
         self._told = ledger.told
         self._counts = counts
-        graph = plan.graph
-        places = tuple(graph.index[state] for state in compiled.alphabet.propositions)
-        leaves = tuple(graph.index[leaf] for leaf, _ in compiled.leaves if leaf in graph.index)
+        leaves, places = self.leaves, self.places
         self._seen_of = _picking(leaves)
-        self._leaves = leaves
-        self._places = places
         self._values_of = _picking((*leaves, *places))
         self._since_of = _picking(places)
         self._until_of = _picking(tuple(3 * place + truth for place in places for truth in (0, 2)))
-        self._plan = plan
         self._id = compiled.requirement.id
         self._rank = compiled.rank
         self._upon_end = compiled.obligation.trigger is None
-        self.details = self._details
 
     def judge_now(self, rule: Rule) -> Judge:
         """The judge of the requirement, as it would stand now if it had judged."""
         unit = self._unit
-        flow = _Stood(self._plan, unit.v, unit.since, unit.until)
+        flow = Stood(self._plan, unit.v, unit.since, unit.until)
         flow.origin, flow.position = unit.origin, unit.position
-        return self._judge(flow, (rule.letter, rule.other), rule.position, rule.undecided())
-
-    def _judge(
-        self, flow: Flow, letters: tuple[int, int], position: int, attempts: list[Open]
-    ) -> Judge:
-        judge = Judge(self._compiled, self._compiled.machine("auto"), flow, self._ledger, {})
-        judge.letters = letters
-        judge.position = position
-        judge.attempts = attempts
-        return judge
+        return self.judge(flow, (rule.letter, rule.other), rule.position, rule.undecided())
 
     # What the unit calls.
 
@@ -101,7 +81,7 @@ class Seat:
         self, _: Rule, number: int, triggered: int, token: Token, seen: tuple[int, ...] | int
     ) -> Open:
         """An attempt that was moved together with others, by itself."""
-        attempt = Open(triggered, token, self._unpacked(seen))
+        attempt = Open(triggered, token, self.unpacked(seen))
         attempt.number = number
         return attempt
 
@@ -156,56 +136,6 @@ class Seat:
                 ),
             ),
         )
-
-    # What others ask.
-
-    def _unpacked(self, seen: tuple[int, ...] | int) -> tuple[int, ...]:
-        return unpacked(seen, len(self._leaves)) if isinstance(seen, int) else seen
-
-    def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
-        """All that a record says beside the verdict, from what was noted at the decision."""
-        seen_then, t, before, letter, other, position, *rest = noted
-        seen_then = self._unpacked(seen_then)
-        leaves, count = len(self._leaves), len(self._places)
-        seen = tuple(rest[:leaves])
-        values, since = rest[leaves:][:count], rest[leaves + count :][:count]
-        until = rest[leaves + 2 * count :]
-        nodes: dict[int, int] = dict(zip(self._leaves, seen, strict=True))
-        nodes |= zip(self._places, values, strict=True)
-        instants = {}
-        for index, place in enumerate(self._places):
-            instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
-        flow = _Stood(self._plan, nodes, dict(zip(self._places, since, strict=True)), instants)
-        judge = self._judge(flow, (letter, other), position, [])
-        opened = Open(attempt.triggered, before, seen_then)
-        why = explain_decision(judge, opened, attempt.verdict is _PASS, t, before)
-        return {
-            "reason": why.reason,
-            "deadline": why.deadline,
-            "at_trigger": values_shown(judge, seen_then),
-            "at_decision": values_shown(judge, seen),
-            "owed": why.owed,
-            "captured": {},
-            "blame": why.blame,
-            "forecast": None,
-            "robustness": None,
-        }
-
-
-class _Stood(Flow):
-    """A flow as it stood: it tells, and does not go on."""
-
-    def __init__(self, plan: Plan, values: Any, since: Any, until: Any) -> None:
-        self.graph = plan.graph
-        self.gap = plan.gap
-        self.values = values
-        self.since = since
-        self._instants = until
-
-    def last_with(self, place: int, value: int, t: int) -> int | None:
-        """See `Flow.last_with`; of the propositions that the requirement owes."""
-        found: int | None = t if self.values[place] == value else self._instants[3 * place + value]
-        return found
 
 
 def _picking(places: tuple[int, ...]) -> Pick:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.codegen.c_batch import BatchLibrary
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.batch import can_batch, evaluate_blocks
+from rvmon.monitor.batch import can_batch, evaluate_blocks, evaluate_plain
 from rvmon.monitor.batch_c import evaluate_c_blocks
 from rvmon.monitor.generated import can_generate, plan_alone
 from rvmon.testing.case import Case
@@ -52,7 +52,7 @@ def judge_columns(
     Args:
         compiled: the case's specification.
         case: from `filled`.
-        engine: `auto` or `c`.
+        engine: `auto`, `c`, or `rows` for the way of `auto` where arrays alone do not do.
         cuts: rows at which a new block of columns begins, in order.
 
     Returns:
@@ -78,12 +78,16 @@ def judge_columns(
     ]
     if engine == "c":
         return evaluate_c_blocks(compiled, names, blocks, only=None, until=case.end)
-    return evaluate_blocks(compiled, names, blocks, only=None, engine=engine, until=case.end)
+    if engine == "rows":
+        return evaluate_blocks(compiled, names, blocks, only=None, engine="auto", until=case.end)
+    return evaluate_plain(compiled, names, lambda: blocks, only=None, engine=engine, until=case.end)
 
 
 def _judges(compiled: CompiledSpec, engine: str) -> bool:
-    if engine != "c":
+    if engine == "rows":
         return can_batch(compiled, None)
+    if engine == "auto":
+        return True
     requirements = compiled.requirements.values()
     if compiled.checked.max_delay is not None or not all(
         one.automaton is not None and can_generate(one) for one in requirements

@@ -1,0 +1,301 @@
+"""Attempts driven through a piece of a trace, all at once.
+
+Nothing is looked at where nothing happens: each attempt goes from one place at which the letters
+lead it on, or its clock enters another region, to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.automaton.location import PASSED
+from rvmon.formula.state import TRUE, UNKNOWN
+from rvmon.monitor.columns.axis import FAR, Axis
+from rvmon.monitor.columns.moves import Moves
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[np.int64]
+
+
+@dataclass(slots=True, eq=False)
+class Tokens:
+    """Where attempts are; all arrays have an entry per attempt.
+
+    Attributes:
+        location: of the automaton.
+        anchor: the instant at which the clock was started.
+        region: of the clock, as far as time has come.
+        place: the position up to which it was driven.
+    """
+
+    location: Numbers
+    anchor: Numbers
+    region: Numbers
+    place: Numbers
+
+    def __len__(self) -> int:
+        return len(self.place)
+
+    def copy(self) -> Tokens:
+        """The same, independent from now on."""
+        return self.pick(np.arange(len(self)))
+
+    def pick(self, which: Any) -> Tokens:
+        """Some of them."""
+        return Tokens(
+            self.location[which], self.anchor[which], self.region[which], self.place[which]
+        )
+
+    def same(self, other: Tokens) -> bool:
+        """Whether all attempts are where those of the other are."""
+        return all(
+            np.array_equal(getattr(self, one.name), getattr(other, one.name))
+            for one in fields(self)
+        )
+
+    def put(self, which: Any, others: Tokens) -> None:
+        """Replace some of them."""
+        for one in fields(self):
+            getattr(self, one.name)[which] = getattr(others, one.name)
+
+
+def joined_tokens(first: Tokens, second: Tokens) -> Tokens:
+    """The attempts of both."""
+    return Tokens(
+        *[
+            np.concatenate((getattr(first, one.name), getattr(second, one.name)))
+            for one in fields(Tokens)
+        ]
+    )
+
+
+def starting(moves: Moves, places: Numbers) -> Tokens:
+    """Attempts that start at these places."""
+    none = np.zeros(len(places), np.int64)
+    return Tokens(none + moves.initial, none.copy(), none.copy(), places - 1)
+
+
+@dataclass(slots=True, eq=False)
+class Outcome:
+    """What became of attempts in a piece; all arrays have an entry per attempt.
+
+    Attributes:
+        decided: the instant; `FAR` where it is open.
+        passed: the verdict.
+        location: before the decision.
+        anchor: before the decision.
+        place: the position, of which the letter was, at or before the decision.
+    """
+
+    decided: Numbers
+    passed: NDArray[np.bool_]
+    location: Numbers
+    anchor: Numbers
+    place: Numbers
+
+
+class Letters:
+    """The letters of a piece in one reading.
+
+    Args:
+        moves: read them.
+        starts: the first place of each stretch of one letter.
+        letters: of the stretches.
+        stop: behind the last place.
+    """
+
+    def __init__(self, moves: Moves, starts: Numbers, letters: Numbers, stop: int) -> None:
+        self.moves = moves
+        self.starts = starts
+        self.classes = moves.class_of[letters]
+        self._begins = np.append(starts, stop)
+        self._next: dict[tuple[int, bool], Numbers] = {}
+
+    def next_leading(self, row: Numbers, following: Numbers, *, sliding: bool = False) -> Any:
+        """For each attempt the next place that leads it on, and the stretch that it is in.
+
+        Args:
+            row: of the automaton.
+            following: the first place that counts.
+            sliding: whether going on with a clock that moves along counts as staying.
+        """
+        stretch = np.searchsorted(self.starts, following, "right") - 1
+        found = np.empty(len(row), np.int64)
+        for one in np.unique(row).tolist():
+            own = row == one
+            found[own] = self._table(one, sliding)[stretch[own]]
+        return np.where(found == stretch, following, self._begins[found]), found
+
+    def next_for_one(self, row: int, following: int, *, sliding: bool = False) -> tuple[int, int]:
+        """As `next_leading`, for one attempt."""
+        stretch = int(np.searchsorted(self.starts, following, "right")) - 1
+        found = self._table(row, sliding).item(stretch)
+        return following if found == stretch else self._begins.item(found), found
+
+    def _table(self, row: int, sliding: bool) -> Numbers:
+        """For each stretch the first from it on that leads on; their number, if none does."""
+        found = self._next.get((row, sliding))
+        if found is None:
+            moves, count = self.moves, len(self.starts)
+            leads = moves.leads_on[row]
+            if sliding:
+                leads = ~moves.restarts[row] | (moves.targets[row] != moves.owner[row])
+            ahead = np.where(leads[self.classes], np.arange(count), count)
+            found = np.minimum.accumulate(ahead[::-1])[::-1]
+            self._next[row, sliding] = found
+        return found
+
+
+_FEW = 12
+"""So many attempts are driven faster one by one."""
+
+
+class Driver:
+    """Drives the attempts of one reading through a piece.
+
+    Args:
+        moves: the automaton.
+        letters: of the piece.
+        axis: of the piece.
+        limit: the instant that time comes to.
+    """
+
+    def __init__(self, moves: Moves, letters: Letters, axis: Axis, limit: int) -> None:
+        self._moves = moves
+        self._letters = letters
+        self._axis = axis
+        self._limit = limit
+
+    def drive(self, tokens: Tokens) -> Outcome:
+        """Drive attempts to the end of the piece; those that are not decided are moved on.
+
+        Attempts in `FAILED` or `PASSED` stay there.
+        """
+        count = len(tokens)
+        self._outcome = Outcome(
+            np.full(count, FAR),
+            np.zeros(count, bool),
+            tokens.location.copy(),
+            tokens.anchor.copy(),
+            tokens.place.copy(),
+        )
+        active = np.flatnonzero(tokens.location > PASSED)
+        now = tokens.pick(active)
+        while len(active) > _FEW:
+            leads, stretch = self._letters.next_leading(
+                self._moves.bases[now.location] + now.region, now.place + 1
+            )
+            cut = self._moves.cuts[now.location, now.region]
+            border = np.where(cut == FAR, FAR, now.anchor + cut)
+            crosses = (border <= self._axis.instants(leads)) & (border <= self._limit)
+            steps = ~crosses & (leads < self._axis.stop)
+            rests = ~(crosses | steps)
+            if rests.any():
+                now.place[rests] = self._axis.stop - 1
+                tokens.put(active[rests], now.pick(rests))
+            parts = []
+            if crosses.any():
+                parts.append(self._cross(active[crosses], now.pick(crosses), border[crosses]))
+            if steps.any():
+                parts.append(
+                    self._step(active[steps], now.pick(steps), leads[steps], stretch[steps])
+                )
+            if not parts:
+                return self._outcome
+            active = np.concatenate([numbers for numbers, _ in parts])
+            now = parts[0][1] if len(parts) == 1 else joined_tokens(parts[0][1], parts[1][1])
+        for index, number in enumerate(active.tolist()):
+            self._drive_one(number, now, index, tokens)
+        return self._outcome
+
+    def _cross(self, numbers: Numbers, now: Tokens, border: Numbers) -> tuple[Numbers, Tokens]:
+        """Let clocks enter the next region; where no position is, time alone may decide."""
+        at = self._axis.first_from(border)
+        now.region += 1
+        now.place = at - 1
+        truth = self._moves.time_values[self._moves.bases[now.location] + now.region]
+        by_time = (truth != UNKNOWN) & (self._axis.instants(at) != border)
+        self._decide(numbers[by_time], now.pick(by_time), border[by_time], truth[by_time] == TRUE)
+        return numbers[~by_time], now.pick(~by_time)
+
+    def _step(
+        self, numbers: Numbers, now: Tokens, leads: Numbers, stretch: Numbers
+    ) -> tuple[Numbers, Tokens]:
+        """Take a step at the places that lead on."""
+        moves = self._moves
+        kind = self._letters.classes[stretch]
+        row = moves.bases[now.location] + now.region
+        target, restarts = moves.targets[row, kind], moves.restarts[row, kind]
+        instants = self._axis.instants(leads)
+        now.place = leads
+        done = target <= PASSED
+        self._decide(numbers[done], now.pick(done), instants[done], target[done] == PASSED)
+        slides = restarts & (target == now.location)
+        now.location = target
+        now.anchor = np.where(restarts, instants, now.anchor)
+        ages = instants - now.anchor
+        now.region = (moves.cuts[target] <= ages[:, None]).sum(1)
+        if slides.any():
+            self._slide(now, slides)
+        return numbers[~done], now.pick(~done)
+
+    def _slide(self, now: Tokens, which: NDArray[np.bool_]) -> None:
+        """Move clocks along as far as the letters only start them again at every tick."""
+        location = now.location[which]
+        row = self._moves.bases[location] + (self._moves.cuts[location] <= 1).sum(1)
+        behind, _ = self._letters.next_leading(row, now.place[which] + 1, sliding=True)
+        now.place[which] = now.anchor[which] = behind - 1
+
+    def _drive_one(self, number: int, now: Tokens, index: int, tokens: Tokens) -> None:
+        """As `drive` does, for one attempt: arrays of a few entries cost more than they save."""
+        moves, letters, axis = self._moves, self._letters, self._axis
+        location, anchor = int(now.location[index]), int(now.anchor[index])
+        region, place = int(now.region[index]), int(now.place[index])
+        while True:
+            row = moves.bases.item(location) + region
+            leads, stretch = letters.next_for_one(row, place + 1)
+            cut = moves.cuts.item(location, region)
+            border = FAR if cut == FAR else anchor + cut
+            if border <= axis.instant(leads) and border <= self._limit:
+                at = axis.place_from(border)
+                region, place = region + 1, at - 1
+                truth = moves.time_values.item(row + 1)
+                if truth == UNKNOWN or axis.instant(at) == border:
+                    continue
+                instant, passed = border, truth == TRUE
+                break
+            if leads >= axis.stop:
+                tokens.location[number], tokens.anchor[number] = location, anchor
+                tokens.region[number], tokens.place[number] = region, axis.stop - 1
+                return
+            kind = letters.classes.item(stretch)
+            target, restarts = moves.targets.item(row, kind), moves.restarts.item(row, kind)
+            instant, place = axis.instant(leads), leads
+            if target <= PASSED:
+                passed = target == PASSED
+                break
+            slides = restarts and target == location
+            location, anchor = target, instant if restarts else anchor
+            region = int((moves.cuts[location] <= instant - anchor).sum()) if not restarts else 0
+            if slides:
+                row = moves.bases.item(location) + int((moves.cuts[location] <= 1).sum())
+                place = anchor = letters.next_for_one(row, place + 1, sliding=True)[0] - 1
+        outcome = self._outcome
+        outcome.decided[number], outcome.passed[number] = instant, passed
+        outcome.location[number], outcome.anchor[number] = location, anchor
+        outcome.place[number] = place
+
+    def _decide(
+        self, numbers: Numbers, now: Tokens, instants: Numbers, passed: NDArray[np.bool_]
+    ) -> None:
+        outcome = self._outcome
+        outcome.decided[numbers] = instants
+        outcome.passed[numbers] = passed
+        outcome.location[numbers] = now.location
+        outcome.anchor[numbers] = now.anchor
+        outcome.place[numbers] = now.place

@@ -1,0 +1,119 @@
+"""What is told of a decision, from what was noted when it was made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rvmon.codegen.plan import Plan
+from rvmon.codegen.runtime.bulk import unpacked
+from rvmon.dataflow.flow import Flow
+from rvmon.monitor.bench import Clerk, Open
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.explain import explain_decision
+from rvmon.monitor.judge import Judge
+from rvmon.monitor.ledger import values_shown
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
+
+
+class Witness:
+    """Tells of the decisions of one requirement that something else than its judge has made.
+
+    A record costs little until someone asks for its reason: what that needs is noted.
+
+    Args:
+        compiled: the requirement.
+        plan: that it is part of.
+        clerk: whom a judge would tell.
+
+    Attributes:
+        leaves: the nodes of the plan that it reads of the input.
+        places: the nodes of the plan that its letters are made of.
+    """
+
+    def __init__(self, compiled: CompiledRequirement, plan: Plan, clerk: Clerk) -> None:
+        self.compiled = compiled
+        self._plan = plan
+        self._clerk = clerk
+        index = plan.graph.index
+        self.places = tuple(index[state] for state in compiled.alphabet.propositions)
+        self.leaves = tuple(index[leaf] for leaf, _ in compiled.leaves if leaf in index)
+        self.details = self._details
+
+    def judge(
+        self,
+        flow: Flow,
+        letters: tuple[int, int],
+        position: int,
+        attempts: list[Open],
+    ) -> Judge:
+        """The judge of the requirement, as it would stand if it had judged.
+
+        Args:
+            flow: as it stood.
+            letters: of the position.
+            position: the instant that the values are of.
+            attempts: the open ones.
+        """
+        judge = Judge(self.compiled, self.compiled.machine("auto"), flow, self._clerk, {})
+        judge.letters = letters
+        judge.position = position
+        judge.attempts = attempts
+        return judge
+
+    def unpacked(self, seen: tuple[int, ...] | int) -> tuple[int, ...]:
+        """The values of the leaves, where they may be packed."""
+        return unpacked(seen, len(self.leaves)) if isinstance(seen, int) else seen
+
+    def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
+        """All that a record says beside the verdict, from what was noted at the decision."""
+        seen_then, t, before, letter, other, position, *rest = noted
+        seen_then = self.unpacked(seen_then)
+        leaves, count = len(self.leaves), len(self.places)
+        seen = tuple(rest[:leaves])
+        values, since = rest[leaves:][:count], rest[leaves + count :][:count]
+        until = rest[leaves + 2 * count :]
+        nodes: dict[int, int] = dict(zip(self.leaves, seen, strict=True))
+        nodes |= zip(self.places, values, strict=True)
+        instants = {}
+        for index, place in enumerate(self.places):
+            instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
+        flow = Stood(self._plan, nodes, dict(zip(self.places, since, strict=True)), instants)
+        judge = self.judge(flow, (letter, other), position, [])
+        opened = Open(attempt.triggered, before, seen_then)
+        why = explain_decision(judge, opened, attempt.verdict is Verdict.PASS, t, before)
+        return {
+            "reason": why.reason,
+            "deadline": why.deadline,
+            "at_trigger": values_shown(judge, seen_then),
+            "at_decision": values_shown(judge, seen),
+            "owed": why.owed,
+            "captured": {},
+            "blame": why.blame,
+            "forecast": None,
+            "robustness": None,
+        }
+
+
+class Stood(Flow):
+    """A flow as it stood: it tells, and does not go on.
+
+    Args:
+        plan: has the nodes.
+        values: by node, its truth.
+        since: by node of a letter, the position from which on it has had that.
+        until: by three times the node plus a truth, the last position at which it had that before.
+    """
+
+    def __init__(self, plan: Plan, values: Any, since: Any, until: Any) -> None:
+        self.graph = plan.graph
+        self.gap = plan.gap
+        self.values = values
+        self.since = since
+        self._instants = until
+
+    def last_with(self, place: int, value: int, t: int) -> int | None:
+        """See `Flow.last_with`; of the propositions that the requirement owes."""
+        found: int | None = t if self.values[place] == value else self._instants[3 * place + value]
+        return found
