@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.generated import Forms, GeneratedMonitor, can_generate
+from rvmon.monitor.generated import Forms, GeneratedMonitor, can_feed
 from rvmon.monitor.monitor import Monitor
 
 _GENERATED = ("auto", "python")
@@ -51,7 +51,7 @@ def build_monitor(
     for requirement in chosen:
         requirement.engine(engine)
     given = None if sources is None else frozenset(sources)
-    if engine not in _GENERATED or not any(can_generate(one) for one in chosen):
+    if engine not in _GENERATED or not any(can_feed(one) for one in chosen):
         return Monitor(compiled, chosen, engine, settle, given)
     key = (tuple(one.requirement.id for one in chosen), given)
     forms = compiled.forms.get(key)

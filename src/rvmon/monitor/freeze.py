@@ -30,6 +30,7 @@ from rvmon.errors import SnapshotError
 from rvmon.monitor.bench import Open
 from rvmon.monitor.generated import GeneratedLanes, GeneratedMonitor
 from rvmon.monitor.health import HealthLog
+from rvmon.monitor.hosted import HostedRule
 from rvmon.monitor.intake import Intake
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.lane import Lane, Starter
@@ -67,6 +68,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
         *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
         *("before", "known", "running"),
     ),
+    HostedRule: ("judge", "due", "restless", "before", "known", "running"),
     Lane: (
         *("flow", "judges", "starters", "waiting", "_restless", "_repeating"),
         *("_soonest", "_awaited"),

@@ -6,16 +6,19 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.letters import LetterDiagram
 from rvmon.automaton.machine import INFINITY
 from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.planning import plan_of
 from rvmon.codegen.python_unit import machine_of, unit_class
 from rvmon.codegen.runtime.nodes import LIMIT
+from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.errors import RvmonError, TraceError, UnknownNameError
 from rvmon.monitor.bench import Bench
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.hosted import HostedRule
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
@@ -27,8 +30,13 @@ from rvmon.verdict.report import Report
 Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 
 
+def can_feed(requirement: CompiledRequirement) -> bool:
+    """Whether generated code in this process can work out what a requirement reads."""
+    return requirement.requirement.for_each is None and not requirement.requirement.captures
+
+
 def can_generate(requirement: CompiledRequirement) -> bool:
-    """Whether a requirement can be judged by generated code in this process."""
+    """Whether generated code can judge the attempts of a requirement, too."""
     return not _beyond(requirement)
 
 
@@ -65,12 +73,20 @@ def plan_requirements(
                 one.requirement,
                 one.obligation.trigger,
                 one.alphabet,
-                one.automaton if explained else one.slim,
-                one.in_runs(one.automaton if explained else one.slim),
+                automaton,
+                one.in_runs(automaton),
             )
             for one in requirements
+            for automaton in (_planned(one, explained),)
         ],
     )
+
+
+def _planned(requirement: CompiledRequirement, explained: bool) -> Automaton | None:
+    """The automaton of a requirement that generated code is to step; `None`: a judge does."""
+    if not can_generate(requirement):
+        return None
+    return requirement.automaton if explained else requirement.slim
 
 
 def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
@@ -110,11 +126,11 @@ class Forms:
     """What is generated for one choice of requirements and sources; serves any number of monitors.
 
     Attributes:
-        requirements: those that generated code judges.
-        others: those that it cannot judge.
+        requirements: those that generated code judges, or feeds a judge of.
+        others: those that it can do nothing for.
         plan: of `requirements`.
         unit: the generated class.
-        machines: per requirement, what judges its attempts.
+        machines: per requirement, what judges its attempts; `None`: a judge.
 
     Args:
         compiled: the specification.
@@ -128,8 +144,8 @@ class Forms:
         requirements: Sequence[CompiledRequirement],
         sources: frozenset[str] | None,
     ) -> None:
-        self.requirements = [one for one in requirements if can_generate(one)]
-        self.others = [one for one in requirements if not can_generate(one)]
+        self.requirements = [one for one in requirements if can_feed(one)]
+        self.others = [one for one in requirements if not can_feed(one)]
         self.plan = plan_requirements(compiled, self.requirements)
         self.unit = unit_class(self.plan, sources)
         self.machines = [machine_of(self.plan, index) for index in range(len(self.requirements))]
@@ -168,6 +184,11 @@ class GeneratedLanes(Lanes):
             Seat(one, forms.plan, unit, ledger, self._counts) for one in forms.requirements
         ]
         unit.restart(self, self._seats)
+        for index, one in enumerate(forms.requirements):
+            if forms.machines[index] is None:
+                unit.rules[index] = HostedRule(index, one, forms.plan, unit, ledger)
+                unit.restless |= 1 << index
+                unit.active |= 1 << index
 
     # What the unit calls.
 
@@ -182,12 +203,16 @@ class GeneratedLanes(Lanes):
     def judges(self) -> Sequence[Bench]:
         """The judges of all lanes."""
         return [
-            *(
-                seat.judge_now(rule)
-                for seat, rule in zip(self._seats, self.unit.rules, strict=True)
-            ),
+            *(self._judge_now(rule) for rule in self.unit.rules),
             *super().judges,
         ]
+
+    def _judge_now(self, rule: Rule) -> Bench:
+        """The judge of a requirement, or how it would stand if there were one."""
+        if isinstance(rule, HostedRule):
+            rule.stand()
+            return rule.judge
+        return self._seats[rule.index].judge_now(rule)
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`."""
@@ -208,8 +233,8 @@ class GeneratedLanes(Lanes):
     def finish(self, end: int, reached: int) -> None:
         """Settle what is undecided; time has come to `end` before."""
         self.unit.close(end, reached)
-        for seat, rule in zip(self._seats, self.unit.rules, strict=True):
-            judge = seat.judge_now(rule)
+        for rule in self.unit.rules:
+            judge = self._judge_now(rule)
             for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts = judge.attempts = []
@@ -323,6 +348,12 @@ class GeneratedMonitor(Monitor):
         """See `Monitor.snapshot`."""
         self._see()
         return super().snapshot()
+
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """See `Monitor.open`."""
+        self._see()
+        return super().open
 
     @property
     def next_due(self) -> int | None:

@@ -209,7 +209,7 @@ class NetworkJudge(Bench):
         """
         span = min(2 * span, self.plan.settles)
         self.due = self._foreseen(span)
-        if self.due == INFINITY and span < self.plan.settles:
+        if self.due == INFINITY and self.worse is not None and span < self.plan.settles:
             self.due = self.now // 2 + span
 
     def _foreseen(self, span: int) -> int:
