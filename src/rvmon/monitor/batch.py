@@ -16,7 +16,7 @@ from rvmon.monitor.build import build_monitor
 from rvmon.monitor.columns.evaluate import evaluate_columns
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.generated import can_generate, plan_requirements
+from rvmon.monitor.generated import can_feed, plan_requirements
 from rvmon.monitor.health import HealthLog, by_name
 from rvmon.readers.ticks import ticks_of_column
 from rvmon.spec.checked import CheckedSpec, Compare, Probe, ProbeAtom, SignalAtom, TimeModel
@@ -109,7 +109,7 @@ def can_batch(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
     chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
     if spec.time is TimeModel.SAMPLED or spec.max_delay is not None:
         return False
-    return all(can_generate(one) for one in chosen)
+    return all(can_feed(one) for one in chosen)
 
 
 def evaluate_plain(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.monitor.batch import evaluate_plain
 from rvmon.monitor.batch_c import evaluate_c_blocks
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.generated import can_generate, plan_requirements
+from rvmon.monitor.generated import can_feed, plan_requirements
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.parquet import parquet_blocks
@@ -31,7 +31,7 @@ def _fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[s
     """The names of which only the present value matters, not whether there was an update."""
     spec = compiled.checked
     chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
-    uses = plan_requirements(compiled, [one for one in chosen if can_generate(one)]).uses
+    uses = plan_requirements(compiled, [one for one in chosen if can_feed(one)]).uses
     counted = {name for name, use in uses.items() if use.marked or use.history}
     stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
     return frozenset({*spec.signals, *spec.events} - counted - stale)
