@@ -1,6 +1,7 @@
-"""Engines against the oracle on random specs and traces: verdicts and decision instants.
+r"""Engines against the oracle on random specs and traces: verdicts and decision instants.
 
-    python -m benchmarks.differential --pairs 10000 --seed 1 --workers 2
+    python -m benchmarks.differential --pairs 10000 --seed 1 --workers 2 --traces 4 \
+        --engine automaton network progression python --interrupt --next
 
 Prints how the attempts were decided and every disagreement, shrunk; exits 1 if there is one.
 """
@@ -18,30 +19,36 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from rvmon.errors import RvmonError
+from rvmon.monitor.compiled import ENGINES
 from rvmon.spec.checked import TimeModel
-from rvmon.testing.differential import Tally, campaign
+from rvmon.testing.differential import Campaign, Mix, campaign_of
 from rvmon.testing.features import Feature, possible
-from rvmon.testing.forms import FORMS, Maker
+from rvmon.testing.forms import FORMS, INTERRUPT, NEXT, Compiler, Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.interrupt import interrupting
 
 MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeModel.CLOCKED}
+_ENGINES = f"""some of {", ".join(FORMS)}; those of `Spec.monitor` may be followed by
++{NEXT} (samples come in portions, settled by the next stamp), +{INTERRUPT} (put away and taken up
+again at random points), or both"""
 FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale")
 
 
 def run_part(
     options: argparse.Namespace, profile: Profile, traces: TraceProfile, seeds: list[str]
-) -> Tally:
+) -> Campaign:
     """Judge the cases of some seeds; runs in a worker."""
-    return campaign(
-        interrupting(Maker(options.engine)) if options.interrupt else Maker(options.engine),
+    compiler = Compiler()
+    return campaign_of(
+        {name: Maker(name, compiler) for name in options.engine},
         seeds,
         profile,
         traces,
         each=options.traces,
-        online_every=0 if options.engine == "c" else options.online_every,
+        online_every=options.online_every,
         shrunk=0 if options.fail_fast else options.show,
+        silent=("c",),
     )
 
 
@@ -52,7 +59,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--traces", type=int, default=1, help="of the pairs with one spec")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
-    parser.add_argument("--engine", choices=FORMS, default="auto")
+    parser.add_argument("--engine", nargs="+", default=["auto"], metavar="ENGINE", help=_ENGINES)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--depth", type=int, default=4)
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
@@ -60,9 +67,19 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
     parser.add_argument("--features", action="store_true", help="count what was generated")
-    parser.add_argument("--interrupt", action="store_true", help="snapshots at random points")
+    parser.add_argument("--interrupt", action="store_true", help="each engine +interrupt as well")
+    parser.add_argument("--next", action="store_true", help="each engine +next as well")
     parser.add_argument("--fail-fast", action="store_true", help="stop soon, shrink nothing")
-    return parser.parse_args(argv)
+    options = parser.parse_args(argv)
+    plain = [name for name in options.engine if name in ENGINES]
+    for way in [way for way in (NEXT, INTERRUPT) if getattr(options, way)]:
+        options.engine += [f"{name}+{way}" for name in plain]
+    try:
+        for name in options.engine:
+            Maker(name)
+    except RvmonError as error:
+        parser.error(str(error))
+    return options
 
 
 def profile_of(options: argparse.Namespace) -> Profile:
@@ -82,36 +99,42 @@ def main(argv: list[str]) -> int:
     parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]
     work = partial(run_part, options, profile, traces)
     began = time.perf_counter()
-    total = Tally()
+    total = Campaign(Mix(), {})
     with contextlib.ExitStack() as stack:
-        each: Iterable[Tally] = map(work, parts)
+        each: Iterable[Campaign] = map(work, parts)
         if options.workers > 1:
             each = stack.enter_context(ProcessPoolExecutor(options.workers)).map(work, parts)
-        for tally in each:
-            total.add(tally)
+        for part in each:
+            total.add(part)
             if options.fail_fast and total.disagreements:
                 break
     show(total, options, time.perf_counter() - began)
     return 1 if total.disagreements else 0
 
 
-def show(total: Tally, options: argparse.Namespace, seconds: float) -> None:
+def show(total: Campaign, options: argparse.Namespace, seconds: float) -> None:
     """Print the figures, then the disagreements."""
-    attempts = sum(total.attempts.values())
-    share = {name: f"{100 * n / max(attempts, 1):.1f} %" for name, n in total.attempts.items()}
-    decided = sum(n for name, n in total.attempts.items() if name != "I")
-    print(f"engine {options.engine}, time {options.time or 'all'}, seed {options.seed}")
-    print(f"pairs {total.pairs}, attempts {attempts}, in {seconds:.0f} s")
-    print(f"refused {total.refused}")
+    mix = total.mix
+    attempts = sum(mix.attempts.values())
+    share = {name: f"{100 * n / max(attempts, 1):.1f} %" for name, n in mix.attempts.items()}
+    decided = sum(n for name, n in mix.attempts.items() if name != "I")
+    print(f"time {options.time or 'all'}, seed {options.seed}")
+    print(f"pairs {mix.pairs}, attempts {attempts}, in {seconds:.0f} s")
     print("verdicts  ", ", ".join(f"{name} {share[name]}" for name in sorted(share)))
-    print("settled by", ", ".join(f"{name} {n}" for name, n in total.decisions.most_common()))
-    on_bound = 100 * total.on_bound / max(decided, 1)
-    print(f"on a bound {total.on_bound} of {decided} decided ({on_bound:.1f} %)")
+    print("settled by", ", ".join(f"{name} {n}" for name, n in mix.decisions.most_common()))
+    on_bound = 100 * mix.on_bound / max(decided, 1)
+    print(f"on a bound {mix.on_bound} of {decided} decided ({on_bound:.1f} %)")
     if options.features:
-        print("\n".join(feature_table(total.features)))
-    print(f"disagreements {len(total.disagreements)}")
-    for text in total.disagreements[: options.show]:
-        print("\n" + "=" * 72 + "\n" + text)
+        print("\n".join(feature_table(mix.features)))
+    width = max(map(len, total.tallies))
+    for name, tally in total.tallies.items():
+        wrong = len(tally.disagreements)
+        print(
+            f"{name:{width}}  judged {tally.pairs}, refused {tally.refused}, disagreements {wrong}"
+        )
+    for tally in total.tallies.values():
+        for text in tally.disagreements[: options.show]:
+            print("\n" + "=" * 72 + "\n" + text)
 
 
 def feature_table(found: Counter[Feature]) -> Iterator[str]:

@@ -153,8 +153,11 @@ class Network:
             first: where to begin.
             limit: the stamp as of which; later positions do not count.
         """
+        # What lies before `pending` was known, and may have been dropped.
+        first = max(first, self.pending[self.plan.places[core]])
         found = self._unknown_from(self.known_of(core), first, skips=True)
-        return found if self.positions.slope * found < limit else None
+        is_position = found <= self.positions.last and self.positions.slope * found < limit
+        return found if is_position else None
 
     def relative(self, t: int) -> object:
         """All that is known, as seen from `t`."""

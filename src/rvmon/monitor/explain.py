@@ -13,7 +13,7 @@ from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.cause import CauseFinder
 from rvmon.monitor.judge import Judge
-from rvmon.monitor.wording import deadline
+from rvmon.monitor.wording import deadline, settled_alone
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
@@ -57,23 +57,46 @@ def _just_before(judge: Judge, token: Token, letter: int, t: int) -> Token:
     return run(judge.machine, token, letter, position + gap, t - 1, gap)[0]
 
 
-def explain_open(judge: Judge, attempt: Open, end: int | None = None) -> Explanation:
+def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) -> Explanation:
     """What an undecided attempt waits for, or why it can wait no more.
 
     Args:
         judge: of the attempt.
         attempt: undecided.
+        now: twice the instant that time has come to, one more if its letter is known.
         end: the last instant of the trace, if it has ended.
     """
     token = attempt.token if attempt.token[0] != FAILED else attempt.better
     if token is None or token[0] <= PASSED:
         return Explanation(f"left open by the input: {attempt.doubt}")
     location, anchors = token
-    residual = judge.machine.residual(location)
+    residual = after(judge.machine.residual(location), [now // 2 - anchor for anchor in anchors])
     owed = judge.compiled.words.owed(residual, anchors)
-    last = deadline(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    return Explanation(f"still owed: {owed}{longer(judge, attempt, end)}{doubt}", owed, last)
+    reason = f"still owed: {owed}{longer(judge, attempt, end)}{doubt}"
+    return Explanation(reason, owed, deadline=_deadline(judge, attempt))
+
+
+def _deadline(judge: Judge, attempt: Open) -> int | None:
+    """The last instant before time alone decides an attempt."""
+
+    def alone(token: Token) -> tuple[int, bool] | None:
+        undecided = token[0] > PASSED
+        return settled_alone(judge.machine.residual(token[0]), token[1]) if undecided else None
+
+    return earlier(alone(attempt.token), alone(attempt.better or attempt.token))
+
+
+def earlier(worse: tuple[int, bool] | None, better: tuple[int, bool] | None) -> int | None:
+    """When two runs come to a decision: the one for the worse has to pass, or the other to fail.
+
+    Args:
+        worse: what time alone makes of the run that takes the unknown for the worse, and when.
+        better: the same of the run that takes it for the better.
+    """
+    found = [worse[0]] if worse is not None and worse[1] else []
+    found += [better[0]] if better is not None and not better[1] else []
+    return min(found, default=None)
 
 
 def longer(judge: Bench, attempt: Open, end: int | None) -> str:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from rvmon.automaton.location import FAILED
+from rvmon.automaton.machine import Token
+from rvmon.dataflow.alone import settled_alone
 from rvmon.dataflow.network import Network
 from rvmon.monitor.bench import Open
 from rvmon.monitor.cause_network import NetworkCauseFinder
-from rvmon.monitor.explain import Explanation, longer
+from rvmon.monitor.explain import Explanation, earlier, longer
 from rvmon.monitor.network_judge import WAITING, NetworkJudge
-from rvmon.monitor.owed_network import Owed, owed_at
+from rvmon.monitor.owed_network import owed_at
 from rvmon.verdict.attempt import Blame
 
 
@@ -25,31 +27,49 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
         return Explanation("nothing was owed" if verdict else "it can never hold")
     words = judge.compiled.words
     blame: Blame | None = None if verdict else words.blame(cause, t, judge.flow)
-    owed = owed_at(network, core, position, found[1] - 1, words)
+    alone = settled_alone(network, position, found[1] - 1)
     return Explanation(
         words.reason(cause, verdict, t, judge.flow),
-        deadline=None if owed is None else owed.deadline,
+        deadline=None if alone is None else alone[0],
         blame=blame,
     )
 
 
-def network_open(judge: NetworkJudge, attempt: Open, end: int | None = None) -> Explanation:
-    """What an undecided attempt waits for, or why it can wait no more."""
+def network_open(
+    judge: NetworkJudge, attempt: Open, now: int, end: int | None = None
+) -> Explanation:
+    """What an undecided attempt waits for, or why it can wait no more; see `explain_open`."""
     network, token = judge.worse, attempt.token
     if token[0] == FAILED and attempt.better is not None:
         network, token = judge.better, attempt.better
     if network is None or token[0] != WAITING:
         return Explanation(f"left open by the input: {attempt.doubt}")
-    owed = _owed_now(judge, network, token[1][0], end)
-    doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    if owed is None:
-        return Explanation(f"still owed: what lies ahead{longer(judge, attempt, end)}{doubt}")
-    reason = f"still owed: {owed.text}{longer(judge, attempt, end)}{doubt}"
-    return Explanation(reason, owed.text, owed.deadline)
-
-
-def _owed_now(judge: NetworkJudge, network: Network, t: int, end: int | None) -> Owed | None:
-    now = judge.position if end is None else end
+    position = token[1][0] // network.positions.gap
     core = judge.compiled.obligation.owed
-    position = t // network.positions.gap
-    return owed_at(network, core, position, 2 * now + 1, judge.compiled.words)
+    network = _grown(network, now)
+    owed = owed_at(network, core, position, network.grown, judge.compiled.words)
+    doubt = f"; {attempt.doubt}" if attempt.doubt else ""
+    reason = f"still owed: {owed or 'what lies ahead'}{longer(judge, attempt, end)}{doubt}"
+    return Explanation(reason, owed, _deadline(judge, attempt, now))
+
+
+def _deadline(judge: NetworkJudge, attempt: Open, now: int) -> int | None:
+    """The last instant before time alone decides an attempt."""
+
+    def alone(network: Network | None, token: Token) -> tuple[int, bool] | None:
+        if network is None or token[0] != WAITING:
+            return None
+        grown = _grown(network, now)
+        return settled_alone(grown, token[1][0] // network.positions.gap, grown.grown)
+
+    better = judge.worse if judge.better is None else judge.better
+    return earlier(
+        alone(judge.worse, attempt.token), alone(better, attempt.better or attempt.token)
+    )
+
+
+def _grown(network: Network, now: int) -> Network:
+    """A network as it is once time has come to a stamp."""
+    grown = network.copy()
+    grown.grow(now)
+    return grown

@@ -67,7 +67,7 @@ class Ledger:
             cannot_pass=attempt.token[0] == FAILED,
             cannot_fail=attempt.better is not None and attempt.better[0] == PASSED,
         )
-        why = why_open(judge, attempt, end)
+        why = why_open(judge, attempt, max(2 * reached, 2 * end + 1), end)
         if decision is not Decision.OPEN:
             reason = _SETTLED[decision].format(policy=requirement.at_end)
             why = replace(why, reason=reason)
@@ -77,9 +77,9 @@ class Ledger:
             record = replace(record, forecast=outlook(judge, attempt))
         self._decided.append((judge, attempt, record))
 
-    def open_record(self, judge: Bench, attempt: Open) -> Attempt:
-        """The record of an attempt that is still running."""
-        why = why_open(judge, attempt)
+    def open_record(self, judge: Bench, attempt: Open, now: int) -> Attempt:
+        """The record of an attempt that is still running; `now` as in `why_open`."""
+        why = why_open(judge, attempt, now)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
         return replace(record, forecast=outlook(judge, attempt))
 

@@ -225,8 +225,11 @@ class Monitor:
     @property
     def open(self) -> Sequence[Attempt]:
         """The attempts that are undecided now."""
+        if self._reached is None:
+            return []
+        now = 2 * self._reached + (self._reached == self._last)
         return [
-            self._ledger.open_record(judge, attempt)
+            self._ledger.open_record(judge, attempt, now)
             for judge in self._lanes.judges
             for attempt in judge.attempts
         ]

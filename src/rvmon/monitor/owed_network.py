@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import assert_never
 
 from rvmon.dataflow.network import Network
@@ -22,16 +21,8 @@ from rvmon.monitor.wording import Words
 from rvmon.trace.time import format_ticks
 
 
-@dataclass(frozen=True, slots=True)
-class Owed:
-    """What is asked for, as text, and until when it can be met; `None` if nothing bounds that."""
-
-    text: str
-    deadline: int | None
-
-
-def owed_at(network: Network, core: Core, position: int, limit: int, words: Words) -> Owed | None:
-    """What a formula at a position asks for at a stamp; `None` if it is decided.
+def owed_at(network: Network, core: Core, position: int, limit: int, words: Words) -> str:
+    """What a formula at a position asks for at a stamp, as text; empty if it is decided.
 
     Args:
         network: what is known.
@@ -50,18 +41,18 @@ class _Owing:
         self.words = words
         self.gap = network.positions.gap
 
-    def at(self, core: Core, position: int) -> Owed | None:
+    def at(self, core: Core, position: int) -> str:
         if self.network.value_at(core, position, self.limit) is not None:
-            return None
+            return ""
         match core:
             case Constant() | Literal():
-                return None
+                return ""
             case And(args=args):
                 return _joined(" and ", [self.at(arg, position) for arg in args])
             case Or(args=args):
                 return _joined(", or ", [self.at(arg, position) for arg in args])
             case Next() | Previous() | Since():
-                return Owed(f"`{self.words.text(core)}`", None)
+                return f"`{self.words.text(core)}`"
             case Until(high=high):
                 return self._own(core, "by", position, high)
             case Release(right=right, low=low, high=high):
@@ -71,29 +62,19 @@ class _Owing:
             case _:
                 assert_never(core)
 
-    def _own(self, core: Core, word: str, position: int, high: int | None) -> Owed:
+    def _own(self, core: Core, word: str, position: int, high: int | None) -> str:
         text = f"`{self.words.text(core)}`"
         if high is None:
-            return Owed(text, None)
-        last = position * self.gap + high
-        return Owed(f"{text} {word} {format_ticks(last)}", last)
+            return text
+        return f"{text} {word} {format_ticks(position * self.gap + high)}"
 
-    def _spawned(self, core: Core, first: int) -> Owed | None:
+    def _spawned(self, core: Core, first: int) -> str:
         """What the first position asks for, of those from `first` on that are not known."""
         if isinstance(core, Literal | Constant):
-            return None
+            return ""
         position = self.network.first_unknown(core, first, self.limit)
-        return None if position is None else self.at(core, position)
+        return "" if position is None else self.at(core, position)
 
 
-def _joined(word: str, parts: list[Owed | None]) -> Owed | None:
-    """All parts, or one of them; the deadline is that of the first to be met, or of the last."""
-    owed = list(dict.fromkeys(part for part in parts if part is not None))
-    if not owed:
-        return None
-    deadlines = [part.deadline for part in owed if part.deadline is not None]
-    if word == " and ":
-        deadline = min(deadlines, default=None)
-    else:
-        deadline = max(deadlines) if len(deadlines) == len(owed) else None
-    return Owed(word.join(part.text for part in owed), deadline)
+def _joined(word: str, parts: list[str]) -> str:
+    return word.join(dict.fromkeys(part for part in parts if part))

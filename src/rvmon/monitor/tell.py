@@ -23,13 +23,20 @@ def why_decided(judge: Bench, attempt: Open, verdict: bool, t: int, before: Toke
             raise TypeError(f"no explanation for {type(judge).__name__}")
 
 
-def why_open(judge: Bench, attempt: Open, end: int | None = None) -> Explanation:
-    """What an undecided attempt waits for; `end` is that of the trace, if it has ended."""
+def why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> Explanation:
+    """What an undecided attempt waits for.
+
+    Args:
+        judge: of the attempt.
+        attempt: undecided.
+        now: twice the instant that time has come to, one more if its letter is known.
+        end: the last instant of the trace, if it has ended.
+    """
     match judge:
         case NetworkJudge():
-            return network_open(judge, attempt, end)
+            return network_open(judge, attempt, now, end)
         case Judge():
-            return explain_open(judge, attempt, end)
+            return explain_open(judge, attempt, now, end)
         case _:
             raise TypeError(f"no explanation for {type(judge).__name__}")
 

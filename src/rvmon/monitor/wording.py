@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.core import Constant, Core, Literal, Release, Sense, Until
 from rvmon.formula.lower import Origin
+from rvmon.formula.progress import after, value
 from rvmon.formula.residual import NO_CLOCK, Residual
-from rvmon.formula.state import FALSE, TRUE
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.cause import Cause
 from rvmon.spec.checked import Formula, Unary, UnaryOp
 from rvmon.spec.printer import format_duration, format_formula
@@ -157,19 +158,25 @@ class Words:
         return f"{text} {'by' if isinstance(node, Until) else 'to'} {format_ticks(last)}"
 
 
+def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool] | None:
+    """What time alone makes of what is owed, and the last instant before; `None` if nothing."""
+    ends = {
+        anchors[clock] + node.high
+        for clause in residual
+        for node, clock in clause
+        if clock != NO_CLOCK and isinstance(node, Until | Release) and node.high is not None
+    }
+    for last in sorted(ends):
+        found = value(after(residual, [last + 1 - anchor for anchor in anchors]))
+        if found != UNKNOWN:
+            return last, found == TRUE
+    return None
+
+
 def deadline(residual: Residual, anchors: Sequence[int]) -> int | None:
-    """The last instant at which what is owed can be met; `None` if nothing bounds it."""
-    ends: list[int] = []
-    for clause in residual:
-        own = [
-            anchors[clock] + node.high
-            for node, clock in clause
-            if clock != NO_CLOCK and isinstance(node, Until | Release) and node.high is not None
-        ]
-        if not own:
-            return None
-        ends.append(min(own))
-    return max(ends, default=None)
+    """The last instant before time alone settles what is owed; see `Attempt`."""
+    found = settled_alone(residual, anchors)
+    return None if found is None else found[0]
 
 
 def _decided(verdict: bool) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Value
@@ -22,6 +22,19 @@ class Monitored(Protocol):
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         """End the trace."""
+
+
+@runtime_checkable
+class Asked(Monitored, Protocol):
+    """A monitor that can be asked at any time."""
+
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """The attempts that are undecided now."""
+
+    @property
+    def next_due(self) -> int | None:
+        """The next instant at which time alone can decide something."""
 
 
 def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import Any
@@ -16,7 +17,9 @@ from rvmon.monitor.generated import can_generate, plan_alone
 from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.drive import Monitored
+from rvmon.testing.drive import Asked, Monitored
+from rvmon.testing.held_back import HeldBack
+from rvmon.testing.interrupt import Interrupted
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision
@@ -27,15 +30,50 @@ FORMS = (*ENGINES, "file", "c")
 """The engines of `Spec.monitor`; the Python file that runs alone; the compiled C."""
 
 
+NEXT, INTERRUPT = "next", "interrupt"
+"""Ways to drive an engine: samples in portions, settled by the next stamp; with snapshots."""
+
+
+class Compiler:
+    """Compiles specifications; that of one case serves the next case and all makers too."""
+
+    def __init__(self) -> None:
+        self._spec: CheckedSpec | None = None
+        self._compiled: CompiledSpec | None = None
+
+    def __call__(self, spec: CheckedSpec) -> CompiledSpec:
+        """The compiled specification.
+
+        Raises:
+            RvmonError: no engine judges it.
+        """
+        if self._compiled is None or spec is not self._spec:
+            self._compiled, self._spec = compile_spec(spec), spec
+        return self._compiled
+
+
 class Maker:
     """Makes monitors of one form; what is compiled for a specification serves the next case too.
 
     Args:
-        form: one of `FORMS`.
+        form: one of `FORMS`, perhaps followed by `+next` or `+interrupt`, or both.
+        compiler: shared with other makers; default: its own.
+
+    Raises:
+        RvmonError: there is no such form.
     """
 
-    def __init__(self, form: str) -> None:
-        self.form = form
+    def __init__(self, form: str, compiler: Compiler | None = None) -> None:
+        self.form, *ways = form.split("+")
+        driven = self.form in ENGINES or not ways
+        if self.form not in FORMS or not driven or {*ways} - {NEXT, INTERRUPT}:
+            raise RvmonError(
+                f"no form `{form}`: there are {', '.join(FORMS)}; "
+                f"{', '.join(ENGINES)} also with +{NEXT}, +{INTERRUPT}"
+            )
+        self.settle = "next" if NEXT in ways else "now"
+        self._interrupts = INTERRUPT in ways
+        self._compile = compiler or Compiler()
         self._spec: CheckedSpec | None = None
         self._made: Any = None
 
@@ -49,7 +87,7 @@ class Maker:
             self._made, self._spec = self._compiled(case.spec), case.spec
         match self._made:
             case CompiledSpec() as compiled:
-                return build_monitor(compiled, engine=self.form, sources=case.names)
+                return self._driven(compiled, case)
             case BatchLibrary() as library:
                 return _Compiled(library, case)
             case ModuleType() as module:
@@ -57,8 +95,14 @@ class Maker:
             case _:
                 return None
 
+    def _driven(self, compiled: CompiledSpec, case: Case) -> Asked:
+        dice = random.Random(len(case.actions))  # noqa: S311 - repeatable
+        monitor = build_monitor(compiled, engine=self.form, settle=self.settle, sources=case.names)
+        driven = Interrupted(monitor, dice) if self._interrupts else monitor
+        return driven if self.settle == "now" else HeldBack(driven, case.spec, dice)
+
     def _compiled(self, spec: CheckedSpec) -> CompiledSpec | BatchLibrary | ModuleType | None:
-        compiled = compile_spec(spec)
+        compiled = self._compile(spec)
         requirements = compiled.requirements.values()
         if self.form == "progression":
             ahead = any(one.network_plan.looks_back for one in requirements)

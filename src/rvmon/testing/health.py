@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from rvmon.spec.checked import (
     BoundAtom,
+    CheckedSpec,
     Compare,
     Constant,
     EventAtom,
@@ -33,10 +34,7 @@ def expected_health(case: Case, word: Word) -> list[Health]:
         case: what a monitor is told.
         word: the same laid out position by position.
     """
-    readers: dict[str, tuple[str, ...]] = {}
-    for requirement in case.spec.requirements.values():
-        for name in names_in(requirement):
-            readers[name] = (*readers.get(name, ()), requirement.id)
+    readers = readers_of(case.spec)
     found = [*_unknown(case), *_stale(case, word), *_unfed(case, readers)]
     return [
         Health(kind, shown, count, first, readers.get(name, ()))
@@ -44,27 +42,37 @@ def expected_health(case: Case, word: Word) -> list[Health]:
     ]
 
 
-def health_differences(case: Case, word: Word, found: Sequence[Health]) -> list[str]:
+def readers_of(spec: CheckedSpec) -> dict[str, tuple[str, ...]]:
+    """The requirements that speak of a name, by name."""
+    readers: dict[str, tuple[str, ...]] = {}
+    for requirement in spec.requirements.values():
+        for name in names_in(requirement):
+            readers[name] = (*readers.get(name, ()), requirement.id)
+    return readers
+
+
+def health_differences(
+    spec: CheckedSpec, expected: Sequence[Health], found: Sequence[Health]
+) -> list[str]:
     """One line per difference between the expected input health of a case and what was reported.
 
     A requirement that can be simplified may not depend on all that it names: it may be left out.
     """
-    spec = case.spec
     simple = {r.id for r in spec.requirements.values() if not may_be_simplified(r, spec.time)}
-    wanted = {(one.kind, one.name): one for one in expected_health(case, word)}
+    wanted = {(one.kind, one.name): one for one in expected}
     got = {(one.kind, one.name): one for one in found}
     lines = []
     if list(got) != sorted(got, key=lambda key: (key[1], key[0])) or len(got) != len(found):
         lines.append("input health is not in order, or says things twice")
     for key in sorted({*wanted, *got}):
-        expected, actual = wanted.get(key), got.get(key)
-        if actual is None and expected is not None:
+        due, actual = wanted.get(key), got.get(key)
+        if actual is None and due is not None:
             spared = key[0] in (HealthKind.MISSING, HealthKind.ABSENT)
-            agree = spared and not simple.intersection(expected.requirements)
+            agree = spared and not simple.intersection(due.requirements)
         else:
-            agree = expected is not None and actual is not None and _agree(expected, actual, simple)
+            agree = due is not None and actual is not None and _agree(due, actual, simple)
         if not agree:
-            lines.append(f"input health: expected {expected}, got {actual}")
+            lines.append(f"input health: expected {due}, got {actual}")
     return lines
 
 

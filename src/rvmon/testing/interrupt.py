@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from rvmon.monitor import Monitor
 from rvmon.monitor.snapshot import restore
-from rvmon.testing.case import Case
-from rvmon.testing.drive import Monitored
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -58,19 +56,3 @@ class Interrupted:
     def next_due(self) -> int | None:
         """See `Monitor.next_due`."""
         return self._interrupt().next_due
-
-
-def interrupting(make: Callable[[Case], Monitored | None]) -> Callable[[Case], Monitored | None]:
-    """A maker of monitors that are interrupted.
-
-    Args:
-        make: gives a fresh monitor of the public interface.
-    """
-
-    def made(case: Case) -> Monitored | None:
-        monitor = make(case)
-        if not isinstance(monitor, Monitor):
-            return monitor
-        return Interrupted(monitor, random.Random(len(case.actions)))  # noqa: S311 - repeatable
-
-    return made

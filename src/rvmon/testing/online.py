@@ -3,60 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 from rvmon.errors import RvmonError, TimeOrderError
-from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key, outcomes
-from rvmon.testing.drive import Monitored, tell
-from rvmon.testing.law import judge
+from rvmon.testing.compare import Key, Outcome
+from rvmon.testing.drive import Asked, Monitored, tell
+from rvmon.testing.judgement import Judgement
+from rvmon.testing.moments import moments
+from rvmon.testing.waiting import Waiting
 from rvmon.trace.sample import Sample
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
 
-@runtime_checkable
-class Watched(Protocol):
-    """A monitor that can be asked at any time."""
-
-    @property
-    def open(self) -> Sequence[Attempt]:
-        """The attempts that are undecided now."""
-
-    @property
-    def next_due(self) -> int | None:
-        """The next instant at which time alone can decide something."""
-
-
-def online_differences(case: Case, monitor: Monitored) -> list[str]:
+def online_differences(judgement: Judgement, monitor: Monitored, settle: str = "now") -> list[str]:
     """What is wrong with what a monitor says at each action of a case; empty if all is right.
 
     Each call has to return what could be decided by then, no sooner and no later; what is open is
-    what no prefix has decided; before it is due, time alone decides nothing; what was forecast
-    does not come out otherwise; a wrong sample is refused and changes nothing. Costs one run of the
-    oracle per action.
+    what no prefix has decided, with the deadline and the parts that it waits for; before it is due,
+    time alone decides nothing; what was forecast does not come out otherwise; a wrong sample is
+    refused and changes nothing.
 
     Args:
-        case: what to tell.
+        judgement: of the case, which is told.
         monitor: fresh, for the spec and the sources of the case.
+        settle: how the monitor settles samples: `now` or `next`.
     """
+    case = judgement.case
     told: set[Key] = set()
     due: int | None = None
     forecast: dict[Key, Verdict] = {}
-    for count, action in enumerate(case.actions, start=1):
+    came = moments(case, settle=settle)
+    for count, (action, moment) in enumerate(zip(case.actions, came, strict=True), start=1):
         attempts = tell(monitor, action)
-        report = judge(Case(case.spec, case.actions[:count], None, case.names))
-        found = [*_returned(case, report, attempts, told)]
-        if isinstance(monitor, Watched):
-            found += _early(attempts, due, action) if count > 1 else ()
+        decided, waiting = ({}, {}) if moment is None else judgement.at(moment)
+        found = [*_returned(decided, attempts, told)]
+        if isinstance(monitor, Asked):
+            found += _early(attempts, due, action, settle) if count > 1 else ()
             open_ = monitor.open
-            found += _open(case, report, open_)
-            found += _unforeseen(report, forecast)
+            found += _open(waiting, open_)
+            found += _unforeseen(decided, forecast)
             forecast |= {(a.requirement, a.number): a.forecast for a in open_ if a.forecast}
             due = monitor.next_due
-        found += _taken(monitor, action)
+        found += _taken(monitor, action, settle)
         if found:
             return [f"action {count} {line}" for line in found]
         told |= {(a.requirement, a.number) for a in attempts}
@@ -74,7 +65,7 @@ def differences_after_end(case: Case, monitor: Monitored, report: Report) -> lis
     last = case.actions[-1] if case.actions else 0
     later = 1_000 + (last.t if isinstance(last, Sample) else last)
     lines = []
-    if isinstance(monitor, Watched) and monitor.next_due is not None:
+    if isinstance(monitor, Asked) and monitor.next_due is not None:
         lines.append(f"due at {monitor.next_due}, though finished")
     calls: tuple[Callable[[], object], ...] = (
         lambda: monitor.step_ns(later, {}),
@@ -92,57 +83,60 @@ def differences_after_end(case: Case, monitor: Monitored, report: Report) -> lis
 
 
 def _returned(
-    case: Case, report: Report, attempts: Sequence[Attempt], told: set[Key]
+    decided: Mapping[Key, Outcome], attempts: Sequence[Attempt], told: set[Key]
 ) -> Iterator[str]:
-    at_end = _at_end(case)
-    due = {
-        (a.requirement, a.number)
-        for a in report.attempts
-        if a.decision is Decision.PREFIX and a.requirement not in at_end
-    }
+    due = decided.keys() - told
     now = {(a.requirement, a.number) for a in attempts}
-    if now != due - told:
-        yield f"decides {sorted(due - told)}, returned {sorted(now)}"
+    if now != due:
+        yield f"decides {sorted(due)}, returned {sorted(now)}"
         return
-    wanted = outcomes(report)
     for attempt in attempts:
-        key = (attempt.requirement, attempt.number)
-        if (attempt.decided, attempt.verdict) != (wanted[key].decided, wanted[key].verdict):
-            yield f"returned {attempt}, expected {wanted[key]}"
+        wanted = decided[attempt.requirement, attempt.number]
+        if (attempt.decided, attempt.verdict) != (wanted.decided, wanted.verdict):
+            yield f"returned {attempt}, expected {wanted}"
 
 
-def _open(case: Case, report: Report, found: Sequence[Attempt]) -> Iterator[str]:
-    at_end = _at_end(case)
-    wanted = {
-        (a.requirement, a.number, a.triggered)
-        for a in report.attempts
-        if a.decision is not Decision.PREFIX and a.requirement not in at_end
-    }
+def _open(waiting: Mapping[Key, Waiting], found: Sequence[Attempt]) -> Iterator[str]:
+    wanted = {(*key, one.triggered) for key, one in waiting.items()}
     got = {(a.requirement, a.number, a.triggered) for a in found}
     if got != wanted or len(found) != len(got):
         yield f"leaves open {sorted(wanted)}, shown are {sorted(got)}"
+        return
+    for attempt in found:
+        one = waiting[attempt.requirement, attempt.number]
+        for part in one.misnamed(attempt.owed):
+            yield f"{attempt} is said to owe {part}, which waits for nothing"
+        deadline = one.deadline()
+        if attempt.deadline != deadline:
+            yield f"{attempt} has the deadline {deadline}, shown is {attempt.deadline}"
 
 
-def _unforeseen(report: Report, forecast: Mapping[Key, Verdict]) -> Iterator[str]:
+def _unforeseen(decided: Mapping[Key, Outcome], forecast: Mapping[Key, Verdict]) -> Iterator[str]:
     """What was decided otherwise than a forecast said."""
-    for (name, number), outcome in outcomes(report).items():
+    for (name, number), outcome in decided.items():
         said = forecast.get((name, number), outcome.verdict)
-        if outcome.decision is Decision.PREFIX and said is not outcome.verdict:
+        if said is not outcome.verdict:
             yield f"decides {name} #{number}: {outcome}; {said.value} was forecast"
 
 
-def _early(attempts: Sequence[Attempt], due: int | None, action: Sample | int) -> Iterator[str]:
+def _early(
+    attempts: Sequence[Attempt], due: int | None, action: Sample | int, settle: str
+) -> Iterator[str]:
     """What was decided by time alone up to an action before it was due."""
     instant = action.t if isinstance(action, Sample) else action
+    if settle == "next":
+        return  # a call also settles a sample that came before
     if due is None or instant < due:
         for attempt in attempts:
             if not isinstance(action, Sample) or (attempt.decided or 0) < instant:
                 yield f"brought {attempt}, but due was {due}"
 
 
-def _taken(monitor: Monitored, action: Sample | int) -> Iterator[str]:
+def _taken(monitor: Monitored, action: Sample | int, settle: str) -> Iterator[str]:
     """The wrong samples that a monitor takes after an action."""
-    late = action.t if isinstance(action, Sample) else action - 1
+    passed = isinstance(action, Sample) and settle == "now"
+    instant = action.t if isinstance(action, Sample) else action
+    late = instant if passed else instant - 1
     wrong: tuple[tuple[int, dict[str, Any], type[RvmonError]], ...] = (
         (late, {}, TimeOrderError),
         (late + 1, {"nothing of that name": True}, RvmonError),
@@ -154,7 +148,3 @@ def _taken(monitor: Monitored, action: Sample | int) -> Iterator[str]:
         except expected:
             continue
         yield f"was followed by a sample at {t} with {values}, and it was taken"
-
-
-def _at_end(case: Case) -> set[str]:
-    return {r.id for r in case.spec.requirements.values() if is_upon_end(r)}

@@ -8,6 +8,7 @@ shares no code with them. Traces have to be short: every tick of held time is a 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from rvmon.errors import TraceError
@@ -72,25 +73,57 @@ def evaluate(
         names = samples.names if names is None else names
     listed = [entry if isinstance(entry, Sample) else Sample(*entry) for entry in samples]
     word = word_of(checked, listed, end=end, advances=advances, names=names)
-    requirements = checked.requirements
-    _refuse_double_payloads(requirements.values(), listed)
+    followed = follow(checked, word, listed)
+    return report_on(checked, followed, origin=listed[0].t if listed else 0, end=word.end)
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """One attempt, and the first instant at which the prefix decides it, with its truth then."""
+
+    start: Start
+    decided: tuple[int, Truth] | None
+
+
+def follow(
+    spec: CheckedSpec, word: Word, samples: Sequence[Sample]
+) -> dict[str, Sequence[Followed]]:
+    """The attempts of each requirement on a word, in order of trigger.
+
+    Args:
+        spec: gives the requirements.
+        word: the trace, position by position.
+        samples: what it was made from.
+
+    Raises:
+        TraceError: two payloads of an event, though not every requirement is a `for each`.
+    """
+    _refuse_double_payloads(spec.requirements.values(), samples)
+    found: dict[str, Sequence[Followed]] = {}
+    for name, requirement in spec.requirements.items():
+        begun = starts(requirement, word)
+        decisions = _decisions(requirement, word, begun)
+        found[name] = [Followed(*pair) for pair in zip(begun, decisions, strict=True)]
+    return found
+
+
+def report_on(
+    spec: CheckedSpec, followed: Mapping[str, Sequence[Followed]], *, origin: int, end: int | None
+) -> Report:
+    """The report on attempts that were followed to the end of the trace.
+
+    Args:
+        spec: gives the requirements.
+        followed: by requirement, from `follow`.
+        origin: the instant of the first sample.
+        end: the last instant whose letter is known.
+    """
     attempts = [
-        attempt
-        for requirement in requirements.values()
-        for attempt in judge_requirement(requirement, word)
+        _record(spec.requirements[name], one.start, number, one.decided)
+        for name, begun in followed.items()
+        for number, one in enumerate(begun, start=1)
     ]
-    origin = listed[0].t if listed else 0
-    return report_of(tuple(requirements), attempts, origin=origin, end=word.end)
-
-
-def judge_requirement(requirement: Requirement, word: Word) -> list[Attempt]:
-    """The attempts of one requirement on a word, in order of trigger."""
-    begun = starts(requirement, word)
-    decisions = _decisions(requirement, word, begun)
-    return [
-        _record(requirement, start, number, decided)
-        for number, (start, decided) in enumerate(zip(begun, decisions, strict=True), start=1)
-    ]
+    return report_of(tuple(spec.requirements), attempts, origin=origin, end=end)
 
 
 def _decisions(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from rvmon.spec.checked import (
     BoundAtom,
+    CheckedSpec,
     Compare,
     EventAtom,
     Formula,
@@ -14,13 +15,12 @@ from rvmon.spec.checked import (
     SignalAtom,
 )
 from rvmon.spec.printer import format_formula
-from rvmon.testing.attempts import Start, starts
-from rvmon.testing.case import Case
+from rvmon.testing.attempts import Start
+from rvmon.testing.compare import Key
 from rvmon.testing.health import may_be_simplified
 from rvmon.testing.kleene import Truth
 from rvmon.testing.truths import Truths
 from rvmon.testing.walk import subformulas
-from rvmon.testing.word import Word
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -28,31 +28,42 @@ from rvmon.verdict.report import Report
 _SCALARS: Mapping[Truth, Scalar] = {Truth.TRUE: True, Truth.FALSE: False, Truth.UNKNOWN: None}
 
 
-def seen_differences(case: Case, word: Word, report: Report) -> list[str]:
-    """What the attempts of a report get wrong of the values at their trigger and decision.
+class Seen:
+    """What the attempts of a case see at their trigger and decision.
 
     What was seen at a decision is that of the position there, or of the one before: a decision that
     time alone brings comes before the position at its instant.
 
     Args:
-        case: what was judged; the attempts are the law's.
-        word: the same, position by position.
-        report: a monitor's.
+        spec: gives the requirements.
+        starts: the law's attempts by requirement.
     """
-    lines = []
-    begun = {r.id: starts(r, word) for r in case.spec.requirements.values()}
-    for attempt in report.attempts:
-        requirement = case.spec.requirements[attempt.requirement]
-        start = begun[requirement.id][attempt.number - 1]
-        values = _Values(requirement, start)
-        if not values.agree(attempt.at_trigger, start.position):
-            lines.append(f"{attempt} saw {attempt.at_trigger} at its trigger")
-        bare = not attempt.at_trigger and not may_be_simplified(requirement, case.spec.time)
-        if bare and values.atoms:
-            lines.append(f"{attempt} saw nothing at its trigger")
-        if not any(values.agree(attempt.at_decision, at) for at in _positions(start, attempt)):
-            lines.append(f"{attempt} saw {attempt.at_decision} at its decision")
-    return lines
+
+    def __init__(self, spec: CheckedSpec, starts: Mapping[str, Sequence[Start]]) -> None:
+        self._spec = spec
+        self._starts = starts
+        self._values: dict[Key, _Values] = {}
+
+    def differences(self, report: Report) -> list[str]:
+        """What a monitor's report, whose attempts are the law's, gets wrong of these values."""
+        lines = []
+        for attempt in report.attempts:
+            requirement = self._spec.requirements[attempt.requirement]
+            start = self._starts[requirement.id][attempt.number - 1]
+            values = self._values_of((requirement.id, attempt.number), requirement, start)
+            if not values.agree(attempt.at_trigger, start.position):
+                lines.append(f"{attempt} saw {attempt.at_trigger} at its trigger")
+            bare = not attempt.at_trigger and not may_be_simplified(requirement, self._spec.time)
+            if bare and values.atoms:
+                lines.append(f"{attempt} saw nothing at its trigger")
+            if not any(values.agree(attempt.at_decision, at) for at in _positions(start, attempt)):
+                lines.append(f"{attempt} saw {attempt.at_decision} at its decision")
+        return lines
+
+    def _values_of(self, key: Key, requirement: Requirement, start: Start) -> _Values:
+        if key not in self._values:
+            self._values[key] = _Values(requirement, start)
+        return self._values[key]
 
 
 def _positions(start: Start, attempt: Attempt) -> list[int]:

@@ -12,7 +12,7 @@ from rvmon.testing.drive import tell
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.interrupt import Interrupted, interrupting
+from rvmon.testing.interrupt import Interrupted
 
 TEXT = """
 spec door
@@ -45,7 +45,7 @@ def test_interruptions_change_nothing(engine):
     """Every engine, taken up from snapshots at random points, judges as the law says."""
     seeds = [f"snapshot/{number}" for number in range(40)]
     profile, traces = Profile(mixed=engine in ("auto", "network")), TraceProfile()
-    tally = campaign(interrupting(Maker(engine)), seeds, profile, traces, online_every=6)
+    tally = campaign(Maker(f"{engine}+interrupt"), seeds, profile, traces, online_every=6)
     assert tally.pairs > 25
     assert not tally.disagreements, tally.disagreements[0]
 

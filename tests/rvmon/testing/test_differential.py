@@ -10,17 +10,31 @@ import pytest
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.session import Spec
 from rvmon.spec.checked import UnaryOp
-from rvmon.testing.build import always, e, eventually, p, probe, requirement, spec_of, timeline
+from rvmon.testing.build import (
+    always,
+    e,
+    eventually,
+    p,
+    probe,
+    requirement,
+    spec_of,
+    timeline,
+)
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
-from rvmon.testing.differential import campaign, decided_on_bound, disagreements
+from rvmon.testing.differential import (
+    campaign,
+    campaign_of,
+    decided_on_bound,
+    disagreements,
+)
 from rvmon.testing.drive import drive
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.health import expected_health, health_differences
+from rvmon.testing.judgement import Judgement
 from rvmon.testing.law import judge, word
 from rvmon.testing.online import differences_after_end, online_differences
-from rvmon.testing.seen import seen_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.shrink import shrink
 from rvmon.testing.walk import subformulas
@@ -130,10 +144,10 @@ def run(make: type[Echo], pairs: int = 60) -> list[str]:
 
 def test_no_disagreement_with_itself() -> None:
     """A monitor that does as the oracle does has no disagreement, online neither."""
-    tally = campaign(Echo, range(60), Profile(), TraceProfile(), online_every=1)
-    assert tally.disagreements == []
-    assert tally.pairs == 60
-    assert sum(tally.attempts.values()) == sum(tally.decisions.values()) > 60
+    found = campaign_of({"echo": Echo}, range(60), Profile(), TraceProfile(), online_every=1)
+    assert found.disagreements == []
+    assert found.tallies["echo"].pairs == found.mix.pairs == 60
+    assert sum(found.mix.attempts.values()) == sum(found.mix.decisions.values()) > 60
 
 
 def test_wrong_instant_is_found_and_shrunk() -> None:
@@ -164,7 +178,7 @@ def test_late_samples_have_to_be_refused() -> None:
 def test_open_attempts_and_their_dues_are_looked_at() -> None:
     """What is open is compared, and what time alone decided had to be due."""
     case = Case(spec_of(requirement(eventually(p, 0, 3))), (*timeline(p="0"), 4), 4)
-    [found] = online_differences(case, Forgetful(case))
+    [found] = online_differences(Judgement(case), Forgetful(case))
     assert found == "action 1 leaves open [('R', 1, 0)], shown are []"
 
     class Unexpecting(Echo):
@@ -172,9 +186,9 @@ def test_open_attempts_and_their_dues_are_looked_at() -> None:
 
         @property
         def open(self) -> Sequence[Attempt]:
-            return [a for a in judge(self.case).attempts if a.decided is None]
+            return [replace(a, deadline=3) for a in judge(self.case).attempts if a.decided is None]
 
-    [found] = online_differences(case, Unexpecting(case))
+    [found] = online_differences(Judgement(case), Unexpecting(case))
     assert "but due was None" in found
 
 
@@ -197,13 +211,13 @@ def test_forecasts_have_to_come_true() -> None:
         @property
         def open(self) -> Sequence[Attempt]:
             return [
-                replace(a, forecast=Verdict.FAIL)
+                replace(a, forecast=Verdict.FAIL, deadline=3)
                 for a in judge(self.case).attempts
                 if a.decided is None
             ]
 
     case = Case(spec_of(requirement(eventually(p, 0, 3))), timeline(p="01"))
-    [found] = online_differences(case, Prophet(case))
+    [found] = online_differences(Judgement(case), Prophet(case))
     assert found.endswith("F was forecast")
 
 
@@ -211,14 +225,14 @@ def test_input_health_is_compared() -> None:
     """Unknown, missing and stale values are counted, with the requirements that read them."""
     spec = spec_of(requirement(probe("known", "x"), upon=e), stale={"x": 2})
     case = Case(spec, (Sample(0, {}), Sample(1, {"x": None}), Sample(2, {"x": 1.0}), 9))
-    found = expected_health(case, word(case))
+    expected = found = expected_health(case, word(case))
     assert [(one.kind, one.name, one.count, one.first) for one in found] == [
         ("missing", "x", 1, 0),
         ("none", "x", 1, 1),
         ("stale", "x", 1, 5),
     ]
     assert all(one.requirements == ("R",) for one in found)
-    assert not health_differences(case, word(case), found)
+    assert not health_differences(spec, expected, found)
     for changed_ in (
         found[1:],
         found[::-1],
@@ -226,7 +240,7 @@ def test_input_health_is_compared() -> None:
         [*found[:2], replace(found[2], count=2)],
         [*found, replace(found[0], name="y")],
     ):
-        assert health_differences(case, word(case), changed_)
+        assert health_differences(spec, expected, changed_)
 
 
 def test_what_was_seen_is_compared() -> None:
@@ -236,14 +250,15 @@ def test_what_was_seen_is_compared() -> None:
     [made] = report.attempts
     at = {"e": True, "p": False}
     good = replace(made, at_trigger=at)
-    assert not seen_differences(case, word(case), replace(report, attempts=(good,)))
+    seen = Judgement(case).seen
+    assert not seen.differences(replace(report, attempts=(good,)))
     for bad in (
         made,
         replace(made, at_trigger={**at, "p": True}),
         replace(made, at_trigger={**at, "q": False}),
         replace(good, at_decision={"p": True}),
     ):
-        assert seen_differences(case, word(case), replace(report, attempts=(bad,)))
+        assert seen.differences(replace(report, attempts=(bad,)))
 
 
 def test_begin_and_end_are_compared() -> None:

@@ -24,11 +24,12 @@ from rvmon.spec.checked import (
 )
 from rvmon.testing.build import compared, eventually, requirement, spec_of, x
 from rvmon.testing.case import Case
-from rvmon.testing.differential import Tally, case_of, count
+from rvmon.testing.differential import Mix, case_of
 from rvmon.testing.features import Feature, features, possible
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
+from rvmon.testing.judgement import Judgement
 from rvmon.testing.law import judge
 from rvmon.testing.pulse import is_pulse
 from rvmon.testing.strategies import cases
@@ -43,13 +44,13 @@ def some_cases(time: TimeModel, number: int = 400) -> list[Case]:
 @pytest.mark.parametrize("time", TimeModel)
 def test_verdicts_are_mixed(time: TimeModel) -> None:
     """P, F and I make up 15 % of the attempts each, and 10 % are decided on a bound."""
-    tally = Tally()
+    mix = Mix()
     for case in some_cases(time):
-        count(tally, case)
-    attempts = sum(tally.attempts.values())
+        mix.count(Judgement(case))
+    attempts = sum(mix.attempts.values())
     assert attempts > 400
-    assert min(tally.attempts[verdict] for verdict in "PFI") >= 0.15 * attempts
-    assert tally.on_bound >= 0.10 * attempts
+    assert min(mix.attempts[verdict] for verdict in "PFI") >= 0.15 * attempts
+    assert mix.on_bound >= 0.10 * attempts
 
 
 def test_everything_occurs() -> None:

@@ -5,15 +5,14 @@ from __future__ import annotations
 import pytest
 
 from rvmon.spec.checked import TimeModel
-from rvmon.testing.attempts import is_upon_end, obligation, starts
+from rvmon.testing.attempts import obligation, starts
 from rvmon.testing.differential import case_of
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.kleene import Truth
-from rvmon.testing.oracle import judge_requirement
+from rvmon.testing.oracle import follow
 from rvmon.testing.truths import Truths
 from rvmon.testing.wording import word_of
-from rvmon.verdict.attempt import Decision
 
 
 @pytest.mark.parametrize("time", TimeModel)
@@ -25,10 +24,13 @@ def test_memory_changes_nothing(time: TimeModel) -> None:
         word = word_of(
             case.spec, case.samples, end=case.end, advances=case.advances, names=case.names
         )
-        for requirement in case.spec.requirements.values():
-            begun = starts(requirement, word)
-            attempts = judge_requirement(requirement, word)
-            for start, attempt in zip(begun, attempts, strict=True):
+        for name, followed in follow(case.spec, word, case.samples).items():
+            requirement = case.spec.requirements[name]
+            assert [one.start.position for one in followed] == [
+                start.position for start in starts(requirement, word)
+            ]
+            for one in followed:
+                start = one.start
                 first = word.letters[start.position].instant
                 decided = None
                 for reached in range(first, word.reached + 1):
@@ -37,9 +39,6 @@ def test_memory_changes_nothing(time: TimeModel) -> None:
                     if obligation(requirement, start, fresh) is not Truth.UNKNOWN:
                         decided = reached
                         break
-                by_prefix = attempt.decision is Decision.PREFIX
-                assert by_prefix is (decided is not None)
-                if by_prefix and not is_upon_end(requirement):
-                    assert attempt.decided == decided
+                assert decided == (None if one.decided is None else one.decided[0])
                 compared += 1
     assert compared > 30

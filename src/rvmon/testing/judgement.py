@@ -1,0 +1,95 @@
+"""What the law says of a case, worked out once for all engines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+
+from rvmon.spec.checked import Requirement
+from rvmon.testing.attempts import is_upon_end
+from rvmon.testing.case import Case
+from rvmon.testing.compare import Key, Outcome, outcomes
+from rvmon.testing.health import expected_health, may_be_simplified
+from rvmon.testing.kleene import Truth
+from rvmon.testing.law import word
+from rvmon.testing.moments import Moment
+from rvmon.testing.oracle import Followed, follow, report_on
+from rvmon.testing.seen import Seen
+from rvmon.testing.waiting import Waiting
+from rvmon.trace.health import Health
+from rvmon.verdict.report import Report
+
+
+class Judgement:
+    """The oracle's view of a case; each part is made when it is first asked for, and kept.
+
+    Args:
+        case: what to judge.
+
+    Attributes:
+        case: the same.
+        word: its trace, position by position.
+        followed: by requirement, its attempts as the prefix alone decides them.
+    """
+
+    def __init__(self, case: Case) -> None:
+        self.case = case
+        self.word = word(case)
+        self.followed: Mapping[str, Sequence[Followed]] = follow(case.spec, self.word, case.samples)
+
+    @cached_property
+    def report(self) -> Report:
+        """The oracle's report."""
+        samples = self.case.samples
+        origin = samples[0].t if samples else 0
+        return report_on(self.case.spec, self.followed, origin=origin, end=self.word.end)
+
+    @cached_property
+    def outcomes(self) -> Mapping[Key, Outcome]:
+        """The outcome of every attempt."""
+        return outcomes(self.report)
+
+    @cached_property
+    def health(self) -> Sequence[Health]:
+        """The findings on the inputs."""
+        return expected_health(self.case, self.word)
+
+    @cached_property
+    def seen(self) -> Seen:
+        """What attempts see of the inputs."""
+        starts = {name: [one.start for one in begun] for name, begun in self.followed.items()}
+        return Seen(self.case.spec, starts)
+
+    def at(self, moment: Moment) -> tuple[dict[Key, Outcome], dict[Key, Waiting]]:
+        """What the prefix has decided at a moment, and what waits; without attempts upon `end`.
+
+        A decision before the instant that time has come to is the same however much is known
+        later; one at that very instant may have needed its letter, which is tried.
+        """
+        decided: dict[Key, Outcome] = {}
+        waiting: dict[Key, Waiting] = {}
+        for key, requirement, one in self._begun(moment):
+            simplified = may_be_simplified(requirement, self.case.spec.time)
+            here = Waiting(requirement, one.start, moment, simplified=simplified)
+            if self._is_decided(one, moment, here):
+                decided[key] = self.outcomes[key]
+            else:
+                waiting[key] = here
+        return decided, waiting
+
+    def _is_decided(self, one: Followed, moment: Moment, here: Waiting) -> bool:
+        if one.decided is None or one.decided[0] > moment.reached:
+            return False
+        if one.decided[0] < moment.reached or moment.end == moment.reached:
+            return True
+        return here.truth is not Truth.UNKNOWN
+
+    def _begun(self, moment: Moment) -> Iterator[tuple[Key, Requirement, Followed]]:
+        """The attempts whose trigger is known at a moment."""
+        for name, followed in self.followed.items():
+            requirement = self.case.spec.requirements[name]
+            if is_upon_end(requirement):
+                continue
+            for number, one in enumerate(followed, start=1):
+                if one.start.word.letters[one.start.position].instant <= moment.end:
+                    yield (name, number), requirement, one
