@@ -95,8 +95,8 @@ def random_cuts(dice: random.Random, rows: int) -> list[int]:
     return sorted(dice.sample(range(1, rows), dice.randrange(min(rows, 4)))) if rows > 1 else []
 
 
-def main(argv: Sequence[str]) -> int:
-    """Judge until there are so many pairs, and print the figures."""
+def parse(argv: Sequence[str]) -> argparse.Namespace:
+    """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--pairs", type=int, default=1_000)
     parser.add_argument("--each", type=int, default=10, help="traces per specification")
@@ -105,7 +105,12 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--engine", choices=("auto", "rows", "c"), default="auto")
     parser.add_argument("--time", choices=tuple(MODELS), help="the time model; default: any")
     parser.add_argument("--depth", type=int, default=4, help="of the deepest consequent")
-    options = parser.parse_args(argv)
+    return parser.parse_args(argv)
+
+
+def main(argv: Sequence[str]) -> int:
+    """Judge until there are so many pairs, and print the figures."""
+    options = parse(argv)
     count: Counter[str] = Counter()
     number = 0
     with tempfile.TemporaryDirectory() as cache:

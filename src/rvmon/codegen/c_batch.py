@@ -53,6 +53,23 @@ class Column:
     values: NDArray[Any] | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a compiled monitor said of a recording.
+
+    Attributes:
+        records: array of `RECORD`, in the order in which they were made.
+        ordered: whether that is the order of reports.
+        counts: int64[requirements, 3], how many attempts failed, passed, and stayed inconclusive.
+        end: the last instant of the trace; `None` if it has none.
+    """
+
+    records: NDArray[Any]
+    ordered: bool
+    counts: NDArray[np.int64]
+    end: int | None
+
+
 class _In(ctypes.Structure):
     _fields_ = (
         ("n", ctypes.c_int64),
@@ -94,6 +111,7 @@ class BatchLibrary:
         self.feed = function("feed", number, address, address)
         self.close = function("close", number, address, number)
         self.records = function("records", number, address, address)
+        self.counts = function("counts", ctypes.c_bool, address, ctypes.c_int32, address)
         self.trouble = function("trouble", ctypes.c_int32, address)
         self.free = function("free", None, address)
         rows = ctypes.c_int64()
@@ -117,7 +135,7 @@ class BatchRun:
     def __init__(self, library: BatchLibrary, absent: frozenset[str] = frozenset()) -> None:
         self._library = library
         self._fields = [f"{event}.{field}" for event, field in library.names.fields]
-        self._records: list[NDArray[Any]] = []
+        self._records: list[bytes] = []
         flags = np.zeros(max(len(library.plan.signals) + len(library.plan.events), 1), np.uint8)
         for name in absent:
             flags[library.names.number(name)] = 1
@@ -170,19 +188,24 @@ class BatchRun:
         self._take_records()
         return rows
 
-    def close(self, until: int | None = None) -> tuple[NDArray[Any], int | None]:
+    def close(self, until: int | None = None) -> Told:
         """End the run.
 
         Args:
             until: the end of the trace, if it is after all rows.
-
-        Returns:
-            `RECORD`s in the order in which they were made; the last instant of the trace, `None`
-            if it has none.
         """
         end = self._library.close(self._batch, WHERE_IT_ENDS if until is None else until)
         self._take_records()
-        return np.concatenate(self._records), None if end == WHERE_IT_ENDS else end
+        counts = np.zeros((len(self._library.plan.rules), 3), np.int64)
+        ordered = True
+        for index, own in enumerate(counts):
+            ordered = self._library.counts(self._batch, index, own.ctypes.data)
+        return Told(
+            np.frombuffer(b"".join(self._records), RECORD),
+            ordered,
+            counts,
+            None if end == WHERE_IT_ENDS else end,
+        )
 
     def _take_records(self) -> None:
         trouble = self._library.trouble(self._batch)
@@ -191,8 +214,8 @@ class BatchRun:
             raise RvmonError(f"not enough {what if trouble == 1 else 'room for a past operator'}")
         start = ctypes.c_void_p()
         count = self._library.records(self._batch, ctypes.byref(start))
-        copied = ctypes.string_at(start, count * RECORD.itemsize) if count else b""
-        self._records.append(np.frombuffer(copied, RECORD))
+        if count:
+            self._records.append(ctypes.string_at(start, count * RECORD.itemsize))
 
 
 def _laid(values: NDArray[Any] | None, kind: np.dtype[Any]) -> NDArray[Any] | None:

@@ -126,5 +126,4 @@ class _Judging:
         self._rows += taken
 
     def report(self, until: int | None) -> Report:
-        records, end = self._run.close(until)
-        return report_of_records(self._ids, records, origin=self._origin or 0, end=end)
+        return report_of_records(self._ids, self._run.close(until), origin=self._origin or 0)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from rvmon.codegen.c_batch import Told
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
@@ -71,34 +72,29 @@ class RecordedAttempts(Sequence[Attempt]):
         )
 
 
-def report_of_records(
-    ids: Sequence[str], records: NDArray[Any], *, origin: int, end: int | None
-) -> Report:
-    """Sort, count and fold records, as `rvmon.verdict.assemble.report_of` does attempts.
+def report_of_records(ids: Sequence[str], told: Told, *, origin: int) -> Report:
+    """Sort and fold records, as `rvmon.verdict.assemble.report_of` does attempts.
 
     Args:
         ids: of all requirements that were judged, by number.
-        records: array of `rvmon.codegen.c_batch.RECORD`, in any order.
+        told: by a compiled monitor.
         origin: the instant from which people count seconds, ticks.
-        end: the last instant of the trace, ticks.
 
     Source: SEMANTICS, section 3.
     """
-    codes = records["requirement"] * len(VERDICTS) + records["verdict"]
-    seen = np.bincount(codes, minlength=len(ids) * len(VERDICTS)).reshape(-1, len(VERDICTS))
     counts = {
-        name: {verdict: int(seen[index, VERDICTS.index(verdict)]) for verdict in _COUNTED}
-        for index, name in enumerate(ids)
+        name: {verdict: int(own[VERDICTS.index(verdict)]) for verdict in _COUNTED}
+        for name, own in zip(ids, told.counts, strict=True)
     }
     return Report(
         verdicts={
             name: fold([verdict for verdict, count in own.items() if count])
             for name, own in counts.items()
         },
-        attempts=RecordedAttempts(ids, _ordered(records)),
+        attempts=RecordedAttempts(ids, told.records if told.ordered else _ordered(told.records)),
         counts=counts,
         origin=origin,
-        end=end,
+        end=told.end,
     )
 
 
@@ -109,7 +105,5 @@ def _ordered(records: NDArray[Any]) -> NDArray[Any]:
     """By decision instant, requirement and number; the undecided ones last."""
     undecided = records["decision"] == _OPEN
     decided = np.where(undecided, np.iinfo(np.int64).max, records["decided"])
-    if len(records) < 2 or (decided[1:] > decided[:-1]).all():
-        return records
     order = np.lexsort((records["number"], records["requirement"], decided))
     return records[order]

@@ -214,5 +214,5 @@ class _Compiled:
             )
             if taken != len(rows):
                 raise TimeOrderError(f"row {taken} was not taken")
-            records, end = run.close(t_ns)
-        return report_of_records(tuple(self.case.spec.requirements), records, origin=0, end=end)
+            told = run.close(t_ns)
+        return report_of_records(tuple(self.case.spec.requirements), told, origin=0)

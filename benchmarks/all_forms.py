@@ -1,0 +1,118 @@
+"""The runtime forms of automata against the oracle: table, generated Python, batch, C.
+
+    python -m benchmarks.all_forms --pairs 10000 --workers 2
+
+Each form judges so many pairs of a random specification and a random trace; what it does not judge
+counts apart. Columns in memory (`batch`, and `batch in C`) have whole rows, in blocks of random
+length. Prints a line per form and every disagreement, and exits with 1 if there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from itertools import count
+
+from benchmarks import columns
+from rvmon.testing.differential import campaign
+from rvmon.testing.forms import Maker
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+
+PART = 10
+"""Specifications that a worker takes at a time."""
+
+FIGURES = ("pairs", "refused", "attempts", "disagreements")
+
+Judge = Callable[[list[str]], "Counter[str]"]
+
+
+def stepped(engine: str, each: int, seeds: list[str]) -> Counter[str]:
+    """Judge the cases of some seeds sample by sample; runs in a worker."""
+    whole = engine != "c"
+    profile = Profile(captures=whole, for_each=whole)
+    tally = campaign(
+        Maker(engine), seeds, profile, TraceProfile(), each=each, online_every=10 * whole
+    )
+    for text in tally.disagreements:
+        print(text, flush=True)
+    return Counter(
+        pairs=tally.pairs,
+        refused=tally.refused,
+        attempts=sum(tally.attempts.values()),
+        disagreements=len(tally.disagreements),
+    )
+
+
+def batched(engine: str, each: int, seeds: list[str]) -> Counter[str]:
+    """Judge the cases of some seeds as columns; runs in a worker."""
+    options = columns.parse(["--engine", engine, "--each", str(each)])
+    found: Counter[str] = Counter()
+    for seed in seeds:
+        columns.judge_seed(seed, options, found)
+    return found
+
+
+FORMS: dict[str, Callable[[int], Judge]] = {
+    "table": lambda each: partial(stepped, "automaton", each),
+    "generated Python": lambda each: partial(stepped, "python", each),
+    "batch": lambda each: partial(batched, "auto", each),
+    "C": lambda each: partial(stepped, "c", each),
+    "batch in C": lambda each: partial(batched, "c", each),
+}
+
+
+def parts(seed: int) -> Iterator[list[str]]:
+    """Seeds for the workers, without end."""
+    for number in count():
+        yield [f"{seed}/{number}/{index}" for index in range(PART)]
+
+
+def judge_form(
+    judge: Judge, options: argparse.Namespace, pool: ProcessPoolExecutor
+) -> Counter[str]:
+    """Have a form judge as many pairs as are asked for."""
+    total: Counter[str] = Counter()
+    seeds = parts(options.seed)
+    waiting = [pool.submit(judge, next(seeds)) for _ in range(options.workers + 1)]
+    while waiting:
+        total += waiting.pop(0).result()
+        if total["pairs"] + total["disagreements"] < options.pairs:
+            waiting.append(pool.submit(judge, next(seeds)))
+    return total
+
+
+def main(argv: Sequence[str]) -> int:
+    """Judge with all forms and print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--pairs", type=int, default=10_000, help="that each form judges")
+    parser.add_argument("--each", type=int, default=10, help="traces per specification")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--form", choices=FORMS, nargs="+", default=FORMS, metavar="FORM")
+    options = parser.parse_args(argv)
+    wrong = 0
+    with tempfile.TemporaryDirectory() as cache:
+        os.environ["XDG_CACHE_HOME"] = cache  # nobody runs these monitors again
+        for form in options.form:
+            began = time.perf_counter()
+            with ProcessPoolExecutor(options.workers) as pool:
+                found = judge_form(FORMS[form](options.each), options, pool)
+            figures = ", ".join(
+                f"{name} {found[name]}"
+                for name in ("pairs", "refused", "attempts", "disagreements")
+            )
+            print(f"{form:16} {figures}, {time.perf_counter() - began:.0f} s", flush=True)
+            wrong += found["disagreements"]
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
