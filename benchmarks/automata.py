@@ -109,7 +109,7 @@ def _forecast(automaton: Automaton, dice: random.Random) -> Iterator[float]:
 
 
 def _built(owed: Formula, mode: dict[str, Formula]) -> tuple[Automaton, tuple[Size, Size, Size]]:
-    """The automaton, and its size as constructed, as people are told of it, and as verdicts alone want it."""
+    """The automaton, and its size as made, as people are told of it, and as verdicts want it."""
     factory = Factory()
     obligation = lower(
         requirement(owed, upon=mode.get("upon"), whenever=mode.get("whenever")), factory

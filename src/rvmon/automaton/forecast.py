@@ -27,11 +27,14 @@ class Forecaster:
     others; bounded windows are judged by the ages of their clocks, each for itself. So a forecast
     that is given is right, and for formulas without bounds none is missed within the limits of
     the search.
+
+    Attributes:
+        duals: makes formulas of propositions that are known, and their negations.
     """
 
     def __init__(self) -> None:
-        self._duals = Duals()
-        self._known: dict[tuple[Residual, tuple[int, ...], int | None], bool | None] = {}
+        self.duals = Duals()
+        self._known: dict[tuple[Residual, tuple[int, ...], int | None], bool] = {}
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
         """The value that all continuations give a residual; `None` if they differ.
@@ -48,20 +51,31 @@ class Forecaster:
             return residual == HOLDS
         if len(residual) > MOST_CLAUSES:
             return None
-        cuts = location_of(residual).cuts
-        regions = tuple(map(bisect_right, cuts, ages))
+        if not self.admits(self.duals.affirmed(residual), ages, gap):
+            return False
+        try:
+            denied = self.duals.denied(residual, MOST_CLAUSES)
+        except TooManyClausesError:
+            return None
+        return None if self.admits(denied, ages, gap) else True
+
+    def admits(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool:
+        """Whether continuations may satisfy a residual; true, too, where it is not worked out.
+
+        Args:
+            residual: of formulas of `duals`.
+            ages: as for `of`.
+            gap: the same.
+        """
+        if len(residual) > MOST_CLAUSES:
+            return True
+        regions = tuple(map(bisect_right, location_of(residual).cuts, ages))
         key = (residual, regions, gap)
         if key not in self._known:
             if len(self._known) > _MOST_KNOWN:
                 self._known.clear()
-            self._known[key] = self._of(residual, ages, gap)
+            try:
+                self._known[key] = is_satisfiable(residual, ages, gap)
+            except TooLargeError:
+                self._known[key] = True
         return self._known[key]
-
-    def _of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
-        try:
-            if not is_satisfiable(self._duals.affirmed(residual), ages, gap):
-                return False
-            denied = self._duals.denied(residual, MOST_CLAUSES)
-            return None if is_satisfiable(denied, ages, gap) else True
-        except (TooLargeError, TooManyClausesError):
-            return None

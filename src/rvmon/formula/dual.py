@@ -26,7 +26,8 @@ class Duals:
     """Reads formulas where no proposition is unknown, so that each has a negation.
 
     What it makes has literals of two senses only (`is known to be false` is `is false` there), and
-    their propositions are no combinations of others.
+    their propositions are no combinations of others. What lies ahead of an operator of the past is
+    taken to be as it should: with that, what it makes is not equivalent but weaker.
     """
 
     def __init__(self) -> None:
@@ -86,7 +87,7 @@ class Duals:
                 make = factory.until if isinstance(node, Until) is positive else factory.release
                 return make(self.of(left, positive), self.of(right, positive), low, high)
             case Since() | Previous():
-                raise AssertionError("a residual holds nothing of the past")
+                return factory.constant(True)
             case _:
                 assert_never(node)
 

@@ -97,7 +97,7 @@ class _Step:
         until = isinstance(node, Until)
         if where is Phase.OVER:
             return FAILS if until else HOLDS
-        kept: Atom = (node, clock) if where is Phase.BEFORE else _opened(node, clock)
+        kept: Atom = (node, clock) if where is Phase.BEFORE else opened(node, clock)
         pending: Residual = frozenset([frozenset([kept])])
         left = self.instance(node.left)
         waiting = both(left, pending, self.limit) if until else either(left, pending)
@@ -149,7 +149,7 @@ def instance(node: Core, read: ReadLiteral) -> Residual:
     return _Step((), read, None).instance(node)
 
 
-def _opened(node: Until | Release, clock: int) -> Atom:
+def opened(node: Until | Release, clock: int) -> Atom:
     """What is left of an opened window: its start matters no more, and without an end no age."""
     return node.opened or node, NO_CLOCK if node.high is None else clock
 

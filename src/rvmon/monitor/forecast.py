@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
+from rvmon.dataflow.network import Network
+from rvmon.dataflow.remaining import Remaining
+from rvmon.formula.residual import TooManyClausesError
 from rvmon.monitor.bench import Open
 from rvmon.monitor.judge import Judge
+from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.verdict.verdict import Verdict
 
 
@@ -30,3 +34,31 @@ def _value(judge: Judge, token: Token) -> bool | None:
     ages = [judge.position - anchor for anchor in anchors]
     forecaster = judge.compiled.forecaster
     return forecaster.of(judge.machine.residual(location), ages, judge.flow.gap)
+
+
+def forecast_by_network(judge: NetworkJudge, attempt: Open) -> Verdict | None:
+    """The same of an attempt that a network judges; `None`, too, where too much is undecided.
+
+    Source: as for `forecast_of`.
+    """
+    token = attempt.token
+    better = token if attempt.better is None else attempt.better
+    if token[0] > PASSED and not _may_become(judge, judge.worse, token, False):
+        return Verdict.PASS
+    if better[0] > PASSED and not _may_become(judge, judge.better or judge.worse, better, True):
+        return Verdict.FAIL
+    return None
+
+
+def _may_become(judge: NetworkJudge, network: Network | None, token: Token, value: bool) -> bool:
+    """Whether continuations may give an attempt a value in a network."""
+    if network is None:
+        return True
+    compiled, gap = judge.compiled, judge.flow.gap
+    remaining = Remaining(network, compiled.forecaster.duals)
+    position = token[1][0] // network.positions.gap
+    try:
+        residual, ages = remaining.of(compiled.obligation.owed, position, value)
+    except TooManyClausesError:
+        return True
+    return compiled.forecaster.admits(residual, ages, gap)

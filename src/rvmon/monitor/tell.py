@@ -6,7 +6,7 @@ from rvmon.automaton.machine import Token
 from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.explain import Explanation, explain_decision, explain_open
 from rvmon.monitor.explain_network import network_decision, network_open
-from rvmon.monitor.forecast import forecast_of
+from rvmon.monitor.forecast import forecast_by_network, forecast_of
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.verdict.verdict import Verdict
@@ -43,4 +43,10 @@ def why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> E
 
 def outlook(judge: Bench, attempt: Open) -> Verdict | None:
     """What every continuation brings an open attempt to, where that can be said."""
-    return forecast_of(judge, attempt) if isinstance(judge, Judge) else None
+    match judge:
+        case NetworkJudge():
+            return forecast_by_network(judge, attempt)
+        case Judge():
+            return forecast_of(judge, attempt)
+        case _:
+            raise TypeError(f"no forecast for {type(judge).__name__}")

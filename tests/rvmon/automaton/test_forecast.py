@@ -34,21 +34,26 @@ CASES = {
 }
 
 
+ENGINES = ("auto", "network")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("formula", CASES)
-def test_what_is_still_possible(formula, time):
+def test_what_is_still_possible(formula, time, engine):
     """An open attempt says what it must become, and nothing where it can become either."""
-    monitor = loads(HEAD.format(time, formula)).monitor()
+    monitor = loads(HEAD.format(time, formula)).monitor(engine=engine)
     monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})
     (attempt,) = monitor.open
     assert (attempt.forecast and attempt.forecast.value) == CASES[formula]
 
 
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("time", "forecast"), [("held", "F"), ("sampled", None)])
-def test_a_window_without_a_position_asks_for_nothing(time, forecast):
+def test_a_window_without_a_position_asks_for_nothing(time, forecast, engine):
     """In held time every tick is a position; samples may leave a window out."""
     both = "(always[2 s, 3 s] p) and always[2 s, 3 s] not p"
-    monitor = loads(HEAD.format(time, both)).monitor()
+    monitor = loads(HEAD.format(time, both)).monitor(engine=engine)
     monitor.step_ns(0, {"p": False, "q": False})
     (attempt,) = monitor.open
     assert (attempt.forecast and attempt.forecast.value) == forecast
@@ -63,9 +68,44 @@ def test_a_forecast_is_no_verdict():
     assert '"forecast":"F"' in report.to_json().replace(" ", "")
 
 
+HELD = "spec t\nsignal p, q, r : bool\nrequirement R1\n  upon start then {}\n"
+
+
+def forecast_of(formula, *samples):
+    """What the network forecasts of an attempt after samples at whole seconds."""
+    monitor = loads(HELD.format(formula)).monitor(engine="network")
+    for t, values in enumerate(samples):
+        monitor.step(t, values)
+    (attempt,) = monitor.open
+    return attempt.forecast and attempt.forecast.value
+
+
+def test_the_network_forecasts_by_what_it_knows():
+    """A trigger that was seen binds what may come; one that may still come binds nothing."""
+    formula = "(always (p -> within 5 s q)) and always not q"
+    assert forecast_of(formula, {"p": False, "q": False}) is None
+    assert forecast_of(formula, {"p": False, "q": False}, {"p": True}) == "F"
+    assert forecast_of(f"not ({formula})", {"p": False, "q": False}, {"p": True}) == "P"
+
+
+def test_a_forecast_of_what_lies_below_the_past_errs_on_neither_side():
+    """What an operator of the past has around it may come to be either; the rest is forecast."""
+    back = "once[0, 2 s] (p and within 9 s q)"
+    samples = {"p": True, "q": False, "r": False}, {"p": True}
+    assert forecast_of(f"({back}) and within 9 s r", *samples) is None
+    assert forecast_of(f"({back}) and (within 9 s r) and for 9 s not r", *samples) == "F"
+    assert forecast_of(f"not (({back}) and (within 9 s r) and for 9 s not r)", *samples) == "P"
+
+
+def test_more_than_is_looked_at_is_not_forecast():
+    """Each nanosecond of a second asks for something of its own: nothing is said of all of them."""
+    formula = "(for 1 s within 3 s p) and eventually[3 s, 5 s] p"
+    assert forecast_of(formula, {"p": False, "q": False}, {}) is None
+
+
 @settings(max_examples=60, deadline=None)
-@given(data=st.data())
-def test_untimed_forecasts_are_those_of_the_tableau(data):
+@given(data=st.data(), engine=st.sampled_from(ENGINES))
+def test_untimed_forecasts_are_those_of_the_tableau(data, engine):
     """Verdict or forecast is what the infinite continuations leave, at every position."""
 
     class Drawn:
@@ -76,7 +116,7 @@ def test_untimed_forecasts_are_those_of_the_tableau(data):
     tableau = Tableau(formula)
     word = data.draw(st.lists(st.frozensets(st.sampled_from("pqr")), min_size=1, max_size=5))
     spec = Spec(spec_of(requirement(formula, upon=start), time=TimeModel.SAMPLED))
-    monitor = spec.monitor()
+    monitor = spec.monitor(engine=engine)
     verdict = None
     for t, letter in enumerate(word):
         for attempt in monitor.step_ns(t, {name: name in letter for name in "pqr"}):
@@ -88,12 +128,12 @@ def test_untimed_forecasts_are_those_of_the_tableau(data):
 
 
 @settings(max_examples=80, deadline=None)
-@given(case=cases(Profile(mixed=False), TraceProfile()), cut=st.integers(1, 6))
-def test_forecasts_come_true(case, cut):
+@given(case=cases(Profile(), TraceProfile()), engine=st.sampled_from(ENGINES))
+def test_forecasts_come_true(case, engine):
     """What was forecast of an attempt at some moment is never overturned by a later decision."""
     if case.spec.max_delay is not None:
         return
-    monitor = Spec(case.spec).monitor(sources=case.names)
+    monitor = Spec(case.spec).monitor(engine=engine, sources=case.names)
     seen = {}
     for action in case.actions:
         if isinstance(action, Sample):
