@@ -1,7 +1,7 @@
 r"""Engines against the oracle on random specs and traces: verdicts and decision instants.
 
-    python -m benchmarks.differential --pairs 10000 --seed 1 --workers 2 --traces 4 \
-        --engine automaton network progression python --interrupt --next
+    python -m benchmarks.differential --pairs 100000 --traces 8 --seed 1 --workers 2 \
+        --engine automaton network progression python --interrupt
 
 Prints how the attempts were decided and every disagreement, shrunk; exits 1 if there is one.
 """

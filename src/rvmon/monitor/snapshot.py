@@ -11,6 +11,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
+from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -36,8 +37,8 @@ def snapshot(monitor: Monitor) -> bytes:
     """The run of a monitor; see `Monitor.snapshot`."""
     choice, lanes = monitor.choice, monitor.lanes
     document = {
-        "rvmon": version("rvmon"),
-        "spec": digest(choice.compiled.checked),
+        "rvmon": _version(),
+        "spec": _digest_of(choice.compiled),
         "only": [one.requirement.id for one in choice.requirements],
         "engine": choice.engine,
         "settle": choice.settle,
@@ -66,12 +67,12 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
         SnapshotError: the bytes are no snapshot, or one of another specification or version.
     """
     document = _document(data)
-    if document.get("rvmon") != version("rvmon"):
+    if document.get("rvmon") != _version():
         raise SnapshotError(
-            f"the snapshot was made by rvmon {document.get('rvmon')}, this is {version('rvmon')}: "
+            f"the snapshot was made by rvmon {document.get('rvmon')}, this is {_version()}: "
             "restore it with the version that made it"
         )
-    if document.get("spec") != digest(compiled.checked):
+    if document.get("spec") != _digest_of(compiled):
         raise SnapshotError(
             f"the snapshot was made with another specification than `{compiled.checked.name}`: "
             "load the one it was made with, with the same constants"
@@ -126,6 +127,20 @@ def _document(data: bytes) -> Mapping[str, Any]:
     if not isinstance(document, dict):
         raise SnapshotError("the snapshot is damaged: it holds no document")
     return document
+
+
+@cache
+def _version() -> str:
+    """The version of this package: to look it up takes longer than all else of a snapshot."""
+    return version("rvmon")
+
+
+def _digest_of(compiled: CompiledSpec) -> str:
+    """See `digest`; worked out once for a compiled specification."""
+    found = compiled.forms.get("digest")
+    if not isinstance(found, str):
+        found = compiled.forms["digest"] = digest(compiled.checked)
+    return found
 
 
 def digest(checked: CheckedSpec) -> str:

@@ -11,7 +11,7 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
-from rvmon.testing.drive import Asked, Monitored, drive
+from rvmon.testing.drive import Monitored, drive, is_asked
 from rvmon.testing.features import Feature, features
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
@@ -144,7 +144,7 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
             return None
         actual, _ = drive(monitor, case)
         found = differences(expected, actual)
-        if isinstance(monitor, Asked):
+        if is_asked(monitor):
             provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += frame_differences(expected, actual)
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)
@@ -152,8 +152,7 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
             found += differences_after_end(case, monitor, actual)
         again = make(case) if online and not found else None
         if again is not None:
-            settle = "next" if isinstance(again, HeldBack) else "now"
-            found = online_differences(judgement, again, settle)
+            found = online_differences(judgement, again)
     except Exception as error:  # noqa: BLE001 - whatever an engine raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeGuard
 
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Value
@@ -24,7 +24,6 @@ class Monitored(Protocol):
         """End the trace."""
 
 
-@runtime_checkable
 class Asked(Monitored, Protocol):
     """A monitor that can be asked at any time."""
 
@@ -35,6 +34,11 @@ class Asked(Monitored, Protocol):
     @property
     def next_due(self) -> int | None:
         """The next instant at which time alone can decide something."""
+
+
+def is_asked(monitor: Monitored) -> TypeGuard[Asked]:
+    """Whether a monitor can be asked; without asking it."""
+    return hasattr(type(monitor), "open")
 
 
 def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:

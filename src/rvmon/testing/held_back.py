@@ -24,10 +24,13 @@ class HeldBack:
         monitor: fresh, with `settle="next"`.
         spec: that it judges.
         dice: says how samples are cut.
+
+    Attributes:
+        monitor: the same.
     """
 
     def __init__(self, monitor: Asked, spec: CheckedSpec, dice: random.Random) -> None:
-        self._monitor = monitor
+        self.monitor = monitor
         self._spec = spec
         self._dice = dice
         self._conflicts: dict[str, tuple[int, int]] = {}
@@ -36,7 +39,7 @@ class HeldBack:
         """Take a sample in portions; returns what all of them decided."""
         decided: list[Attempt] = []
         for portion in self._portions(t_ns, values):
-            decided += self._monitor.step_ns(t_ns, portion)
+            decided += self.monitor.step_ns(t_ns, portion)
         return decided
 
     def _portions(self, t: int, values: Mapping[str, Value]) -> list[dict[str, Value]]:
@@ -75,18 +78,18 @@ class HeldBack:
 
     def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
         """See `Monitor.advance_ns`."""
-        return self._monitor.advance_ns(t_ns)
+        return self.monitor.advance_ns(t_ns)
 
     def finish_ns(self, t_ns: int | None = None) -> Report:
         """See `Monitor.finish_ns`."""
-        return self._monitor.finish_ns(t_ns)
+        return self.monitor.finish_ns(t_ns)
 
     @property
     def open(self) -> Sequence[Attempt]:
         """See `Monitor.open`."""
-        return self._monitor.open
+        return self.monitor.open
 
     @property
     def next_due(self) -> int | None:
         """See `Monitor.next_due`."""
-        return self._monitor.next_due
+        return self.monitor.next_due

@@ -21,7 +21,7 @@ class Interrupted:
         share: of the calls.
     """
 
-    def __init__(self, monitor: Monitor, dice: random.Random, share: float = 0.4) -> None:
+    def __init__(self, monitor: Monitor, dice: random.Random, share: float = 0.1) -> None:
         self._monitor = monitor
         self._dice = dice
         self._share = share

@@ -8,7 +8,8 @@ from typing import Any
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, Outcome
-from rvmon.testing.drive import Asked, Monitored, tell
+from rvmon.testing.drive import Monitored, is_asked, tell
+from rvmon.testing.held_back import HeldBack
 from rvmon.testing.judgement import Judgement
 from rvmon.testing.moments import moments
 from rvmon.testing.waiting import Waiting
@@ -18,7 +19,7 @@ from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
 
-def online_differences(judgement: Judgement, monitor: Monitored, settle: str = "now") -> list[str]:
+def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
     """What is wrong with what a monitor says at each action of a case; empty if all is right.
 
     Each call has to return what could be decided by then, no sooner and no later; what is open is
@@ -29,9 +30,11 @@ def online_differences(judgement: Judgement, monitor: Monitored, settle: str = "
     Args:
         judgement: of the case, which is told.
         monitor: fresh, for the spec and the sources of the case.
-        settle: how the monitor settles samples: `now` or `next`.
     """
     case = judgement.case
+    settle = "next" if isinstance(monitor, HeldBack) else "now"
+    # A portion of a wrong sample may be right.
+    whole = monitor.monitor if isinstance(monitor, HeldBack) else monitor
     told: set[Key] = set()
     due: int | None = None
     forecast: dict[Key, Verdict] = {}
@@ -40,14 +43,14 @@ def online_differences(judgement: Judgement, monitor: Monitored, settle: str = "
         attempts = tell(monitor, action)
         decided, waiting = ({}, {}) if moment is None else judgement.at(moment)
         found = [*_returned(decided, attempts, told)]
-        if isinstance(monitor, Asked):
+        if is_asked(monitor):
             found += _early(attempts, due, action, settle) if count > 1 else ()
             open_ = monitor.open
             found += _open(waiting, open_)
             found += _unforeseen(decided, forecast)
             forecast |= {(a.requirement, a.number): a.forecast for a in open_ if a.forecast}
             due = monitor.next_due
-        found += _taken(monitor, action, settle)
+        found += _taken(whole, action, settle)
         if found:
             return [f"action {count} {line}" for line in found]
         told |= {(a.requirement, a.number) for a in attempts}
@@ -65,7 +68,7 @@ def differences_after_end(case: Case, monitor: Monitored, report: Report) -> lis
     last = case.actions[-1] if case.actions else 0
     later = 1_000 + (last.t if isinstance(last, Sample) else last)
     lines = []
-    if isinstance(monitor, Asked) and monitor.next_due is not None:
+    if is_asked(monitor) and monitor.next_due is not None:
         lines.append(f"due at {monitor.next_due}, though finished")
     calls: tuple[Callable[[], object], ...] = (
         lambda: monitor.step_ns(later, {}),
