@@ -37,8 +37,9 @@ from rvmon.verdict.report import Report
 
 def judge_seed(seed: str, options: argparse.Namespace, count: Counter[str]) -> None:
     """Judge the cases of a seed, counting pairs, attempts and disagreements."""
+    deep = options.engine != "c"
     profile = Profile(
-        MODELS.get(options.time or ""), depth=options.depth, captures=False, for_each=False
+        MODELS.get(options.time or ""), depth=options.depth, captures=deep, for_each=deep
     )
     traces = TraceProfile(samples=options.samples, span=4 * options.samples)
     dice = random.Random(f"cuts/{seed}")
@@ -74,8 +75,14 @@ def _told_differences(compiled: CompiledSpec, case: Case, report: Report) -> Ite
     for sample in case.samples:
         monitor.step_ns(sample.t, sample.values)
     told = monitor.finish_ns(case.end)
+    networks = {
+        name
+        for name, one in compiled.requirements.items()
+        if one.automaton is None or one.requirement.captures
+    }
     for own, other in zip(told.attempts, report.attempts, strict=True):
-        if _without_doubt(own) != _without_doubt(other):
+        # What a network tells of a decision depends on where it was asked before.
+        if own.requirement not in networks and _without_doubt(own) != _without_doubt(other):
             yield f"a monitor tells {own}, columns {other}"
     if told.health != report.health:
         yield f"a monitor finds {told.health}, columns {report.health}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import resource
 import statistics
 import struct
@@ -55,7 +56,7 @@ def measure_process(
     pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
     stem = folder / "trace"
     programs = [*_ours(spec, stem, workload), *_peers(stem, pattern, workload, environment, native)]
-    figures, refusals = _figures(programs, repeats)
+    figures, refusals = _figures(programs, repeats, _as_installed(folder))
     return Result(
         workload.section,
         workload.name,
@@ -178,7 +179,15 @@ def _reelay_violated(printed: str) -> int | None:
     return None if row < 0 else row
 
 
-def _figures(programs: list[Program], repeats: int) -> tuple[list[Figure], list[tuple[str, str]]]:
+def _as_installed(folder: Path) -> dict[str, str]:
+    """The environment in which Python keeps what it has compiled, as an installed package is."""
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    return {**kept, "PYTHONPYCACHEPREFIX": str(folder / "compiled")}
+
+
+def _figures(
+    programs: list[Program], repeats: int, environment: Mapping[str, str]
+) -> tuple[list[Figure], list[tuple[str, str]]]:
     """Figures of the programs that work, and what the others said."""
     spent: dict[str, list[float]] = {program.label: [] for program in programs}
     violated: dict[str, int | None] = {}
@@ -186,7 +195,9 @@ def _figures(programs: list[Program], repeats: int) -> tuple[list[Figure], list[
     for number in range(-1, repeats):  # the first round fills caches and does not count
         for program in list(programs):
             before = _children()
-            done = subprocess.run(program.command, capture_output=True, text=True, check=False)
+            done = subprocess.run(
+                program.command, capture_output=True, text=True, check=False, env=environment
+            )
             if done.returncode not in (0, 1):
                 said = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
                 refusals.append((program.label, said[-1]))

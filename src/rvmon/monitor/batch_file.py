@@ -31,7 +31,9 @@ def _fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[s
     """The names of which only the present value matters, not whether there was an update."""
     spec = compiled.checked
     chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
-    uses = plan_requirements(compiled, [one for one in chosen if can_feed(one)]).uses
+    if not all(map(can_feed, chosen)):
+        return frozenset()
+    uses = plan_requirements(compiled, chosen).uses
     counted = {name for name, use in uses.items() if use.marked or use.history}
     stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
     return frozenset({*spec.signals, *spec.events} - counted - stale)

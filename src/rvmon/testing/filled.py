@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.codegen.c_batch import BatchLibrary
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.batch import can_batch, evaluate_blocks, evaluate_plain
+from rvmon.monitor.batch import evaluate_blocks, evaluate_plain
 from rvmon.monitor.batch_c import evaluate_c_blocks
 from rvmon.monitor.generated import can_generate, plan_alone
 from rvmon.testing.case import Case
@@ -84,10 +84,8 @@ def judge_columns(
 
 
 def _judges(compiled: CompiledSpec, engine: str) -> bool:
-    if engine == "rows":
-        return can_batch(compiled, None)
-    if engine == "auto":
-        return True
+    if engine != "c":
+        return compiled.checked.max_delay is None
     requirements = compiled.requirements.values()
     if compiled.checked.max_delay is not None or not all(
         one.automaton is not None and can_generate(one) for one in requirements

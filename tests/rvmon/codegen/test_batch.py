@@ -10,7 +10,9 @@ import pytest
 
 import rvmon
 from rvmon.codegen.c_build import built
-from rvmon.monitor import batch, compile_spec
+from rvmon.monitor import compile_spec
+from rvmon.monitor.columns import evaluate as arrays
+from rvmon.monitor.columns import rows
 from rvmon.testing.compare import differences
 from rvmon.testing.differential import cases_of
 from rvmon.testing.filled import filled, judge_columns
@@ -71,7 +73,8 @@ def one_by_one(spec: rvmon.Spec, columns: dict[str, np.ndarray]) -> rvmon.Report
 @pytest.mark.parametrize("extra", ["", "or delta(count) > 2"])
 def test_the_report_is_that_of_the_samples(time, extra, monkeypatch):
     """Verdicts, records, reasons and health are the same, whatever rows are passed over."""
-    monkeypatch.setattr(batch, "CHUNK", 517)
+    monkeypatch.setattr(arrays, "CHUNK", 517)
+    monkeypatch.setattr(rows, "CHUNK", 131)
     spec = rvmon.loads(SPEC.format(time=time, extra=extra))
     columns = recording(3)
     slow, fast = one_by_one(spec, columns), spec.evaluate(columns)
@@ -89,11 +92,12 @@ def test_most_rows_are_passed_over(monkeypatch):
     columns |= {"stop": np.zeros(3000, bool), "go": columns["t"] < 0, "count": np.zeros(3000, int)}
     columns["speed"] = np.linspace(0.3, 0.4, 3000)
     taken = []
-    real = batch._rows_that_matter
+    real = rows._rows_that_matter
     monkeypatch.setattr(
-        batch, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
+        rows, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
     )
-    assert spec.evaluate(columns) == one_by_one(spec, columns)
+    report = spec.evaluate(columns, engine="automaton")
+    assert report == one_by_one(spec, columns)
     assert sum(taken) < 20
 
 

@@ -106,6 +106,8 @@ class Unit(Nodes):
         self.since[:] = [t] * self.NODES
         self.ring(t)
         _, _, self.fading = self.evaluate(t, self.KEPT)
+        # What nodes were before the first position was at no instant.
+        self.until[:] = [None] * len(self.until)
         self.dirty = 0
         self.conclude(t, 0, (1 << len(self.rules)) - 1)
         self.set_alarm()

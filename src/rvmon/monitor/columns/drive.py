@@ -14,6 +14,7 @@ import numpy as np
 from rvmon.automaton.location import PASSED
 from rvmon.formula.state import TRUE, UNKNOWN
 from rvmon.monitor.columns.axis import FAR, Axis
+from rvmon.monitor.columns.letters import Letters
 from rvmon.monitor.columns.moves import Moves
 
 if TYPE_CHECKING:
@@ -97,58 +98,6 @@ class Outcome:
     location: Numbers
     anchor: Numbers
     place: Numbers
-
-
-class Letters:
-    """The letters of a piece in one reading.
-
-    Args:
-        moves: read them.
-        starts: the first place of each stretch of one letter.
-        letters: of the stretches.
-        stop: behind the last place.
-    """
-
-    def __init__(self, moves: Moves, starts: Numbers, letters: Numbers, stop: int) -> None:
-        self.moves = moves
-        self.starts = starts
-        self.classes = moves.class_of[letters]
-        self._begins = np.append(starts, stop)
-        self._next: dict[tuple[int, bool], Numbers] = {}
-
-    def next_leading(self, row: Numbers, following: Numbers, *, sliding: bool = False) -> Any:
-        """For each attempt the next place that leads it on, and the stretch that it is in.
-
-        Args:
-            row: of the automaton.
-            following: the first place that counts.
-            sliding: whether going on with a clock that moves along counts as staying.
-        """
-        stretch = np.searchsorted(self.starts, following, "right") - 1
-        found = np.empty(len(row), np.int64)
-        for one in np.unique(row).tolist():
-            own = row == one
-            found[own] = self._table(one, sliding)[stretch[own]]
-        return np.where(found == stretch, following, self._begins[found]), found
-
-    def next_for_one(self, row: int, following: int, *, sliding: bool = False) -> tuple[int, int]:
-        """As `next_leading`, for one attempt."""
-        stretch = int(np.searchsorted(self.starts, following, "right")) - 1
-        found = self._table(row, sliding).item(stretch)
-        return following if found == stretch else self._begins.item(found), found
-
-    def _table(self, row: int, sliding: bool) -> Numbers:
-        """For each stretch the first from it on that leads on; their number, if none does."""
-        found = self._next.get((row, sliding))
-        if found is None:
-            moves, count = self.moves, len(self.starts)
-            leads = moves.leads_on[row]
-            if sliding:
-                leads = ~moves.restarts[row] | (moves.targets[row] != moves.owner[row])
-            ahead = np.where(leads[self.classes], np.arange(count), count)
-            found = np.minimum.accumulate(ahead[::-1])[::-1]
-            self._next[row, sliding] = found
-        return found
 
 
 _FEW = 12

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rvmon.codegen.plan import Plan
 from rvmon.dataflow.inputs import Inputs
-from rvmon.dataflow.numbers import events_of
+from rvmon.dataflow.numbers import operands
 from rvmon.formula.state import Leaf
 from rvmon.monitor.columns.axis import FAR
-from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
+from rvmon.monitor.columns.leaves import Columns
 from rvmon.monitor.columns.moves import Moves, moves_of
 from rvmon.monitor.columns.records import DecidedAttempts, JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
@@ -22,7 +21,14 @@ from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.generated import can_generate, plan_requirements
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.ledger import Ledger
-from rvmon.spec.checked import Compare, Probe, ProbeAtom
+from rvmon.spec.checked import (
+    Compare,
+    Literal,
+    Probe,
+    ProbeAtom,
+    SignalValue,
+    TimeModel,
+)
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -44,28 +50,38 @@ class ColumnJudge:
 
     Args:
         compiled: the specification.
-        requirements: chosen from it.
-        plan: of these.
-        moves: of their automata.
+        chosen: ids of the requirements that are judged, by this or otherwise.
+        moves: of the automata of those that this judges.
         names: of the columns.
+
+    Attributes:
+        ids: of the requirements that this judges.
     """
 
     def __init__(
         self,
         compiled: CompiledSpec,
-        requirements: Sequence[CompiledRequirement],
-        plan: Plan,
-        moves: Sequence[Moves],
+        chosen: Sequence[str],
+        moves: Mapping[str, Moves],
         names: frozenset[str],
     ) -> None:
-        self._compiled = compiled
-        self._requirements = requirements
+        self.ids = frozenset(moves)
+        requirements = compiled.requirements
+        self._chosen = [one for name, one in requirements.items() if name in chosen]
+        own = [one for one in self._chosen if one.requirement.id in moves]
+        plan = plan_requirements(compiled, own)
         self._ledger = Ledger()
         self._rules = [
-            ColumnRule(one, plan, own, self._ledger)
-            for one, own in zip(requirements, moves, strict=True)
+            ColumnRule(one, plan, moves[one.requirement.id], self._ledger) for one in own
         ]
         asked = frozenset[int]().union(*(rule.nodes for rule in self._rules))
+        self._stale: dict[str, int] = {}
+        """Signals with the time after which they become stale, where that shows by itself."""
+        if plan.gap is not None:
+            for name in names & compiled.checked.signals.keys():
+                bound = compiled.checked.signals[name].stale_after
+                if bound is not None:
+                    self._stale[name] = bound
         self._timeline = Timeline(plan, names, asked)
         self._health = HealthLog()
         self._inputs = Inputs(compiled.checked, names)
@@ -83,6 +99,7 @@ class ColumnJudge:
         """
         for start in range(0, len(times), CHUNK):
             own = times[start : start + CHUNK]
+            self._note_stale(own if self._last is None else np.append(self._last, own))
             piece = {name: column[start : start + CHUNK] for name, column in columns.items()}
             self._health.count_columns(own, piece)
             made = self._timeline.take(own, piece)
@@ -99,14 +116,20 @@ class ColumnJudge:
         """Whether there was a row."""
         return self._last is not None
 
-    def report(self, until: int | None) -> Report:
+    def _note_stale(self, times: NDArray[np.int64]) -> None:
+        """Note where signals become stale between neighbouring instants of updates."""
+        for name, bound in self._stale.items():
+            found = times[:-1][np.diff(times) > bound + 1] + (bound + 1)
+            if len(found):
+                count, first = self._inputs.expired.get(name, (0, int(found[0])))
+                self._inputs.expired[name] = (count + len(found), first)
+
+    def report(self, until: int | None, others: Report | None) -> Report:
         """End the trace and judge it; there has been a row.
 
         Args:
             until: its end in ticks, if after the last row.
-
-        Raises:
-            NotByColumnsError: what the input left open has to be told sample by sample.
+            others: on the requirements that something else judged.
         """
         last = self._last or 0
         end = last if until is None else max(last, until)
@@ -115,10 +138,14 @@ class ColumnJudge:
             rule.take(piece, end)
             stands_at = last if piece.axis.start == piece.axis.stop else piece.axis.stop - 1
             rule.finish(self._timeline, end, stands_at)
-        attempts, found = _assembled(self._rules, self._ledger.flush())
+        kept = [*self._ledger.flush(), *(() if others is None else others.attempts)]
+        self._note_stale(np.array([last, end + 1]))
+        health = self._health.report(self._chosen, self._inputs, None)
+        ids = [one.requirement.id for one in self._chosen]
+        attempts, found = _assembled(ids, self._rules, kept)
         return Report(
             verdicts={
-                name: fold(verdict for verdict, n in counts.items() if n)
+                name: fold(verdict for verdict, count in counts.items() if count)
                 for name, counts in found.items()
             },
             attempts=attempts,
@@ -126,111 +153,107 @@ class ColumnJudge:
                 name: {verdict: counts[verdict] for verdict in _ATTEMPT_VERDICTS}
                 for name, counts in found.items()
             },
-            health=tuple(self._health.report(self._requirements, self._inputs, None)),
+            health=tuple(health),
             origin=self._health.began or 0,
             end=end,
         )
 
 
 def columns_judge(
-    compiled: CompiledSpec, only: Sequence[str] | None, names: frozenset[str]
+    compiled: CompiledSpec, only: Sequence[str], names: frozenset[str]
 ) -> ColumnJudge | None:
-    """What judges requirements by columns; `None` if they have to be judged sample by sample.
+    """What judges by columns those requirements that can be; `None` if none can.
 
-    It takes automata of one clock at most, in held time and where samples are the positions; not
-    what asks for the updates before the last, for payloads or captured values, or for the end.
+    These have an automaton of one clock at most, in held time or where samples are the positions,
+    and ask for no updates before the last, payloads or captured values, staleness or the end.
 
     Args:
         compiled: the specification.
-        only: ids of the requirements; default all.
+        only: ids of the requirements.
         names: of the columns.
     """
     spec = compiled.checked
-    chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
-    if spec.max_delay is not None or not all(map(can_generate, chosen)):
+    gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+    if spec.max_delay is not None or gap not in (None, 1):
         return None
-    plan = plan_requirements(compiled, chosen)
-    if plan.gap not in (None, 1):
+    stale = {name for name in names & spec.signals.keys() if spec.signals[name].stale_after}
+    found = {}
+    for name, one in compiled.requirements.items():
+        if name in only and not stale & one.reads and _looks_at_present(one):
+            moves = None if one.automaton is None else moves_of(one.automaton, gap)
+            if moves is not None:
+                found[name] = moves
+    if not found:
         return None
-    if any(spec.signals[name].stale_after is not None for name in names & spec.signals.keys()):
-        return None
-    leaves = [state.leaf for state in plan.graph.nodes if state.leaf is not None]
-    if any(use.history for use in plan.uses.values()) or any(map(_looks_deeper, leaves)):
-        return None
-    moves = []
-    for one in chosen:
-        own = None if one.automaton is None else moves_of(one.automaton, plan.gap)
-        if own is None or one.obligation.trigger is None or len(one.leaves) > _MOST_LEAVES:
-            return None
-        moves.append(own)
-    return ColumnJudge(compiled, chosen, plan, moves, names)
+    return ColumnJudge(compiled, only, found, names)
 
 
-def _looks_deeper(leaf: Leaf) -> bool:
-    """Whether a leaf reads the fields of events."""
-    return (isinstance(leaf, Compare) and bool(events_of(leaf.left, leaf.right))) or (
-        isinstance(leaf, ProbeAtom) and leaf.probe is Probe.CHANGED
+def _looks_at_present(requirement: CompiledRequirement) -> bool:
+    """Whether a requirement is started by, and asks for, what rows say of the present."""
+    return (
+        can_generate(requirement)
+        and requirement.obligation.trigger is not None
+        and len(requirement.leaves) <= _MOST_LEAVES
+        and all(
+            _is_present(state.leaf) for state, _ in requirement.leaves if state.leaf is not None
+        )
     )
 
 
-def evaluate_columns(
-    compiled: CompiledSpec,
-    names: frozenset[str],
-    blocks: Iterable[tuple[NDArray[np.int64], Columns]],
-    *,
-    only: Sequence[str] | None,
-    until: int | None,
-) -> Report | None:
-    """Judge columns; `None` if they have to be judged sample by sample, or there are no rows.
-
-    Args:
-        compiled: the specification.
-        names: of the columns; declared ones.
-        blocks: instants (int64[n] ticks, strictly increasing throughout) and the columns by name,
-            of equal length: every signal is updated in each row. Not all are taken where the answer
-            is `None`.
-        only: ids of the requirements; default all.
-        until: the end of the trace in ticks, if after its last row.
-    """
-    judge = columns_judge(compiled, only, names)
-    if judge is None:
-        return None
-    try:
-        for times, columns in blocks:
-            judge.take(times, columns)
-        return judge.report(until) if judge.began else None
-    except NotByColumnsError:
-        return None
+def _is_present(leaf: Leaf) -> bool:
+    match leaf:
+        case ProbeAtom(probe=probe):
+            return probe is not Probe.CHANGED
+        case Compare(left=left, right=right):
+            return all(
+                isinstance(part, SignalValue)
+                or (isinstance(part, Literal) and not isinstance(part.value, str))
+                for side in (left, right)
+                for part in operands(side)
+            )
+        case _:
+            return True
 
 
 def _assembled(
-    rules: Sequence[ColumnRule], kept: Sequence[Attempt]
+    ids: Sequence[str], rules: Sequence[ColumnRule], kept: Sequence[Attempt]
 ) -> tuple[JudgedAttempts, Mapping[str, Counter[Verdict]]]:
-    """All attempts in the order of reports, and the count of their verdicts by requirement."""
-    parts = [rule.decided() for rule in rules]
-    rank = {rule.compiled.requirement.id: index for index, rule in enumerate(rules)}
-    counts = {name: Counter[Verdict]() for name in rank}
-    for name, part in zip(rank, parts, strict=True):
-        passed = int(np.count_nonzero(part.decisions.passed))
-        counts[name][Verdict.PASS] = passed
-        counts[name][Verdict.FAIL] = len(part) - passed
-    for attempt in kept:
-        counts[attempt.requirement][attempt.verdict] += 1
-    others = [
-        (FAR if one.decided is None else one.decided, rank[one.requirement], one.number)
-        for one in kept
-    ]
-    return JudgedAttempts(parts, kept, _order(parts, others)), counts
+    """All attempts in the order of reports, and the count of their verdicts by requirement.
+
+    Args:
+        ids: of all requirements, in the order of the file.
+        rules: with the attempts that they have decided.
+        kept: all other attempts.
+    """
+    rank = {name: index for index, name in enumerate(ids)}
+    counts = {name: Counter[Verdict]() for name in ids}
+    parts = []
+    for rule in rules:
+        own = rule.decided()
+        parts.append((rank[rule.id], own))
+        passed = int(np.count_nonzero(own.decisions.passed))
+        counts[rule.id] += Counter({Verdict.PASS: passed, Verdict.FAIL: len(own) - passed})
+    others = []
+    for one in kept:
+        counts[one.requirement][one.verdict] += 1
+        decided = FAR if one.decided is None else one.decided
+        others.append((decided, rank[one.requirement], one.number))
+    return JudgedAttempts([own for _, own in parts], kept, _order(parts, others)), counts
 
 
 def _order(
-    parts: Sequence[DecidedAttempts], others: Sequence[tuple[int, int, int]]
+    parts: Sequence[tuple[int, DecidedAttempts]], others: Sequence[tuple[int, int, int]]
 ) -> NDArray[np.int64]:
-    """The numbers of attempts by instant of decision, requirement and number."""
+    """The numbers of attempts by instant of decision, requirement and number.
+
+    Args:
+        parts: attempts that were decided, with the rank of their requirement.
+        others: of the other attempts the instant, the rank and the number.
+    """
     keys = np.array(others, np.int64).reshape(-1, 3)
-    decided = np.concatenate([*(part.decisions.decided for part in parts), keys[:, 0]])
-    number = np.concatenate([*(part.decisions.number for part in parts), keys[:, 2]])
-    if len(parts) == 1 and bool((decided[1:] > decided[:-1]).all()):
+    decided = np.concatenate([*(part.decisions.decided for _, part in parts), keys[:, 0]])
+    if bool((decided[1:] > decided[:-1]).all()):
         return np.arange(len(decided))
-    ranks = np.concatenate([*(np.full(len(part), i) for i, part in enumerate(parts)), keys[:, 1]])
+    number = np.concatenate([*(part.decisions.number for _, part in parts), keys[:, 2]])
+    ranks = np.concatenate([*(np.full(len(part), rank) for rank, part in parts), keys[:, 1]])
     return np.lexsort((number, ranks, decided))

@@ -79,33 +79,66 @@ class Since:
 
     def take(self, operands: Sequence[Toggles], axis: Axis) -> Toggles:
         """Where it holds in a piece, from where the operands do."""
-        left, right = operands
         if axis.start == axis.stop:
             return nowhere()
-        begins, ends = left[0::2], left[1::2]
-        starts, ends_at, run = self._marked(left, right, axis)
-        if len(begins) and begins[0] == axis.start and len(self._marks):
+        left, right = operands
+        if self.low == 0:
+            return self._from_now(left, right, axis)
+        starts, stops, run = self._marked(left, right, axis)
+        if len(left) and left[0] == axis.start and len(self._marks):
             starts = np.concatenate((self._marks[0::2], starts))
-            ends_at = np.concatenate((self._marks[1::2], ends_at))
+            stops = np.concatenate((self._marks[1::2], stops))
             run = np.concatenate((np.zeros(len(self._marks) // 2, np.int64), run))
-        last = int(axis.instants(np.array([axis.stop - 1]))[0])
-        goes_on = len(ends) > 0 and bool(ends[-1] == axis.stop)
-        if goes_on:
-            own = run == len(ends) - 1
-            self._marks = clipped(joined(starts[own], ends_at[own]), last + 1, FAR + 1)
+        last = axis.instant(axis.stop - 1)
+        if len(left) and left[-1] == axis.stop:
+            own = run == len(left) // 2 - 1
+            ahead = joined(starts[own], stops[own])
         elif len(right) and right[-1] == axis.stop:
-            self._marks = clipped(
-                np.array([last + self.low, self._behind(last)], np.int64), last + 1, FAR + 1
-            )
+            ahead = np.array([last + self.low, self._behind(last)], np.int64)
         else:
-            self._marks = nowhere()
+            ahead = nowhere()
+        self._marks = clipped(ahead, last + 1, FAR + 1)
         if len(run):
-            limits = axis.instants(ends - 1) + 1
-            ends_at = np.minimum(ends_at, limits[run])
-        found = np.stack((axis.first_from(starts), axis.first_from(ends_at)), 1)
+            stops = np.minimum(stops, (axis.instants(left[1::2] - 1) + 1)[run])
+        found = np.stack((axis.first_from(starts), axis.first_from(stops)), 1)
         found = found[found[:, 0] < found[:, 1]]
-        held = joined(found[:, 0], found[:, 1])
-        return in_at_least(1, [held, right]) if self.low == 0 else held
+        return joined(found[:, 0], found[:, 1])
+
+    def _from_now(self, left: Toggles, right: Toggles, axis: Axis) -> Toggles:
+        """As `take`, where `low` is 0: each stretch of `right` goes on for a while."""
+        starts, stops = right[0::2], right[1::2]
+        ends = np.full(len(stops), axis.stop)
+        if self.high is not None:
+            ends = axis.first_from(axis.instants(stops - 1) + (self.high + 1))
+        toggle = np.searchsorted(left, stops, "right")
+        limits = np.append(left, axis.stop)[toggle]
+        stops = np.where(toggle % 2 == 1, np.minimum(ends, limits), stops)
+        last = axis.instant(axis.stop - 1)
+        ahead = last + 1
+        begins_held = len(left) > 0 and bool(left[0] == axis.start)
+        if begins_held and len(self._marks):
+            ahead = int(self._marks[1])
+            stop = min(axis.place_from(ahead), int(left[1]))
+            starts = np.append(axis.start, starts)
+            stops = np.append(stop, stops)
+        holds_on = len(left) > 0 and bool(left[-1] == axis.stop)
+        if not holds_on or left[-2] > axis.start:
+            ahead = last + 1
+        final = self._last_leading(left, right, axis, holds_on=holds_on)
+        if final is not None:
+            ahead = self._behind(axis.instant(final))
+        self._marks = between(last + 1, ahead)
+        return joined(starts, stops)
+
+    def _last_leading(
+        self, left: Toggles, right: Toggles, axis: Axis, *, holds_on: bool
+    ) -> int | None:
+        """The last place of `right` behind which `left` holds to the end of the piece."""
+        if not len(right):
+            return None
+        final = int(right[-1]) - 1
+        least = int(left[-2]) - 1 if holds_on else axis.stop - 1
+        return final if final >= least else None
 
     def _behind(self, instant: int) -> int:
         return FAR + 1 if self.high is None else instant + self.high + 1

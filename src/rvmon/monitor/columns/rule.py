@@ -15,18 +15,17 @@ from rvmon.monitor.bench import Open
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.drive import (
     Driver,
-    Letters,
     Outcome,
     Tokens,
     joined_tokens,
     starting,
 )
-from rvmon.monitor.columns.leaves import Truth
+from rvmon.monitor.columns.letters import Letters, letters_along
 from rvmon.monitor.columns.moves import Moves
 from rvmon.monitor.columns.records import DecidedAttempts, Decisions
 from rvmon.monitor.columns.starts import Starts
 from rvmon.monitor.columns.timeline import Piece, Timeline
-from rvmon.monitor.columns.track import UNSEEN, Track, edges_of, values_at
+from rvmon.monitor.columns.track import UNSEEN, Track
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.witness import Stood, Witness
@@ -51,7 +50,8 @@ class ColumnRule:
     def __init__(
         self, compiled: CompiledRequirement, plan: Plan, moves: Moves, ledger: Ledger
     ) -> None:
-        self.compiled = compiled
+        self.id = compiled.requirement.id
+        self._compiled = compiled
         self._plan = plan
         self._moves = moves
         self._ledger = ledger
@@ -88,8 +88,7 @@ class ColumnRule:
         begun = self._starts.take(piece.truths[self._trigger], axis)
         self._add(begun, axis.instants(begun), piece.seen(self._witness.leaves, begun))
         truths = [piece.truths[place] for place in self._witness.places]
-        starts = edges_of(truths, axis)
-        letters = self._letters_at(truths, starts)
+        starts, letters = letters_along(self._compiled.alphabet, truths, axis)
         for track, truth in zip(self._tracks, truths, strict=True):
             track.take(truth, axis)
         if letters[0] is not letters[1]:
@@ -113,18 +112,6 @@ class ColumnRule:
         self._worse = joined_tokens(self._worse, fresh)
         if self._better is not None:
             self._better = joined_tokens(self._better, fresh)
-
-    def _letters_at(self, truths: list[Truth], starts: Numbers) -> tuple[Numbers, Numbers]:
-        """The letters from each place on, the unknown taken for the worse and for the better."""
-        alphabet = self.compiled.alphabet
-        worse = np.zeros(len(starts), np.int64)
-        better = worse if all(truth.known for truth in truths) else worse.copy()
-        for truth, low, high in zip(truths, alphabet.pessimistic, alphabet.optimistic, strict=True):
-            values = values_at(truth, starts)
-            worse += np.array(low)[values]
-            if better is not worse:
-                better += np.array(high)[values]
-        return worse, better
 
     def _doubt(self, piece: Piece, starts: Numbers, letters: tuple[Numbers, Numbers]) -> None:
         """Note where both readings of the letters part for the first time in an attempt."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.columns.axis import FAR, Axis
-from rvmon.monitor.columns.leaves import Truth
+from rvmon.monitor.columns.leaves import Truth, known_truth
 from rvmon.monitor.columns.stretches import holds_at
 
 if TYPE_CHECKING:
@@ -47,31 +47,42 @@ class Track:
 
     def __init__(self) -> None:
         self.now: tuple[int, int, int, int] = (UNKNOWN, UNSEEN, UNSEEN, UNSEEN)
-        self._changes = np.empty(0, np.int64)
-        self._table = np.empty((1, 4), np.int64)
+        self._piece: tuple[Truth, Axis] | None = None
+        self._before = self.now
 
     def take(self, truth: Truth, axis: Axis) -> None:
         """Go on with a piece."""
-        if axis.start == axis.stop:
-            return
+        self._before = self.now
+        self._piece = truth, axis
+        if axis.start < axis.stop:
+            # What was known longer ago than the last two stretches does not show at the end.
+            tail = known_truth(truth.must[-4:]) if truth.known else truth
+            self.now = tuple(self._laid_out(tail, axis)[1][-1].tolist())
+
+    def _laid_out(self, truth: Truth, axis: Axis) -> tuple[Numbers, Numbers]:
+        """The places of changes, and `now` before the first and behind each of them."""
+        now = self._before
         places = edges_of([truth], axis)
         values = values_at(truth, places)
-        first = self.now[1] == UNSEEN
-        new = np.append(first or values[0] != self.now[0], values[1:] != values[:-1])
+        first = now[1] == UNSEEN
+        new = np.append(first or values[0] != now[0], values[1:] != values[:-1])
         places, values = places[new], values[new]
         table = np.empty((len(places) + 1, 4), np.int64)
-        table[0] = self.now
+        table[0] = now
         table[1:, 0] = values
         table[1:, 1] = axis.instants(places)
         ended = axis.instants(places - 1)
         for column, value in ((2, FALSE), (3, TRUE)):
             # Of each change, the instant before if it ended this value; then the last such one.
-            before = np.append(self.now[0], values[:-1]) == value
+            before = np.append(now[0], values[:-1]) == value
             ends = np.where(before & (places > axis.start if first else True), ended, UNSEEN)
-            table[1:, column] = np.maximum.accumulate(np.append(self.now[column], ends))[1:]
-        self._changes, self._table = places, table
-        self.now = tuple(table[-1].tolist())
+            table[1:, column] = np.maximum.accumulate(np.append(now[column], ends))[1:]
+        return places, table
 
     def at(self, places: Numbers) -> Numbers:
         """For each place of the last piece, or the one before it, what `now` says of it."""
-        return self._table[np.searchsorted(self._changes, places, "right")]
+        if self._piece is None or not len(places):
+            return np.empty((0, 4), np.int64)
+        changes, table = self._laid_out(*self._piece)
+        made: Numbers = table[np.searchsorted(changes, places, "right")]
+        return made

@@ -1,0 +1,172 @@
+"""Columns of which only the rows that can change something are judged, as samples."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import reduce
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rvmon.codegen.plan import Plan
+from rvmon.dataflow.leaves import reads
+from rvmon.formula.state import Leaf
+from rvmon.monitor.build import build_monitor
+from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
+from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.generated import can_feed, plan_requirements
+from rvmon.monitor.health import HealthLog, by_name
+from rvmon.spec.checked import Compare, Probe, ProbeAtom, SignalAtom, TimeModel
+from rvmon.trace.health import HealthKind
+from rvmon.verdict.report import Report
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+CHUNK = 1 << 17
+"""Rows that are looked at together: temporary arrays do not grow with the recording."""
+
+
+class RowJudge:
+    """Judges requirements by a monitor.
+
+    Rows are passed over in held and clocked time, if generated code can be fed for all of them.
+
+    Args:
+        compiled: the specification.
+        names: of the columns; declared ones.
+        only: ids of the requirements; default all.
+        engine: `auto` or the name of one that judges samples.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledSpec,
+        names: Sequence[str],
+        *,
+        only: Sequence[str] | None,
+        engine: str,
+    ) -> None:
+        requirements = compiled.requirements.items()
+        self._chosen = [one for name, one in requirements if only is None or name in only]
+        self._names = names
+        sources = frozenset(names)
+        self._monitor = build_monitor(compiled, only=only, engine=engine, sources=sources)
+        self._plan: Plan | None = None
+        """Tells which rows matter; `None` if all do."""
+        if compiled.checked.time is not TimeModel.SAMPLED and all(map(can_feed, self._chosen)):
+            self._plan = plan_requirements(compiled, self._chosen)
+        self._unknown = HealthLog()
+        self._last: int | None = None
+
+    def take(self, times: NDArray[np.int64], columns: Columns) -> None:
+        """Judge rows.
+
+        Args:
+            times: int64[n] ticks, later than all before, ascending.
+            columns: by name, of the same length: every signal is updated in each row.
+        """
+        step = self._monitor.step_ns
+        names = self._names
+        for start in range(0, len(times), CHUNK):
+            stop = min(start + CHUNK, len(times))
+            rows = np.arange(start, stop)
+            if self._plan is not None:
+                rows = _rows_that_matter(self._plan, columns, times, start, stop)
+            lists = [columns[name][rows].tolist() for name in names]
+            for t, *values in zip(times[rows].tolist(), *lists, strict=True):
+                step(t, dict(zip(names, values, strict=True)))
+            own = {name: column[start:stop] for name, column in columns.items()}
+            self._unknown.count_columns(times[start:stop], own)
+            self._last = int(times[stop - 1])
+
+    def report(self, until: int | None) -> Report:
+        """End the trace and judge it.
+
+        Args:
+            until: its end in ticks, if after its last row.
+        """
+        end = self._last
+        if end is not None and until is not None:
+            end = max(end, until)
+        report = self._monitor.finish_ns(end)
+        # Of the samples at which a signal was not known, only those that matter were judged.
+        kept = [entry for entry in report.health if entry.kind is not HealthKind.NAN]
+        health = sorted([*kept, *self._unknown.seen(self._chosen)], key=by_name)
+        return replace(report, health=tuple(health))
+
+
+def _rows_that_matter(
+    plan: Plan, columns: Columns, times: NDArray[np.int64], start: int, stop: int
+) -> NDArray[np.intp]:
+    """The rows of a chunk at which some state formula may change; the row before is looked at."""
+    before = max(start - 1, 0)
+    matters = np.zeros(stop - before, bool)
+    own = {name: column[before:stop] for name, column in columns.items()}
+    matters[0] |= start == 0
+    for place, own_reads in plan.graph.reads.items():
+        leaf = plan.graph.nodes[place].leaf
+        if leaf is None or not own_reads.names & own.keys():
+            continue
+        if own_reads.momentary:
+            matters |= _may_occur(leaf, own, plan)
+            continue
+        truth = _truth(leaf, own)
+        if truth is None:
+            matters[:] = True
+            break
+        matters[1:] |= truth[1:] != truth[:-1]
+    bounds = [plan.spec.signals[name].stale_after for name in own if name in plan.signals]
+    shortest = min((bound for bound in bounds if bound is not None), default=None)
+    if shortest is not None:
+        matters |= _refreshing(times[before:stop], shortest)
+    if before < start:
+        matters[0] = False
+    return np.flatnonzero(matters) + before
+
+
+def _refreshing(times: NDArray[np.int64], bound: int) -> NDArray[np.bool_]:
+    """Rows without which a signal would seem stale that is not, or fresh that is not.
+
+    The first and the last row of each half of the bound: two of them that follow each other are
+    further apart than the bound only if the recording has no row between.
+    """
+    if bound < 2:
+        return np.ones(len(times), bool)
+    turns = np.diff(times // (bound // 2)) != 0
+    # The last row of a piece is taken, as its first one is: there is no other to compare with.
+    return np.concatenate(([True], turns)) | np.concatenate((turns, [True]))
+
+
+def _may_occur(leaf: Leaf, columns: Columns, plan: Plan) -> NDArray[np.bool_]:
+    """The rows at which a leaf that speaks of one position may be true."""
+    length = len(next(iter(columns.values())))
+    if isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN:
+        return np.ones(length, bool)
+    events = [columns[name] for name in columns if name in plan.events and name in _names(leaf)]
+    return reduce(np.logical_or, events, np.zeros(length, bool))
+
+
+def _names(leaf: Leaf) -> frozenset[str]:
+    return reads(leaf).names
+
+
+def _truth(leaf: Leaf, columns: Columns) -> NDArray[np.int8] | None:
+    """0, 1 (unknown) or 2 per row; `None` if the leaf looks at more than the row."""
+    match leaf:
+        case SignalAtom(name=name):
+            return columns[name].astype(np.int8)
+        case ProbeAtom(probe=Probe.KNOWN, name=name):
+            values = columns[name]
+            known: NDArray[np.int8] = (values == values).astype(np.int8)
+            return known
+        case Compare():
+            try:
+                truth = compared(leaf, columns, len(next(iter(columns.values()))))
+            except NotByColumnsError:
+                return None
+            made: NDArray[np.int8] = truth.must.astype(np.int8) + truth.may
+            return made
+        case _:
+            return None

@@ -1,0 +1,129 @@
+"""Requirements judged by arrays: the report of a monitor, in any blocks, without an object each."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.monitor.batch import evaluate_plain
+from rvmon.monitor.columns import drive
+from rvmon.monitor.columns.records import JudgedAttempts
+
+SPEC = """
+spec watch "A base"
+time {time}
+signal p : bool
+signal q : bool
+signal speed : real
+event stop
+requirement R1 "an episode per stretch, a window that slides"
+  whenever p
+  then within 900 ms q
+requirement R2 "the past, with both bounds"
+  upon rise(once[300 ms, 800 ms] stop)
+  then for 400 ms speed < 0.8
+requirement R3 "one attempt with many moves"
+  upon start
+  then always (p -> p until[100 ms, 2 s] q)
+requirement R4 "at every stop"
+  upon stop
+  then (historically[0, 1 s] not q) or eventually (speed > 0.95)
+"""
+
+
+def recording(seed: int, rows: int = 1500) -> dict[str, np.ndarray]:
+    """Truth values that stay for a while, a stop now and then, numbers that are lost at times."""
+    dice = np.random.default_rng(seed)
+    speed = dice.random(rows)
+    speed[dice.random(rows) < 0.02] = np.nan
+
+    def slow(stays: int) -> np.ndarray:
+        return np.repeat(dice.random(rows // stays + 1) < 0.4, stays)[:rows]
+
+    return {
+        "t_ns": np.cumsum(dice.choice([1, 50_000_000, 250_000_000, 1_100_000_000], rows)),
+        "p": slow(6),
+        "q": slow(4),
+        "speed": speed,
+        "stop": dice.random(rows) < 0.05,
+    }
+
+
+def of_a_monitor(spec: rvmon.Spec, columns: dict[str, np.ndarray], end: int) -> rvmon.Report:
+    """The report of the slow way."""
+    monitor = spec.monitor()
+    names = [name for name in columns if name != "t_ns"]
+    for t, *values in zip(*(columns[n].tolist() for n in ("t_ns", *names)), strict=True):
+        monitor.step_ns(t, dict(zip(names, values, strict=True)))
+    return monitor.finish_ns(end)
+
+
+@pytest.mark.parametrize("few", [0, 12, 10_000])
+@pytest.mark.parametrize("time", ["held", "sampled"])
+def test_blocks_of_any_size_say_what_a_monitor_says(time, few, monkeypatch):
+    """Verdicts, instants, reasons and health, with attempts driven together or one by one."""
+    monkeypatch.setattr(drive, "_FEW", few)
+    spec = rvmon.loads(SPEC.format(time=time))
+    columns = recording(1)
+    end = int(columns["t_ns"][-1]) + 2_500_000_000
+    expected = of_a_monitor(spec, columns, end)
+    names = [name for name in columns if name != "t_ns"]
+    for size in (7, 400, 5000):
+        blocks = [
+            (columns["t_ns"][at : at + size], {n: columns[n][at : at + size] for n in names})
+            for at in range(0, 1500, size)
+        ]
+        report = evaluate_plain(
+            spec._compiled, names, lambda own=blocks: own, only=None, engine="auto", until=end
+        )
+        assert report is not None
+        assert isinstance(report.attempts, JudgedAttempts)
+        assert [*report.attempts] == [*expected.attempts]
+        assert report == expected
+    assert {"P", "F", "I"} <= {attempt.verdict for attempt in expected.attempts}
+
+
+def test_what_arrays_cannot_judge_is_judged_beside_them():
+    """Captured values make a monitor see each row; what needs two clocks only those that matter."""
+    more = """
+requirement R5 "two windows at once"
+  upon stop
+  then within 700 ms (p and for 300 ms q)
+requirement R0 "before those"
+  upon rise(q)
+  then within 1 s not q
+"""
+    spec = rvmon.loads(SPEC.format(time="held") + more)
+    columns = recording(2)
+    report = spec.evaluate(columns, time="t_ns")
+    assert isinstance(report.attempts, JudgedAttempts)
+    assert report == of_a_monitor(spec, columns, int(columns["t_ns"][-1]))
+    assert report.counts["R5"]["P"] > 0
+
+
+def test_attempts_are_a_sequence_and_survive_a_pickle():
+    """They can be indexed, cut, compared and sent to another process."""
+    report = rvmon.loads(SPEC.format(time="held")).evaluate(recording(3), time="t_ns")
+    attempts = report.attempts
+    assert attempts[0] == attempts[:1][0] == next(iter(attempts))
+    assert attempts[-1].reason
+    assert len(attempts[3:8:2]) == 3
+    assert pickle.loads(pickle.dumps(report)) == report  # noqa: S301 - just made
+    assert attempts != attempts[1:]
+
+
+def test_whole_numbers_beyond_doubles_are_judged_one_by_one():
+    """What arrays would round is left to Python's own numbers."""
+    spec = rvmon.loads("spec s\nsignal n : int\nrequirement R1\n  always n > 9007199254740992\n")
+    columns = {"t": np.arange(2.0), "n": np.array([2**53 + 1, 2**53])}
+    report = spec.evaluate(columns)
+    assert [attempt.decided for attempt in report.attempts] == [1_000_000_000]
+
+
+@pytest.mark.parametrize("end", [None, 5.0])
+def test_no_row_is_no_trace(end):
+    """Empty columns trigger nothing."""
+    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
+    report = spec.evaluate({"t": np.empty(0), "p": np.empty(0, bool)}, until=end)
+    assert report.verdicts == {"R1": "NT"}
