@@ -30,7 +30,7 @@ from rvmon.formula.dual import Duals
 from rvmon.formula.progress import opened
 from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either
 
-MOST_POSITIONS = 200
+MOST_POSITIONS = 60
 """So many undecided positions are looked at, of all parts of a formula together."""
 
 MOST_CLAUSES = 60

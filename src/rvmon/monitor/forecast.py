@@ -13,6 +13,10 @@ from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.verdict.verdict import Verdict
 
 
+MOST_ATTEMPTS = 32
+"""With more of a requirement open at once in a network, none is forecast."""
+
+
 def forecast_of(judge: Judge, attempt: Open) -> Verdict | None:
     """`P` or `F` if every continuation brings an attempt to it; never folded into its verdict.
 
@@ -39,8 +43,12 @@ def _value(judge: Judge, token: Token) -> bool | None:
 def forecast_by_network(judge: NetworkJudge, attempt: Open) -> Verdict | None:
     """The same of an attempt that a network judges; `None`, too, where too much is undecided.
 
+    Each attempt costs a search of its own, so there is none with more than `MOST_ATTEMPTS` open.
+
     Source: as for `forecast_of`.
     """
+    if len(judge.attempts) > MOST_ATTEMPTS:
+        return None
     token = attempt.token
     better = token if attempt.better is None else attempt.better
     if token[0] > PASSED and not _may_become(judge, judge.worse, token, False):
