@@ -12,7 +12,6 @@ from rvmon.monitor.judge import Judge
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.verdict.verdict import Verdict
 
-
 MOST_ATTEMPTS = 32
 """With more of a requirement open at once in a network, none is forecast."""
 
