@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,8 @@ from rvmon.verdict.report import Report
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    _Block = tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]
 
 READERS: Mapping[str, Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]] = {
     ".csv": csv_blocks,
@@ -67,12 +70,18 @@ def evaluate_file(
         return None
     fillable = _fillable(compiled, only)
 
-    def blocks() -> Iterator[tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]]:
+    def read() -> Iterator[_Block]:
         return ((block.times, block.columns) for block in reader(path, schema, fillable))
 
     try:
-        _, columns = next(blocks())
-        names = list(columns)
+        begun = read()
+        first = next(begun)
+        names = list(first[1])
+        ready = [chain([first], begun)]
+
+        def blocks() -> Iterator[_Block]:
+            return ready.pop() if ready else read()
+
         if engine == "c":
             return evaluate_c_blocks(compiled, names, blocks(), only=only, until=until)
         return evaluate_plain(compiled, names, blocks, only=only, engine=engine, until=until)

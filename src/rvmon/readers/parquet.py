@@ -56,17 +56,19 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
 
 
 def parquet_blocks(
-    path: str | Path, schema: Schema, _: frozenset[str] = frozenset()
+    path: str | Path, schema: Schema, fillable: frozenset[str] = frozenset()
 ) -> Iterator[Block]:
-    """Read a file whose columns are whole.
+    """Read a file of numbers and truth values.
 
     Args:
         path: of the file.
         schema: the declared names.
-        _: the names whose gaps could be filled: none are here.
+        fillable: the names of which "no update" may be read as what was there before: of signals
+            the value, of events that they do not occur.
 
     Raises:
-        NotPlainError: there are gaps, payloads or labels, or the instants do not increase.
+        NotPlainError: there are gaps of other names or before the first value, payloads or labels,
+            or the instants do not increase.
     """
     import numpy as np
 
@@ -78,6 +80,7 @@ def parquet_blocks(
         raise NotPlainError
     stamp = "t_ns" if layout.in_ticks else "t"
     last = -TIME_LIMIT
+    held: dict[str, Any] = {}
     for batch in _opened(path).iter_batches(ROWS, columns=[stamp, *(c.name for c in columns)]):
         stamps = _array(batch, stamp, "i" if layout.in_ticks else "fi")
         times = stamps.astype(np.int64, copy=False) if layout.in_ticks else ticks_of_column(stamps)
@@ -86,7 +89,15 @@ def parquet_blocks(
         last = int(times[-1])
         if last >= TIME_LIMIT:
             raise NotPlainError
-        yield Block(times, {c.name: _array(batch, c.name, _FITTING[c.kind]) for c in columns})
+        found = {}
+        for column in columns:
+            gaps = column.name in fillable
+            if column in layout.events:
+                found[column.name] = _occurrences(batch, column.name, gaps=gaps)
+                continue
+            found[column.name] = _values_held(batch, column, held, gaps=gaps)
+            held[column.name] = found[column.name][-1]
+        yield Block(times, found)
 
 
 def _layout_or_not_plain(path: str | Path, schema: Schema) -> Layout:
@@ -100,10 +111,45 @@ def _array(batch: Any, name: str, kinds: str) -> NDArray[Any]:
     column = batch.column(name)
     if column.null_count:
         raise NotPlainError
+    return _array_of(column, kinds)
+
+
+def _array_of(column: Any, kinds: str) -> NDArray[Any]:
     array: NDArray[Any] = column.to_numpy(zero_copy_only=False)
     if array.dtype.kind not in kinds:
         raise NotPlainError
     return array
+
+
+def _occurrences(batch: Any, name: str, *, gaps: bool) -> NDArray[Any]:
+    """Where an event occurs; a null says that it does not."""
+    column = batch.column(name)
+    if not gaps and column.null_count:
+        raise NotPlainError
+    return _array_of(column.fill_null(False) if column.null_count else column, "b")
+
+
+def _values_held(
+    batch: Any, column: Column, held: Mapping[str, Any], *, gaps: bool
+) -> NDArray[Any]:
+    """A signal of which nulls hold the value above them, the first ones that of the batch before.
+
+    Raises:
+        NotPlainError: there is none; or the values are of another kind.
+    """
+    import numpy as np
+
+    cells, kinds = batch.column(column.name), _FITTING[column.kind]
+    if not cells.null_count:
+        return _array_of(cells, kinds)
+    given = np.asarray(cells.is_valid())
+    before = [held[column.name]] if column.name in held else []
+    if not gaps or not (before or given[0]):
+        raise NotPlainError
+    some = _array_of(cells.drop_null(), kinds)
+    values = np.concatenate((np.array(before, some.dtype), some))
+    filled: NDArray[Any] = values[np.cumsum(given) - 1 + len(before)]
+    return filled
 
 
 def parquet_samples(

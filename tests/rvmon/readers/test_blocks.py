@@ -8,6 +8,7 @@ import pytest
 
 import rvmon
 from rvmon.readers import csv_blocks as module
+from rvmon.readers import parquet as parquet_module
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.decimals import Cells, decimals, nanoseconds, whole_numbers
@@ -56,7 +57,7 @@ def by_rows(spec: rvmon.Spec, path: Path) -> rvmon.Report:
 
 
 @pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
-@pytest.mark.parametrize("time", ["held", "sampled every 20 ms"])
+@pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
     """Verdicts, records, reasons and health are the same, wherever a block ends."""
     monkeypatch.setattr(module, "BLOCK", 1999)
@@ -68,7 +69,7 @@ def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
     assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
 
 
-@pytest.mark.parametrize("time", ["held", "sampled every 20 ms"])
+@pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
     """Empty cells: signals hold, events do not occur; the same as row by row."""
     monkeypatch.setattr(module, "BLOCK", 997)
@@ -93,8 +94,9 @@ def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
-def test_parquet_says_what_csv_says(time, tmp_path):
-    """The same recording as Parquet, whole and with gaps and payloads."""
+def test_parquet_says_what_csv_says(time, tmp_path, monkeypatch):
+    """The same recording as Parquet, whole and with gaps."""
+    monkeypatch.setattr(parquet_module, "ROWS", 333)
     import pyarrow
     from pyarrow import csv, parquet
 
@@ -106,11 +108,23 @@ def test_parquet_says_what_csv_says(time, tmp_path):
     expected = by_rows(spec, tmp_path / "a.csv")
     assert spec.evaluate(tmp_path / "a.parquet") == expected
     assert by_rows(spec, tmp_path / "a.parquet") == expected
-    gaps = table.set_column(2, "speed", pyarrow.array([0.1, None] * 1000))
-    parquet.write_table(gaps, tmp_path / "gaps.parquet")
-    assert spec.evaluate_file(tmp_path / "gaps.parquet") is None
-    report = spec.evaluate(tmp_path / "gaps.parquet")
-    assert report.verdicts["R1"] == "P"
+
+    dice = random.Random(6)
+    for first in (True, False):
+        gaps = table
+        for place, name in enumerate(table.column_names):
+            if name not in ("t", "ignored"):
+                cells = table.column(name).to_pylist()
+                cells[1:] = [cell if dice.random() < 0.2 else None for cell in cells[1:]]
+                cells[0] = cells[0] if first else None
+                kept = pyarrow.array(cells, table.schema.field(name).type)
+                gaps = gaps.set_column(place, name, kept)
+        parquet.write_table(gaps, tmp_path / "gaps.parquet")
+        expected = by_rows(spec, tmp_path / "gaps.parquet")
+        report = spec.evaluate_file(tmp_path / "gaps.parquet")
+        assert report == (expected if first else None)
+        assert spec.evaluate(tmp_path / "gaps.parquet") == expected
+        assert {"P", "F"} <= {attempt.verdict for attempt in expected.attempts}
 
 
 def test_what_is_no_parquet_file_is_refused_with_its_name(tmp_path):

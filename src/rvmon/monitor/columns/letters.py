@@ -87,10 +87,14 @@ class Letters:
             sliding: whether going on with a clock that moves along counts as staying.
         """
         stretch = np.searchsorted(self.starts, following, "right") - 1
-        found = np.empty(len(row), np.int64)
-        for one in np.unique(row).tolist():
-            own = row == one
-            found[own] = self._table(one, sliding)[stretch[own]]
+        present = np.flatnonzero(np.bincount(row)).tolist()
+        if len(present) == 1:
+            found = self._table(present[0], sliding)[stretch]
+        else:
+            found = np.empty(len(row), np.int64)
+            for one in present:
+                own = row == one
+                found[own] = self._table(one, sliding)[stretch[own]]
         return np.where(found == stretch, following, self._begins[found]), found
 
     def next_for_one(self, row: int, following: int, *, sliding: bool = False) -> tuple[int, int]:
