@@ -353,6 +353,10 @@ class GeneratedMonitor(Monitor):
     def open(self) -> Sequence[Attempt]:
         """See `Monitor.open`."""
         self._see()
+        for rule in self._unit.rules:
+            if rule.slides and self._reached is not None:
+                # Its clocks are taken along when somebody looks.
+                rule.pass_to(self._reached - (self._reached != self._last))
         return super().open
 
     @property

@@ -152,7 +152,9 @@ def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
     if for_each:
         compared = Compare(CompareOp.EQ, for_each.value, Captured(for_each.name))
         further = Binary(BinaryOp.AND, compared, formula(dice, shape, 1))
-        options: tuple[Formula, ...] = (EventAtom(CARRIER), compared, further)
+        level = SignalAtom(pick(dice, BOOLS))
+        either = Binary(BinaryOp.OR, level, compared)
+        options: tuple[Formula, ...] = (EventAtom(CARRIER), compared, further, level, either)
         if shape.past:
             earlier = past_unary(dice, shape, 1)
             options += (

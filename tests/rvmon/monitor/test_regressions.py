@@ -143,6 +143,26 @@ def test_two_events_of_which_one_has_no_source(form, time, sources):
     assert not disagreements(case, Maker(form), online=form != "c")
 
 
+@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+@pytest.mark.parametrize(
+    ("time", "requirement", "samples"),
+    [
+        ("sampled every 3 ns", "upon e\n  then always[1 ns, inf) (always[1 ns, 1 ns] p)", [0, 4]),
+        ("sampled every 1 ns", "upon e\n  then F[1 ns, inf) (always[1 ns, 2 ns] start)", [0, 3, 5]),
+        ("held", "whenever true\n  then within 3 ns e", [0, 1, 2]),
+        ("sampled", "whenever p\n  then always[1 ns, 1 ns] e", [0, 4, 20]),
+    ],
+)
+def test_what_is_owed_is_open(form, time, requirement, samples):
+    """What an open attempt is said to owe is undecided, and its deadline is the law's."""
+    spec = rvmon.loads(
+        f"spec s\ntime {time}\nsignal p, q : bool\nevent e\nrequirement R1\n  {requirement}\n"
+    )
+    told = [Sample(t, {"p": True, "e": True} if t == 0 else {"q": True}) for t in samples]
+    case = Case(spec.checked, (*told, samples[-1] + 2))
+    assert not disagreements(case, Maker(form), online=True)
+
+
 def test_what_cannot_be_judged_within_bounds_says_so():
     """Progression ends in a message, not in a hang, where the network goes on."""
     spec = rvmon.loads(
