@@ -33,8 +33,10 @@ _AUTOMATA = tuple(
 )
 _PLANS = tuple(f"codegen/{name}.py" for name in ("planning", "tables"))
 _RUNTIME = tuple(
-    f"codegen/runtime/{name}.py" for name in ("nodes", "past", "rule", "table", "unit")
+    f"codegen/runtime/{name}.py"
+    for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
 )
+_GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "hosted", "seat"))
 
 ENGINES: dict[str, tuple[str, ...]] = {
     "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA),
@@ -44,10 +46,11 @@ ENGINES: dict[str, tuple[str, ...]] = {
         "automaton/stretch.py",
         *_ATTEMPTS,
     ),
-    "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, "monitor/generated.py"),
+    "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
     "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "codegen/runtime/alone.py"),
     "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in"),
     "network": (
+        "dataflow/alone.py",
         "dataflow/at_end.py",
         "dataflow/evaluate.py",
         "dataflow/network.py",
@@ -58,6 +61,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
         "dataflow/ranges.py",
         "dataflow/sweep.py",
         "monitor/network_judge.py",
+        "monitor/owed_network.py",
     ),
 }
 """By engine, patterns of files below the package; what does not exist (yet) is passed over."""

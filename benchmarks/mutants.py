@@ -5,8 +5,8 @@
 Changes are drawn evenly over their kinds, from the lines of the engine's files that the test
 executes (of C, from all lines). Each is tried in a copy of the package. A mutant is killed if the
 test finds a disagreement, hangs or breaks, or if the engine refuses other specifications than it
-did; one that survives is tried again with 10,000 pairs, then with the engines that have its
-files in common. Those listed in `EQUIVALENT` change
+did; one that survives is tried again with samples in portions and with snapshots, with 10,000
+pairs, then with the engines that have its files in common. Those listed in `EQUIVALENT` change
 no behaviour, for the reason given there; others are drawn in their place. Exits 1 if one survives.
 """
 
@@ -15,19 +15,25 @@ from __future__ import annotations
 import argparse
 import os
 import random
+import re
 import resource
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.engines import ENGINES, PACKAGE, RELATED, files_of
 from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
+
+from rvmon.monitor.compiled import ENGINES as SWITCHABLE
+from rvmon.testing.forms import INTERRUPT, NEXT
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -55,6 +61,8 @@ def main(argv: Sequence[str]) -> int:
         f"{len(files)} files, {killed} killed, {len(drawn) - killed} survived; "
         f"{passed_over} known to be equivalent were not drawn"
     )
+    for stage, number in trial.killed_in.items():
+        print(f"{number} in {stage}")
     return 0 if killed == len(drawn) else 1
 
 
@@ -75,15 +83,35 @@ def _python_files(path: Path) -> list[Path]:
     return [file.resolve() for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
 
 
-def _command(options: argparse.Namespace, engine: str, pairs: int) -> list[str]:
+def _command(options: argparse.Namespace, stage: Stage) -> list[str]:
     command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
-    command += ["--traces", "4", "--pairs", str(pairs), "--seed", str(options.seed)]
-    command += ["--engine", engine]
+    command += ["--traces", "4", "--pairs", str(stage.pairs), "--seed", str(options.seed)]
     if options.time:
         command += ["--time", options.time]
     if options.without:
         command += ["--without", *options.without]
-    return command
+    return [*command, "--engine", *stage.engines]
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """One try: so many pairs of the differential test, on some engines together."""
+
+    engines: tuple[str, ...]
+    pairs: int
+
+    def __str__(self) -> str:
+        return f"{self.pairs} pairs of {' '.join(self.engines)}"
+
+
+def stages_of(engine: str, pairs: int) -> list[Stage]:
+    """What a mutant of an engine goes through until it is killed."""
+    stages = [Stage((engine,), pairs)]
+    if engine in SWITCHABLE:
+        stages.append(Stage((f"{engine}+{NEXT}", f"{engine}+{INTERRUPT}"), pairs))
+    stages.append(Stage((engine,), THOROUGH))
+    related = RELATED.get(engine, ())
+    return [*stages, Stage(related, MORE * pairs)] if related else stages
 
 
 def _changes(files: Sequence[Path], options: argparse.Namespace) -> Iterator[Mutant]:
@@ -103,7 +131,7 @@ def _executed_lines(files: Sequence[Path], options: argparse.Namespace) -> dict[
             "coverage",
             "run",
             f"--data-file={data}",
-            *_command(options, options.engine, options.pairs),
+            *_command(options, Stage((options.engine,), options.pairs)),
         ]
         subprocess.run(
             [sys.executable, *run],
@@ -146,44 +174,43 @@ class Trial:
         self.package = scratch / "src" / "rvmon"
         self.environment = _environment(scratch, scratch / "src")
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
-        self.stages = [(options.engine, options.pairs), (options.engine, THOROUGH)]
-        self.stages += [
-            (engine, MORE * options.pairs) for engine in RELATED.get(options.engine, ())
-        ]
-        self.known: dict[tuple[str, int], tuple[str, float]] = {}
+        self.stages = stages_of(options.engine, options.pairs)
+        self.killed_in: Counter[Stage] = Counter()
+        self.known: dict[Stage, tuple[list[str], float]] = {}
 
-    def _as_it_is(self, engine: str, pairs: int) -> tuple[str, float]:
-        """What an engine refuses without a change, and how many seconds the test takes."""
-        key = (engine, pairs)
-        if key not in self.known:
+    def _as_it_is(self, stage: Stage) -> tuple[list[str], float]:
+        """What engines refuse without a change, and how many seconds the test takes."""
+        if stage not in self.known:
             began = time.perf_counter()
-            verdict, refused = self._run(engine, pairs, 3_600)
-            self.known[key] = refused, time.perf_counter() - began
+            verdict, refused = self._run(stage, 3_600)
+            self.known[stage] = refused, time.perf_counter() - began
             if verdict != "survived":
-                sys.exit(f"the engine {engine} as it is does not pass the test: {verdict}")
-        return self.known[key]
+                sys.exit(f"without a change, {stage} do not pass the test: {verdict}")
+        return self.known[stage]
 
     def kills(self, mutant: Mutant) -> bool:
-        """Try a mutant, and print what became of it."""
+        """Try a mutant, and print what became of it, and in which stage."""
         place = self.package / mutant.path.relative_to(PACKAGE)
         verdict = "survived"
-        for engine, pairs in self.stages:
-            wanted, seconds = self._as_it_is(engine, pairs)
+        for number, stage in enumerate(self.stages, start=1):
+            wanted, seconds = self._as_it_is(stage)
             place.write_text(mutant.source, encoding="utf-8")
-            verdict, refused = self._run(engine, pairs, 10 + 5 * seconds)
+            verdict, refused = self._run(stage, 10 + 5 * seconds)
             shutil.copy2(mutant.path, place)
             if verdict == "survived" and refused != wanted:
                 verdict = "refuses"
             if verdict != "survived":
-                break
-        print(f"{verdict:9}  {mutant}", flush=True)
-        return verdict != "survived"
+                self.killed_in[stage] += 1
+                print(f"{verdict:9} {number}  {mutant}", flush=True)
+                return True
+        print(f"survived     {mutant}", flush=True)
+        return False
 
-    def _run(self, engine: str, pairs: int, most: float) -> tuple[str, str]:
+    def _run(self, stage: Stage, most: float) -> tuple[str, list[str]]:
         """The test on the copy: `survived`, `killed` or `hung`; how many specs were refused."""
         try:
             done = subprocess.run(
-                [sys.executable, *_command(self.options, engine, pairs)],
+                [sys.executable, *_command(self.options, stage)],
                 cwd=ROOT,
                 env=self.environment,
                 check=False,
@@ -193,9 +220,9 @@ class Trial:
                 preexec_fn=_bound_memory,
             )
         except subprocess.TimeoutExpired:
-            return "hung", ""
-        refused = [line for line in done.stdout.splitlines() if line.startswith("refused")]
-        return "killed" if done.returncode else "survived", "".join(refused)
+            return "hung", []
+        refused = re.findall(r"refused \d+", done.stdout)
+        return "killed" if done.returncode else "survived", refused
 
 
 def _environment(scratch: Path, source: Path) -> dict[str, str]:
