@@ -16,7 +16,7 @@ from handover.checker import Checker, spec_path
 from handover.driver import run_test
 from handover.generator.model_based import model_based
 from handover.generator.template import PolicyName
-from rvmon.session import load
+from rvmon.loading import load
 
 POLICIES: tuple[PolicyName, ...] = ("likely", "shortest", "fastest")
 

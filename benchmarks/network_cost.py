@@ -11,7 +11,7 @@ import random
 import sys
 import time
 
-from rvmon.session import loads
+from rvmon.loading import loads
 
 TEXT = "whenever a then F[2 s, 5 s] b"
 MILLISECOND = 1_000_000

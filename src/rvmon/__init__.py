@@ -24,8 +24,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.errors import ModelError, RvmonError, SpecError, TimeOrderError, TraceError
+    from rvmon.loading import load, loads
     from rvmon.monitor import Monitor
-    from rvmon.session import Spec, load, loads
+    from rvmon.session import Spec
     from rvmon.spec.checked import Requirement
     from rvmon.trace.sample import Sample
     from rvmon.verdict.attempt import Attempt
@@ -68,8 +69,8 @@ _HOMES = {
     "TimeOrderError": "rvmon.errors",
     "TraceError": "rvmon.errors",
     "Verdict": "rvmon.verdict.verdict",
-    "load": "rvmon.session",
-    "loads": "rvmon.session",
+    "load": "rvmon.loading",
+    "loads": "rvmon.loading",
 }
 
 

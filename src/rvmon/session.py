@@ -1,4 +1,4 @@
-"""The facade: load a specification, monitor a stream with it, evaluate a recording."""
+"""The facade: monitor a stream with a specification, evaluate a recording."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.errors import SpecError, UnknownNameError
+from rvmon.errors import UnknownNameError
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Spec:
-    """A specification that is in order; made by `load` or `loads`.
+    """A specification that is in order; made by `rvmon.load` or `rvmon.loads`.
 
     It is compiled when the first monitor is asked for, once.
 
@@ -203,6 +203,7 @@ class Spec:
         Raises:
             TraceError: a trace cannot be read; the reports before it have been given out.
 
+        >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
         >>> runs = [[(0, {"p": True})], [(0, {"p": False})]]
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
@@ -382,44 +383,3 @@ def _spec_of(checked: bytes) -> Spec:
     import pickle
 
     return Spec(pickle.loads(checked))  # noqa: S301 - from the process that began this one
-
-
-def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
-    """Load a specification file.
-
-    Args:
-        path: a `.rv` file, UTF-8.
-        const: constants to override, by name, as text of the language (`{"T": "2 s"}`).
-
-    Raises:
-        SpecError: the file cannot be read or is wrong; carries all diagnostics, rendered.
-    """
-    path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise SpecError((), f"error: {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise SpecError((), f"error: {path}: not UTF-8 text: is this a binary file?") from None
-    return _compile(text, str(path), const, path.parent)
-
-
-def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None = None) -> Spec:
-    """Load a specification from its text.
-
-    Args:
-        text: the specification.
-        name: what messages call it.
-        const: constants to override, by name, as text of the language.
-
-    Raises:
-        SpecError: the text is wrong; carries all diagnostics, rendered.
-    """
-    return _compile(text, name, const, None)
-
-
-def _compile(text: str, name: str, const: Mapping[str, str] | None, directory: Path | None) -> Spec:
-    from rvmon.spec import compile_text
-
-    checked, warnings = compile_text(text, name=name, constants=const, directory=directory)
-    return Spec(checked, warnings)

@@ -22,8 +22,9 @@ from handover.campaign.summary import CampaignSummary
 from handover.campaign.text import print_summary
 from handover.campaign.write_pages import REPORT, write_pages
 from rvmon.errors import UnknownNameError
+from rvmon.loading import load
 from rvmon.report.folder import made
-from rvmon.session import Spec, load
+from rvmon.session import Spec
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from handover.checker import Checker
 from handover.collector.meter import StatementMeter
 from handover.driver import run_test
 from handover.driver.draws import draw
-from rvmon.session import load
+from rvmon.loading import load
 
 
 @dataclass(frozen=True, slots=True)

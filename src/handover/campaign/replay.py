@@ -16,8 +16,9 @@ from handover.driver import run_test
 from handover.driver.run import Run
 from handover.generator.abstract_test import AbstractTest
 from handover.generator.files import load as load_test
+from rvmon.loading import load
 from rvmon.report.folder import made
-from rvmon.session import Spec, load
+from rvmon.session import Spec
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 

@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.codegen.c_build import built
     from rvmon.codegen.c_program import program_source
     from rvmon.codegen.c_source import c_files
-    from rvmon.session import load
+    from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = None

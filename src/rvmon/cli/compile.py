@@ -44,7 +44,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Generate and write, and return the exit code."""
     from rvmon.cli.constants import constants_of
-    from rvmon.session import load
+    from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = None if arguments.only is None else [name.strip() for name in arguments.only.split(",")]

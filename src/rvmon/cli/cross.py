@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from rvmon.cli.constants import constants_of
-    from rvmon.session import load
+    from rvmon.loading import load
     from rvmon.testing.case import Case
     from rvmon.testing.cross import crossings
 

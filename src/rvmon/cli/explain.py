@@ -51,8 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
         print(code_list() if listed else page_of(arguments.subject), end="")
         return 0
     from rvmon.cli.constants import constants_of
+    from rvmon.loading import load
     from rvmon.monitor import compile_spec
-    from rvmon.session import load
 
     spec = load(arguments.subject, const=constants_of(arguments.const))
     ids = _ids(arguments.ids, spec)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.progress import shown_while_reading
 from rvmon.errors import TraceError
+from rvmon.loading import load
 from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
 from rvmon.readers.recording import FileRecording
-from rvmon.session import Spec, load
+from rvmon.session import Spec
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds

@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Judge, show, and return the exit code."""
     from rvmon.cli.constants import constants_of
     from rvmon.cli.judging import Options, judge_all
-    from rvmon.session import load
+    from rvmon.loading import load
 
     constants = constants_of(arguments.const)
     spec = load(arguments.spec, const=constants)

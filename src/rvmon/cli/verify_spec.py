@@ -20,7 +20,7 @@ def check_spec(
     network: Network, arguments: argparse.Namespace, budget: Budget, watch: Watch | None
 ) -> int:
     """Decide, show, and return the exit code."""
-    from rvmon.session import load
+    from rvmon.loading import load
     from rvmon.timed.describe import observation_data
     from rvmon.timed.observe import observe
 

@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.cli.judging import in_order
     from rvmon.explain.dissect import dissect
     from rvmon.explain.miss import nearest_miss
-    from rvmon.session import load
+    from rvmon.loading import load
     from rvmon.trace.time import ticks_of_seconds
 
     if arguments.trace == "-":

@@ -1,0 +1,50 @@
+"""Specifications from files and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from rvmon.errors import SpecError
+from rvmon.session import Spec
+
+
+def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
+    """Load a specification file.
+
+    Args:
+        path: a `.rv` file, UTF-8.
+        const: constants to override, by name, as text of the language (`{"T": "2 s"}`).
+
+    Raises:
+        SpecError: the file cannot be read or is wrong; carries all diagnostics, rendered.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise SpecError((), f"error: {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise SpecError((), f"error: {path}: not UTF-8 text: is this a binary file?") from None
+    return _compile(text, str(path), const, path.parent)
+
+
+def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None = None) -> Spec:
+    """Load a specification from its text.
+
+    Args:
+        text: the specification.
+        name: what messages call it.
+        const: constants to override, by name, as text of the language.
+
+    Raises:
+        SpecError: the text is wrong; carries all diagnostics, rendered.
+    """
+    return _compile(text, name, const, None)
+
+
+def _compile(text: str, name: str, const: Mapping[str, str] | None, directory: Path | None) -> Spec:
+    from rvmon.spec import compile_text
+
+    checked, warnings = compile_text(text, name=name, constants=const, directory=directory)
+    return Spec(checked, warnings)
