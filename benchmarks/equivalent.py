@@ -26,10 +26,6 @@ EQUIVALENT = {
     "`requirement.for_each is not None`": (
         "what came before is replayed where going on from now would do"
     ),
-    "python_intake.py and/or: `place in self.instant and leaf is not None` => "
-    "`place in self.instant or leaf is not None`": (
-        "the last signal to be taken sees what the leaf will be; history marks it anyway"
-    ),
     "past.py dropped operand: `value is None or isinstance(value, str)` => `value is None`": (
         "nothing is computed with labels: the checker refuses it"
     ),
@@ -59,10 +55,6 @@ EQUIVALENT = {
     ),
     "residual.py and/or: `left == right or right == HOLDS` => `left == right and right == HOLDS`": (
         "only a short cut to what the reduction finds"
-    ),
-    "build.py and/or: `engine not in _GENERATED or not any((can_generate(one) for one in chosen))` "
-    "=> `engine not in _GENERATED and (not any((can_generate(one) for one in chosen)))`": (
-        "another form of the same automaton is run"
     ),
     "numbers.py dropped operand: `slot.updates == 2 and slot.value is not None` => "
     "`slot.value is not None`": "after one update there is no value before it anyway",

@@ -1,0 +1,37 @@
+"""The command of the differential test: which engines, which figures."""
+
+from __future__ import annotations
+
+import pytest
+from benchmarks.differential import main, parse
+from benchmarks.mutants import stages_of
+
+
+def test_several_engines_share_the_cases(capsys: pytest.CaptureFixture[str]) -> None:
+    """Each engine, and each way of driving it, has its own count of refusals and disagreements."""
+    engines = ["--engine", "automaton", "network", "file", "--interrupt", "--next"]
+    assert main([*engines, "--pairs", "24", "--traces", "4", "--online-every", "6"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    figures = [line.split() for line in lines if " judged " in line]
+    names = ["automaton", "network", "file", "automaton+next", "network+next"]
+    assert [words[0] for words in figures] == [*names, "automaton+interrupt", "network+interrupt"]
+    counts = {words[0]: (int(words[2][:-1]), int(words[4][:-1])) for words in figures}
+    assert all(sum(count) == 24 for count in counts.values())
+    assert counts["network"] == counts["network+next"] == (24, 0)
+    assert counts["file"][1] >= counts["automaton"][1]
+    assert all(words[-1] == "0" for words in figures)
+
+
+@pytest.mark.parametrize("name", ["abacus", "c+next", "network+later", "+next"])
+def test_an_engine_that_does_not_exist(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is named, with those that there are."""
+    with pytest.raises(SystemExit):
+        parse(["--engine", name])
+    assert f"no form `{name}`: there are auto, " in capsys.readouterr().err
+
+
+def test_stages_of_a_mutant() -> None:
+    """Only engines that a monitor can be asked for are driven in other ways."""
+    ways = [stage.engines for stage in stages_of("network", 100)]
+    assert ways == [("network",), ("network+next", "network+interrupt"), ("network",), ("auto",)]
+    assert [stage.engines for stage in stages_of("c", 100)] == [("c",), ("c",)]
