@@ -29,7 +29,7 @@ from rvmon.testing.generate_trace import TraceProfile
 PART = 10
 """Specifications that a worker takes at a time."""
 
-FIGURES = ("pairs", "refused", "attempts", "disagreements")
+FIGURES = ("pairs", "refused", "disagreements")
 
 Judge = Callable[[list[str]], "Counter[str]"]
 
@@ -46,7 +46,6 @@ def stepped(engine: str, each: int, seeds: list[str]) -> Counter[str]:
     return Counter(
         pairs=tally.pairs,
         refused=tally.refused,
-        attempts=sum(tally.attempts.values()),
         disagreements=len(tally.disagreements),
     )
 
@@ -105,10 +104,7 @@ def main(argv: Sequence[str]) -> int:
             began = time.perf_counter()
             with ProcessPoolExecutor(options.workers) as pool:
                 found = judge_form(FORMS[form](options.each), options, pool)
-            figures = ", ".join(
-                f"{name} {found[name]}"
-                for name in ("pairs", "refused", "attempts", "disagreements")
-            )
+            figures = ", ".join(f"{name} {found[name]}" for name in FIGURES)
             print(f"{form:16} {figures}, {time.perf_counter() - began:.0f} s", flush=True)
             wrong += found["disagreements"]
     return 1 if wrong else 0

@@ -97,7 +97,11 @@ class BatchLibrary:
         self.names = Names(plan)
         self.plan = plan
         made = c_files(plan)
-        flags = [*(("-O3", NATIVE) if optimised else ("-O0",)), "-shared", "-fPIC"]
+        flags = [
+            *(("-O3", "-fno-math-errno", NATIVE) if optimised else ("-O0",)),
+            "-shared",
+            "-fPIC",
+        ]
         path = built(made.texts, [f"{made.prefix}_batch.c"], ".so", flags)
         library = ctypes.CDLL(str(path))
         address, number = ctypes.c_void_p, ctypes.c_int64

@@ -15,6 +15,7 @@ from rvmon.spec.checked import (
     BoundAtom,
     Captured,
     Compare,
+    CompareOp,
     Constant,
     EventAtom,
     FieldValue,
@@ -30,6 +31,14 @@ from rvmon.spec.checked import (
 )
 
 _INFIX = {NumericOp.ADD: "+", NumericOp.SUB: "-", NumericOp.MUL: "*", NumericOp.DIV: "/"}
+_COMPARISONS = {
+    CompareOp.LT: "less",
+    CompareOp.LE: "at_most",
+    CompareOp.EQ: "equals",
+    CompareOp.NE: "differs",
+    CompareOp.GE: "at_least",
+    CompareOp.GT: "more",
+}
 _LIBRARY = {NumericOp.SQRT: "sqrt", NumericOp.HYPOT: "hypot"}
 
 
@@ -126,13 +135,9 @@ def _probe(names: Names, probe: Probe, name: str) -> str:
 
 
 def _comparison(names: Names, leaf: Compare) -> str:
+    """A call: each side is worked out once."""
     left, right = _number(names, leaf.left), _number(names, leaf.right)
-    known = " && ".join(
-        f"({text} == {text})"
-        for side, text in ((leaf.left, left), (leaf.right, right))
-        if not isinstance(side, Literal)
-    )
-    return f"truth_of({known or 'true'}, {left} {leaf.op.value} {right})"
+    return f"{_COMPARISONS[leaf.op]}({left}, {right})"
 
 
 def _over_occurrences(names: Names, leaf: Compare, events: Sequence[str]) -> Iterator[str]:
