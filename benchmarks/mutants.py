@@ -13,6 +13,7 @@ no behaviour, for the reason given there; others are drawn in their place. Exits
 from __future__ import annotations
 
 import argparse
+import compileall
 import os
 import random
 import re
@@ -174,6 +175,8 @@ class Trial:
         self.package = scratch / "src" / "rvmon"
         self.environment = _environment(scratch, scratch / "src")
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
+        # A changed file is newer than what was compiled, and what is compiled then is not kept.
+        compileall.compile_dir(self.package, quiet=2)
         self.stages = stages_of(options.engine, options.pairs)
         self.killed_in: Counter[Stage] = Counter()
         self.known: dict[Stage, tuple[list[str], float]] = {}
