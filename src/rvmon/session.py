@@ -231,8 +231,16 @@ class Spec:
         engine: str = "auto",
         only: Iterable[str] | None = None,
         until: float | None = None,
+        cut: bool = False,
     ) -> Report | None:
         """Judge a CSV or Parquet file by its columns, a block at a time; see `evaluate`.
+
+        Args:
+            path: as `evaluate` takes it; so are the others.
+            engine: `auto` or the name of one.
+            only: ids of the requirements.
+            until: the end of the trace in seconds.
+            cut: whether rows behind that end are left out, too.
 
         Returns:
             `None` where rows have to be read and judged one by one.
@@ -246,6 +254,7 @@ class Spec:
             only=None if only is None else tuple(only),
             engine=engine,
             until=None if until is None else ticks_of_seconds(until),
+            cut=cut,
         )
 
     def _evaluate_arrays(
@@ -254,7 +263,7 @@ class Spec:
         """The fast way for NumPy arrays and Arrow tables; `None` where it does not lead."""
         if not (hasattr(trace, "column_names") or isinstance(trace, Mapping)):
             return None
-        from rvmon.monitor.batch import arrays_of, evaluate_plain, in_order
+        from rvmon.monitor.batch import FEW_ROWS, arrays_of, evaluate_plain, in_order
 
         arrays = arrays_of(trace, self.checked, time)
         if arrays is None:
@@ -275,6 +284,7 @@ class Spec:
             only=only,
             engine=engine,
             until=until,
+            short=len(times) < FEW_ROWS,
         )
 
     def robustness(

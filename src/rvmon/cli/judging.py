@@ -119,8 +119,10 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         end = None if options.until is None else ticks_of_seconds(options.until)
         report = None
         meter = None
-        if end is None and not options.robustness:
-            report = spec.evaluate_file(trace, engine=options.engine, only=options.only)
+        if not options.robustness:
+            report = spec.evaluate_file(
+                trace, engine=options.engine, only=options.only, until=options.until, cut=True
+            )
         if report is None:
             samples = _up_to(end, shown_while_reading(recording), ordered=ordered)
             if options.robustness:

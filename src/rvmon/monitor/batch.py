@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     Block = tuple[NDArray[np.int64], Columns]
 
+FEW_ROWS = 1000
+"""So many rows are judged sooner one by one than by arrays."""
+
 _BY_COLUMNS = ("auto", "python")
 """Engines that leave it open how generated tables are looked up."""
 
@@ -102,6 +105,7 @@ def evaluate_plain(
     only: Sequence[str] | None,
     engine: str,
     until: int | None,
+    short: bool = False,
 ) -> Report | None:
     """Judge columns by arrays or, where these do not do, the rows that matter as samples.
 
@@ -112,6 +116,7 @@ def evaluate_plain(
         only: ids of the requirements; default all.
         engine: `auto` or the name of one that judges samples.
         until: the end of the trace in ticks, if after its last row.
+        short: whether rows are so few that making arrays of them costs more than it saves.
 
     Returns:
         `None` if samples may be put in another order.
@@ -120,7 +125,7 @@ def evaluate_plain(
         return None
     chosen = [name for name in compiled.requirements if only is None or name in only]
     by_arrays = None
-    if engine in _BY_COLUMNS:
+    if engine in _BY_COLUMNS and not short:
         by_arrays = columns_judge(compiled, chosen, frozenset(names))
     if by_arrays is not None:
         rest = [name for name in chosen if name not in by_arrays.ids]

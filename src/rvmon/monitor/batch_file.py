@@ -50,6 +50,7 @@ def evaluate_file(
     only: Sequence[str] | None,
     engine: str,
     until: int | None = None,
+    cut: bool = False,
 ) -> Report | None:
     """Judge a recording by its columns; memory does not grow with its length.
 
@@ -60,6 +61,7 @@ def evaluate_file(
         only: ids of the requirements; default all.
         engine: `auto`, `c` or the name of one that judges samples.
         until: the end of the trace in ticks, if after its last row.
+        cut: whether rows behind that end are left out.
 
     Returns:
         `None` where rows have to be read and judged one by one: the file is not plain, or each row
@@ -71,7 +73,8 @@ def evaluate_file(
     fillable = _fillable(compiled, only)
 
     def read() -> Iterator[_Block]:
-        return ((block.times, block.columns) for block in reader(path, schema, fillable))
+        found = ((block.times, block.columns) for block in reader(path, schema, fillable))
+        return found if until is None or not cut else _up_to(until, found)
 
     try:
         begun = read()
@@ -87,3 +90,12 @@ def evaluate_file(
         return evaluate_plain(compiled, names, blocks, only=only, engine=engine, until=until)
     except (NotPlainError, StopIteration):
         return None
+
+
+def _up_to(end: int, blocks: Iterator[_Block]) -> Iterator[_Block]:
+    """The rows up to an instant."""
+    for times, columns in blocks:
+        rows = int(times.searchsorted(end, "right"))
+        yield times[:rows], {name: column[:rows] for name, column in columns.items()}
+        if rows < len(times):
+            return

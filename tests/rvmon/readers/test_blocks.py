@@ -47,13 +47,26 @@ def csv_text(seed: int, rows: int = 2000) -> str:
     return "\n".join(lines) + "\n"
 
 
-def by_rows(spec: rvmon.Spec, path: Path) -> rvmon.Report:
-    """The report of the slow way."""
+def by_rows(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Report:
+    """The report of the slow way, on the samples up to an instant."""
     recording = spec.recording(path)
     monitor = spec.monitor(sources=recording.names)
     for sample in recording:
-        monitor.step_ns(sample.t, sample.values)
-    return monitor.finish_ns(None)
+        if end is None or sample.t <= end:
+            monitor.step_ns(sample.t, sample.values)
+    return monitor.finish_ns(end)
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton"])
+@pytest.mark.parametrize("time", ["held", "sampled"])
+@pytest.mark.parametrize("end", [0.1, 31.4, 120.0, 9999.0])
+def test_a_file_can_be_cut(end, time, engine, tmp_path, monkeypatch):
+    """Rows behind an instant are left out, wherever it lies in a block."""
+    monkeypatch.setattr(module, "BLOCK", 1999)
+    (tmp_path / "a.csv").write_text(csv_text(3))
+    spec = rvmon.loads(SPEC.format(time=time, stale=""))
+    report = spec.evaluate_file(tmp_path / "a.csv", engine=engine, until=end, cut=True)
+    assert report == by_rows(spec, tmp_path / "a.csv", round(end * 1e9))
 
 
 @pytest.mark.parametrize("stale", ["", "stale after 300 ms"])

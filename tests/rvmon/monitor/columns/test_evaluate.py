@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rvmon
+from rvmon.monitor import batch
 from rvmon.monitor.batch import evaluate_plain
 from rvmon.monitor.columns import drive
 from rvmon.monitor.columns.records import JudgedAttempts
@@ -116,9 +117,19 @@ def test_attempts_are_a_sequence_and_survive_a_pickle():
 def test_whole_numbers_beyond_doubles_are_judged_one_by_one():
     """What arrays would round is left to Python's own numbers."""
     spec = rvmon.loads("spec s\nsignal n : int\nrequirement R1\n  always n > 9007199254740992\n")
-    columns = {"t": np.arange(2.0), "n": np.array([2**53 + 1, 2**53])}
+    columns = {"t": np.arange(2000.0), "n": np.repeat([2**53 + 1, 2**53], 1000)}
     report = spec.evaluate(columns)
-    assert [attempt.decided for attempt in report.attempts] == [1_000_000_000]
+    assert [attempt.decided for attempt in report.attempts] == [1_000_000_000_000]
+
+
+def test_few_rows_are_judged_as_many_are():
+    """The report is the same on both sides of the number from which on arrays are used."""
+    spec = rvmon.loads(SPEC.format(time="held"))
+    for rows in (batch.FEW_ROWS - 1, batch.FEW_ROWS):
+        columns = recording(4, rows)
+        report = spec.evaluate(columns, time="t_ns")
+        assert isinstance(report.attempts, JudgedAttempts) is (rows == batch.FEW_ROWS)
+        assert report == of_a_monitor(spec, columns, int(columns["t_ns"][-1]))
 
 
 @pytest.mark.parametrize("end", [None, 5.0])
