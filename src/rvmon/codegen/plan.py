@@ -23,6 +23,8 @@ class PlannedRule:
         automaton: judges its attempts; `None` if there is none, which only a monitor in this
             process can do without.
         in_runs: whether its open attempts are kept in runs.
+        noted: the formulas of which a record of a decision notes the values; `None`: no records
+            are kept.
     """
 
     requirement: Requirement
@@ -30,6 +32,7 @@ class PlannedRule:
     alphabet: Alphabet
     automaton: Automaton | None
     in_runs: bool = False
+    noted: tuple[State, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

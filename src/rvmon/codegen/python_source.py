@@ -17,6 +17,7 @@ from rvmon.codegen.python_nodes import (
 from rvmon.codegen.python_visit import VisitWriter, indented
 from rvmon.codegen.runtime.solo import only_location
 from rvmon.codegen.tables import tables_of
+from rvmon.formula.state import State
 from rvmon.spec.checked import Compare, Mode, ProbeAtom, SignalAtom
 from rvmon.spec.printer import format_formula
 
@@ -90,6 +91,20 @@ class _Writer:
                 yield "    return worse, better"
             yield ""
             yield ""
+            if rule.noted is not None:
+                yield from self._noted(index, rule, rule.noted)
+
+    def _noted(self, index: int, rule: PlannedRule, noted: Sequence[State]) -> Iterator[str]:
+        """What a record keeps: values, then since when and until when they were other ones."""
+        index_of = self.plan.graph.index
+        places = [index_of[state] for state in rule.alphabet.propositions]
+        kept = [f"v[{index_of[state]}]" for state in noted if state in index_of]
+        kept += [f"v[{place}]" for place in places] + [f"since[{place}]" for place in places]
+        kept += [f"until[{3 * place + truth}]" for place in places for truth in (0, 2)]
+        yield f"def noted{index}(v, since, until):"
+        yield f"    return {_tuple(kept)}"
+        yield ""
+        yield ""
 
     def _constants(self) -> Iterator[str]:
         plan, roles, nodes = self.plan, self.roles, self.plan.graph.nodes
@@ -120,6 +135,8 @@ class _Writer:
         yield f"MEMORY = {tuple(memory_before(state) for state in nodes)!r}"
         yield f"MARKED = {marked!r}"
         yield f"HISTORIES = {histories!r}"
+        if all(rule.noted is not None for rule in plan.rules):
+            yield f"NOTED = {_tuple(f'noted{index}' for index in range(len(plan.rules)))}"
         yield "RULES = ("
         for index, (rule, judge) in enumerate(zip(plan.rules, self.judges, strict=True)):
             yield f"    ({judge}, letters{index}, {self._trigger(rule)}),  # {rule.requirement.id}"

@@ -75,6 +75,7 @@ def plan_requirements(
                 one.alphabet,
                 automaton,
                 one.in_runs(automaton),
+                tuple(leaf for leaf, _ in one.leaves) if explained else None,
             )
             for one in requirements
             for automaton in (_planned(one, explained),)
@@ -181,7 +182,8 @@ class GeneratedLanes(Lanes):
         self.unit = unit
         self._counts = [0] * len(forms.requirements)
         self._seats = [
-            Seat(one, forms.plan, unit, ledger, self._counts) for one in forms.requirements
+            Seat(one, forms.plan, unit, ledger, self._counts, noted)
+            for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
         unit.restart(self, self._seats)
         for index, one in enumerate(forms.requirements):

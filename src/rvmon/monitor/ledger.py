@@ -34,7 +34,7 @@ class Ledger:
         self._counts: dict[str, int] = {}
         self._started: list[tuple[int, int, Bench, Open]] = []
         self._decided: list[tuple[Bench, Open, Attempt]] = []
-        self._told: list[tuple[int, Attempt]] = []
+        self._told: list[tuple[int, int, int, Attempt]] = []
 
     def started(self, instance: int, judge: Bench, attempt: Open) -> None:
         """Take a new attempt, to be numbered by its trigger and the rank of its instance."""
@@ -56,7 +56,7 @@ class Ledger:
 
     def told(self, rank: int, record: Attempt) -> None:
         """Take a decision with its record, of a requirement by its place in the file."""
-        self._told.append((rank, record))
+        self._told.append((record.decided or 0, rank, record.number, record))
 
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
@@ -94,20 +94,19 @@ class Ledger:
         if not self._decided:
             if not self._told:
                 return ()
-            if len(self._told) == 1:
-                [(_, record)] = self._told
-                self._told.clear()
-                self.attempts.append(record)
-                return [record]
-        made, self._told = self._told, []
-        made += [
-            (judge.compiled.rank, replace(record, number=attempt.number))
-            for judge, attempt, record in self._decided
-        ]
-        self._decided.clear()
-        if len(made) > 1:
+            # No two are of one instant, requirement and number: no records are compared.
+            self._told.sort()
+            records = [record for *_, record in self._told]
+        else:
+            made = [(rank, record) for _, rank, _, record in self._told]
+            made += [
+                (judge.compiled.rank, replace(record, number=attempt.number))
+                for judge, attempt, record in self._decided
+            ]
+            self._decided.clear()
             made.sort(key=lambda entry: _order(*entry))
-        records = [record for _, record in made]
+            records = [record for _, record in made]
+        self._told.clear()
         self.attempts += records
         return records
 

@@ -21,6 +21,7 @@ from rvmon.verdict.verdict import Verdict
 _PASS, _FAIL = Verdict.PASS, Verdict.FAIL
 
 Pick = Callable[[list[Any]], tuple[Any, ...]]
+Noted = Callable[[list[int], list[int], list[int | None]], tuple[Any, ...]]
 
 
 class Seat(Witness):
@@ -32,6 +33,8 @@ class Seat(Witness):
         unit: judges it.
         ledger: takes the records.
         counts: of the attempts of all requirements.
+        noted: gives what a record keeps: the values of what is read and owed, then since when and
+            until when these were other ones.
     """
 
     def __init__(
@@ -41,16 +44,14 @@ class Seat(Witness):
         unit: Unit,
         ledger: Ledger,
         counts: list[int],
+        noted: Noted,
     ) -> None:
         super().__init__(compiled, plan, ledger)
         self._unit = unit
         self._told = ledger.told
         self._counts = counts
-        leaves, places = self.leaves, self.places
-        self._seen_of = _picking(leaves)
-        self._values_of = _picking((*leaves, *places))
-        self._since_of = _picking(places)
-        self._until_of = _picking(tuple(3 * place + truth for place in places for truth in (0, 2)))
+        self._seen_of = _picking(self.leaves)
+        self._noted = noted
         self._id = compiled.requirement.id
         self._rank = compiled.rank
         self._upon_end = compiled.obligation.trigger is None
@@ -130,9 +131,7 @@ class Seat(Witness):
                 # One flat tuple, which costs the collector of garbage next to nothing.
                 (
                     *(seen, t, before, rule.letter, rule.other, rule.position),
-                    *self._values_of(unit.v),
-                    *self._since_of(unit.since),
-                    *self._until_of(unit.until),
+                    *self._noted(unit.v, unit.since, unit.until),
                 ),
             ),
         )

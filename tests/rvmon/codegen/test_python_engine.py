@@ -5,6 +5,7 @@ from collections import UserDict
 import pytest
 
 import rvmon
+from rvmon.codegen import python_nodes, python_visit
 from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
@@ -32,6 +33,18 @@ def test_the_oracle_agrees(known):
         Maker("python"), seeds, profile, TraceProfile(unknowns=not known), online_every=5
     )
     assert tally.pairs == 150
+    assert not tally.disagreements, tally.disagreements[0]
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_the_oracle_agrees_where_formulas_are_many(monkeypatch, known):
+    """As above, with the code that is written where there are too many to look at one by one."""
+    monkeypatch.setattr(python_visit, "_STRAIGHT", 0)
+    monkeypatch.setattr(python_nodes, "_WATCHED", 0)
+    seeds = [f"many/{known}/{number}" for number in range(100)]
+    profile = Profile(mixed=False)
+    tally = campaign(Maker("python"), seeds, profile, TraceProfile(unknowns=not known))
+    assert tally.pairs == 100
     assert not tally.disagreements, tally.disagreements[0]
 
 

@@ -9,7 +9,6 @@ from rvmon.codegen.runtime.table import (
     BARE,
     FAILED,
     FRESH,
-    HELD,
     NEVER,
     PASSED,
     next_cut,
@@ -128,8 +127,13 @@ class Rule:
 
     def begin_alone(self, t: int, triggered: int) -> None:
         """Start an attempt that is driven by itself, at the position visited last."""
-        attempt = self.clerk.opened(self, triggered, self.machine.start)
-        due = self.stepped(attempt, t)
+        machine = self.machine
+        attempt = self.clerk.opened(self, triggered, machine.start)
+        if self.moves is None or self.letter != self.other:
+            due = self.stepped(attempt, t)
+        else:
+            move = self.moves[machine.class_of[self.letter]][machine.start[0]][0]
+            due = NEVER if move is None else self._go(attempt, move, t)
         if due is not None:
             self.attempts.append(attempt)
             if due < self.due:
@@ -150,10 +154,28 @@ class Rule:
         if not attempts:
             self.due = NEVER
             return
+        if self.moves is None or self.letter != self.other:
+            self._step_all(t)
+            return
+        machine = self.machine
+        moves = self.moves[machine.class_of[self.letter]]
         kept = []
         due = NEVER
         for attempt in attempts:
-            own = self.stepped(attempt, t)
+            location, anchors = attempt.token
+            own: int | None = NEVER
+            if attempt.better is not None:
+                own = self.stepped(attempt, t)
+            elif anchors:
+                cuts = machine.cuts_of[location][0]
+                region = bisect_right(cuts, t - anchors[0])
+                move = moves[location][region]
+                if move is not None:
+                    own = self._go(attempt, move, t)
+                elif region < len(cuts):
+                    own = anchors[0] + cuts[region]
+            elif moves[location][0] is not None:
+                own = self._go(attempt, moves[location][0], t)
             if own is not None:
                 kept.append(attempt)
                 if own < due:
@@ -162,50 +184,45 @@ class Rule:
             self.attempts = kept
         self.due = due
 
+    def _step_all(self, t: int) -> None:
+        kept = []
+        due = NEVER
+        for attempt in self.attempts:
+            own = self.stepped(attempt, t)
+            if own is not None:
+                kept.append(attempt)
+                if own < due:
+                    due = own
+        self.attempts = kept
+        self.due = due
+
     def stepped(self, attempt: Any, t: int) -> int | None:
         """Step an attempt at the position `t`; returns when it is due, `None` if it was decided."""
         if attempt.better is None and self.letter == self.other:
             before = attempt.token
-            if self.moves is not None:
-                return self._quick(attempt, before, t)
             token, due = self._step(before, self.letter, t)
             return self._moved(attempt, before, token, due)
         return self._both(attempt, lambda token, letter: self._step(token, letter, t))
 
-    def _quick(self, attempt: Any, before: Token, t: int) -> int | None:
-        """As `_step`, by the moves of an automaton with one clock at most."""
-        machine = self.machine
-        location, anchors = before
-        kind = machine.class_of[self.letter]
-        if anchors:
-            cuts = machine.cuts_of[location][0]
-            region = bisect_right(cuts, t - anchors[0])
-            target, how, leads_on = self.moves[location][region][kind]
-            if how == HELD:
-                return anchors[0] + cuts[region] if region < len(cuts) else NEVER
-        else:
-            target, how, leads_on = self.moves[location][0][kind]
-            if how == HELD:
-                return NEVER
+    def _go(self, attempt: Any, move: Any, t: int) -> int | None:
+        """As `stepped`, by a move of `rvmon.codegen.runtime.table.moves_of`."""
+        target, how, leads_on = move
         if target <= PASSED:
-            self.clerk.decided(self, attempt, target == PASSED, t, before)
+            self.clerk.decided(self, attempt, target == PASSED, t, attempt.token)
             return None
+        machine = self.machine
         if how == BARE:
             attempt.token = machine.bare[target]
-            due = NEVER
-        elif how == FRESH:
-            attempt.token = (target, (t,))
-            cuts = machine.cuts_of[target][0]
-            due = t + cuts[0] if cuts else NEVER
         else:
-            attempt.token = (target, anchors)
-            due = next_cut(machine, attempt.token, t)
+            token = attempt.token = (target, (t,) if how == FRESH else attempt.token[1])
             if leads_on is None:
-                leads_on = not machine.stays(attempt.token, t, self.letter)
+                leads_on = not machine.stays(token, t, self.letter)
+            if not leads_on:
+                return next_cut(machine, token, t)
         if leads_on:
             self.restless = True
             return t + 1
-        return due
+        return NEVER
 
     def _step(self, token: Token, letter: int, t: int) -> tuple[Token, int]:
         moved = self.machine.step(token, t, letter)

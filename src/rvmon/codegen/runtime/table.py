@@ -111,41 +111,41 @@ class Table:
         )
 
 
-HELD, BARE, FRESH, KEPT = 0, 1, 2, 3
-"""How a token of one clock at most moves: not at all; to a location without a clock; to one whose
-clock is started now; to another location with its clock."""
+BARE, FRESH, KEPT = 0, 1, 2
+"""How a token of one clock at most moves: to a location without a clock; to one whose clock is
+started now; to another location with its clock."""
 
 Move = Any
-"""Target, how the token moves, and whether the same letter would lead on from there; `None` if
-that depends on the age."""
+"""Target, how the token moves, and whether the same letter would lead on from there (`None` if
+that depends on the age); `None` if it stays as it is."""
 
 
 def moves_of(table: Table) -> list[list[list[Move]]]:
     """What each edge of an automaton with one clock at most does, worked out before.
 
     Returns:
-        Per location, region and class of letters the move; `None` where no run comes.
+        Per class of letters, location and region the move.
     """
-    found = []
-    for location, cuts in enumerate(table.cuts_of):
-        count = len(cuts[0]) + 1 if cuts else 1
-        stride = table.strides[location][0] if cuts else 0
-        rows = [table.rows[table.bases[location] + region * stride] for region in range(count)]
-        found.append(
-            [[_move(table, location, kind, edge) for kind, edge in enumerate(row)] for row in rows]
-        )
-    return found
+    return [
+        [_moves(table, location, kind) for location in range(len(table.bases))]
+        for kind in range(1 + max(table.class_of))
+    ]
+
+
+def _moves(table: Table, location: int, kind: int) -> list[Move]:
+    return [_move(table, location, kind, edge) for edge in _edges(table, location, kind)]
 
 
 def _move(table: Table, location: int, kind: int, edge: Any) -> Move:
-    if edge is None:
+    if edge is None:  # no run comes here
         return None
     target, sources = edge
     if target <= PASSED:
         return target, BARE, False
     if target == location and sources == table.kept[len(table.cuts_of[location])]:
-        return target, HELD, False
-    loops = _loops_of(table, target, kind)
+        return None
+    stays = (target, table.kept[len(table.cuts_of[target])])
+    loops = [edge == stays for edge in _edges(table, target, kind)]
     if not sources:
         return target, BARE, not loops[0]
     if sources[0] < 0:
@@ -153,13 +153,12 @@ def _move(table: Table, location: int, kind: int, edge: Any) -> Move:
     return target, KEPT, not loops[0] if len(set(loops)) == 1 else None
 
 
-def _loops_of(table: Table, location: int, kind: int) -> list[bool]:
-    """Per region of a location, whether a token there stays as it is under a letter."""
+def _edges(table: Table, location: int, kind: int) -> list[Any]:
+    """The edges of a location under a letter, by region."""
     cuts = table.cuts_of[location]
     count = len(cuts[0]) + 1 if cuts else 1
     stride = table.strides[location][0] if cuts else 0
-    edges = [table.rows[table.bases[location] + region * stride][kind] for region in range(count)]
-    return [edge is not None and edge == (location, table.kept[len(cuts)]) for edge in edges]
+    return [table.rows[table.bases[location] + region * stride][kind] for region in range(count)]
 
 
 def letter_table(worse: Sequence[Sequence[int]], better: Sequence[Sequence[int]]) -> list[Any]:

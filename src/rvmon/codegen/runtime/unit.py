@@ -53,6 +53,8 @@ class Unit(Nodes):
         "rules",
     )
 
+    NOTED: tuple[Callable[[list[int], list[int], list[int | None]], tuple[Any, ...]], ...]
+    """Per requirement, where records are kept: what they note of `v`, `since` and `until`."""
     RULES: tuple[tuple[type[Rule], Callable[[list[int]], tuple[int, int]], int, bool, bool], ...]
     """Per requirement: what judges it, its letters, the node of its trigger, pulse, episodic."""
 
@@ -145,19 +147,26 @@ class Unit(Nodes):
         """Have the position judged by those whom it concerns."""
         self.awaited = NEVER
         letters = (letters | self.restless) & self.active
-        dues = self.dues
+        dues, due_at = self.dues, self.due_at
         while dues and dues[0][0] <= t:
             due, index = heappop(dues)
-            if self.due_at[index] == due:
-                self.due_at[index] = NEVER
+            if due_at[index] == due:
+                due_at[index] = NEVER
                 letters |= 1 << index & self.active
         rules = self.rules
         while letters:
             bit = letters & -letters
             letters ^= bit
-            rule = rules[bit.bit_length() - 1]
+            index = bit.bit_length() - 1
+            rule = rules[index]
             rule.visit(t)
-            self.note(rule)
+            if (
+                rule.restless
+                or self.restless
+                or rule.due != due_at[index]
+                or not (rule.attempts or rule.runs)
+            ):
+                self.note(rule)
         triggers |= self.repeating
         while triggers:
             bit = triggers & -triggers
@@ -216,12 +225,19 @@ class Unit(Nodes):
     def note(self, rule: Rule) -> None:
         """Note when a requirement is due, and whether it has to be asked at the next position."""
         bit = 1 << rule.index
-        self.active = self.active | bit if rule.attempts or rule.runs else self.active & ~bit
-        self.restless = self.restless | bit if rule.restless else self.restless & ~bit
-        if rule.due != self.due_at[rule.index]:
-            self.due_at[rule.index] = rule.due
-            if rule.due < NEVER:
-                heappush(self.dues, (rule.due, rule.index))
+        if rule.attempts or rule.runs:
+            self.active |= bit
+        elif self.active & bit:
+            self.active ^= bit
+        if rule.restless:
+            self.restless |= bit
+        elif self.restless & bit:
+            self.restless ^= bit
+        due = rule.due
+        if due != self.due_at[rule.index]:
+            self.due_at[rule.index] = due
+            if due < NEVER:
+                heappush(self.dues, (due, rule.index))
                 if len(self.dues) > 64 + 8 * len(self.rules):
                     self.dues = [(t, i) for i, t in enumerate(self.due_at) if t < NEVER]
                     heapify(self.dues)
