@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 from rvmon.dataflow.evaluate import evaluated
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Leaf, Sweep, operands_of
@@ -9,16 +11,29 @@ from rvmon.dataflow.pieces import FAR, Pieces, clip, soonest, stamp, up_to
 from rvmon.dataflow.sweep import Carried, Known
 
 
-def settled_alone(network: Network, position: int, limit: int) -> tuple[int, bool] | None:
-    """The value of the formula at a position, and the last instant before time alone settles it.
+class Moment:
+    """How a network stands once time has come to a stamp, for all that is asked of it then.
 
     Args:
-        network: what is known.
-        position: as the network counts them; its value is not known at `limit`.
-        limit: the stamp behind which nothing more comes.
+        network: what is known; it stays as it is.
+        now: the stamp.
 
-    Returns:
-        `None` if time alone does not settle it.
+    Attributes:
+        network: what is known then.
+    """
+
+    def __init__(self, network: Network, now: int) -> None:
+        self.network = network.copy()
+        self.network.grow(now)
+
+    @cached_property
+    def alone(self) -> Known:
+        """What comes to be known of the formula if no further position comes."""
+        return known_alone(self.network, self.network.grown)
+
+
+def known_alone(network: Network, limit: int) -> Known:
+    """What comes to be known of the formula if no position comes behind a stamp.
 
     Source: SEMANTICS 2, Truth after a prefix.
     """
@@ -31,7 +46,20 @@ def settled_alone(network: Network, position: int, limit: int) -> tuple[int, boo
             found = _evaluated(ahead, place, [known[operand] for operand in operands_of(node)])
             true, false = soonest(true, found[0]), soonest(false, found[1])
         known.append((true, false))
-    for value, pieces in zip((True, False), known[-1], strict=True):
+    return known[-1]
+
+
+def settled(alone: Known, position: int) -> tuple[int, bool] | None:
+    """The last instant before time alone settles the formula at a position, and its value then.
+
+    Args:
+        alone: as `known_alone` gives it, for a stamp at which the value is not known.
+        position: as the network counts them.
+
+    Returns:
+        `None` if time alone does not settle it.
+    """
+    for value, pieces in zip((True, False), alone, strict=True):
         if (found_at := stamp(pieces, position)) is not None:
             return found_at // 2 - 1, value
     return None

@@ -136,6 +136,20 @@ class Network:
             return False, found
         return None
 
+    @property
+    def next_over(self) -> int | None:
+        """The next instant at which the window of an undecided position is over; `None`: never.
+
+        Without a further position, nothing becomes known before in sampled time.
+        """
+        found = []
+        for place, node in enumerate(self.plan.nodes):
+            if isinstance(node, Window) and node.over is not None:
+                position = self._unknown_from(self.known[place], self.pending[place], skips=True)
+                if position <= self.positions.last:
+                    found.append(position * self.positions.gap + node.over)
+        return min(found, default=None)
+
     def known_of(self, core: Core) -> Known:
         """What is known of a part of the formula."""
         return self.known[self.plan.places[core]]

@@ -32,6 +32,10 @@ def until(left: Known, right: Known, start: int, end: int, beyond: Carried = Non
     found: list[tuple[Pieces, Pieces]] = []
     carried = beyond
     for first, last, stays, meets in reversed(list(_stretches(left, right, start, end))):
+        if not (stays and stays[1][1]) and not (meets and meets[1][1]):
+            carried = _level(stays, meets, carried)
+            found.append(_level_pieces(first, last, carried))
+            continue
         true = _whole(first, last, meets, True)
         false = latest(_whole(first, last, stays, False), _whole(first, last, meets, False))
         if carried is not None:
@@ -43,6 +47,28 @@ def until(left: Known, right: Known, start: int, end: int, beyond: Carried = Non
         found.append((true, false))
         carried = _value_at(first, true, false)
     return _joined(reversed(found))
+
+
+def _level(stays: _Side, meets: _Side, beyond: Carried) -> Carried:
+    """What is known all over a stretch whose sides have one stamp each."""
+    found: Carried = None
+    if meets is not None and (meets[0] or (stays is not None and not stays[0])):
+        at = meets[1][0]
+        found = (True, at) if meets[0] or stays is None else (False, max(at, stays[1][0]))
+    if beyond is not None:
+        value, known = beyond
+        side = stays if value else meets
+        if side is not None and side[0] is value:
+            at = max(side[1][0], known)
+            found = (value, at if found is None else min(at, found[1]))
+    return found
+
+
+def _level_pieces(first: int, last: int, known: Carried) -> tuple[Pieces, Pieces]:
+    if known is None:
+        return (), ()
+    pieces = ((first, last, known[1], 0),)
+    return (pieces, ()) if known[0] else ((), pieces)
 
 
 def since(left: Known, right: Known, start: int, end: int, before: Carried) -> Known:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rvmon.automaton.location import FAILED
 from rvmon.automaton.machine import Token
-from rvmon.dataflow.alone import settled_alone
+from rvmon.dataflow.alone import known_alone, settled
 from rvmon.dataflow.network import Network
 from rvmon.monitor.bench import Open
 from rvmon.monitor.cause_network import NetworkCauseFinder
@@ -27,7 +27,7 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
         return Explanation("nothing was owed" if verdict else "it can never hold")
     words = judge.compiled.words
     blame: Blame | None = None if verdict else words.blame(cause, t, judge.flow)
-    alone = settled_alone(network, position, found[1] - 1)
+    alone = settled(known_alone(network, found[1] - 1), position)
     return Explanation(
         words.reason(cause, verdict, t, judge.flow),
         deadline=None if alone is None else alone[0],
@@ -46,7 +46,7 @@ def network_open(
         return Explanation(f"left open by the input: {attempt.doubt}")
     position = token[1][0] // network.positions.gap
     core = judge.compiled.obligation.owed
-    network = _grown(network, now)
+    network = judge.moment(network, now).network
     owed = owed_at(network, core, position, network.grown, judge.compiled.words)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
     reason = f"still owed: {owed or 'what lies ahead'}{longer(judge, attempt, end)}{doubt}"
@@ -59,17 +59,10 @@ def _deadline(judge: NetworkJudge, attempt: Open, now: int) -> int | None:
     def alone(network: Network | None, token: Token) -> tuple[int, bool] | None:
         if network is None or token[0] != WAITING:
             return None
-        grown = _grown(network, now)
-        return settled_alone(grown, token[1][0] // network.positions.gap, grown.grown)
+        position = token[1][0] // network.positions.gap
+        return settled(judge.moment(network, now).alone, position)
 
     better = judge.worse if judge.better is None else judge.better
     return earlier(
         alone(judge.worse, attempt.token), alone(better, attempt.better or attempt.token)
     )
-
-
-def _grown(network: Network, now: int) -> Network:
-    """A network as it is once time has come to a stamp."""
-    grown = network.copy()
-    grown.grow(now)
-    return grown

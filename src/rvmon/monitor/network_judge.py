@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import INFINITY, Token
+from rvmon.dataflow.alone import Moment
 from rvmon.dataflow.at_end import held_at_end
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.network import Network
@@ -52,6 +53,8 @@ class NetworkJudge(Bench):
         self._stayed = plan.settles
         """How long the letter had stayed before it changed last, ticks."""
         self._held: Pieces | None = None
+        self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
+        """Those that were asked for last, of each network one."""
         self.now = -1 << 64
         index = flow.graph.index
         self._reads = tuple(
@@ -207,10 +210,20 @@ class NetworkJudge(Bench):
         Args:
             span: ticks for which the letter has stayed: to look much further may be in vain.
         """
+        if self.flow.gap is None:
+            self.due = max(self._next_over(), self.now // 2 + 1)
+            return
         span = min(2 * span, self.plan.settles)
         self.due = self._foreseen(span)
         if self.due == INFINITY and self.worse is not None and span < self.plan.settles:
             self.due = self.now // 2 + span
+
+    def _next_over(self) -> int:
+        """Before which instant time alone decides nothing, where only samples are positions."""
+        if not self._is_waited_for:
+            return INFINITY
+        known = [network.next_over for network in (self.worse, self.better) if network is not None]
+        return min((one for one in known if one is not None), default=INFINITY)
 
     def _foreseen(self, span: int) -> int:
         """The instant of the next decision within a span, the letter staying."""
@@ -245,6 +258,16 @@ class NetworkJudge(Bench):
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt, as far as is known now."""
         return self._foreseen(self.plan.settles)
+
+    def moment(self, network: Network, now: int) -> Moment:
+        """How one of the networks stands at a stamp, worked out once for all attempts."""
+        stands = (network.grown, network.positions.last, now)
+        for one, its_own, made in self._moments:
+            if one is network and its_own == stands:
+                return made
+        made = Moment(network, now)
+        self._moments = [*self._moments[-1:], (network, stands, made)]
+        return made
 
     def situation(self, t: int) -> object:
         """What is known as seen from `t`; equal for runs that go on alike."""
