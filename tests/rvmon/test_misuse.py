@@ -118,3 +118,17 @@ def test_no_program_without_requirements(tmp_path, capsys, only):
     path.write_text(DOOR)
     assert main(["build", str(path), "-o", str(tmp_path / "door"), "--only", only]) == 2
     assert "the list of requirements is empty: there are D1, D2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton", "network", "progression"])
+@pytest.mark.parametrize("wrong", [1.5, 1.0, "1", b"1", None, [], 1j, 10**400, np.array([1, 2])])
+def test_ticks_given_online_are_whole_numbers(spec, engine, wrong):
+    """A wrong instant is told in words, and the monitor goes on as if it had not come."""
+    monitor = spec.monitor(engine=engine)
+    monitor.step_ns(1, {"knock": True, "closed": True})
+    ends = () if wrong is None else (monitor.finish_ns,)
+    for call in (lambda t: monitor.step_ns(t, {}), monitor.advance_ns, *ends):
+        with pytest.raises(TraceError, match=r"no whole number of nanoseconds|out of range") as told:
+            call(wrong)
+        assert len(str(told.value)) < 200
+    assert [attempt.decided for attempt in monitor.advance_ns(5_000_000_000)] == [2_000_000_002]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -15,7 +14,7 @@ from rvmon.codegen.python_unit import machine_of, unit_class
 from rvmon.codegen.runtime.nodes import LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
-from rvmon.errors import RvmonError, TraceError, UnknownNameError
+from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.monitor.bench import Bench
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.hosted import HostedRule
@@ -318,13 +317,7 @@ class GeneratedMonitor(Monitor):
     def step_slowly(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample by the way of every monitor."""
         self._see()
-        try:
-            t = operator.index(t_ns)
-        except TypeError:
-            raise TraceError(
-                f"time {t_ns!r} is no whole number of nanoseconds: step() takes seconds"
-            ) from None
-        decided = super().step_ns(t, values)
+        decided = super().step_ns(t_ns, values)
         self._unit.news = False
         self._floor = self._unit.after
         return decided

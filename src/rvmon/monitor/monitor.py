@@ -16,7 +16,7 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.validate import Validator
 from rvmon.spec.checked import TimeModel
 from rvmon.trace.sample import Sample, Value
-from rvmon.trace.time import TIME_LIMIT, format_ticks, ticks_of_seconds
+from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -96,10 +96,10 @@ class Monitor:
 
         Raises:
             TimeOrderError: the time is not later, or an `advance` said that nothing would come.
-            TraceError: a name or a value that the specification does not know. In both cases the
-                monitor is as it was.
+            TraceError: a name or a value that the specification does not know, or a time that is
+                no whole number. In all cases the monitor is as it was.
         """
-        self._check_time(t_ns)
+        t_ns = self._taken_time(t_ns)
         if self._intake is not None:
             ready = self._intake.take(t_ns, self._validator.check(t_ns, values))
             return self._settled(ready, self._intake.floor)
@@ -139,7 +139,7 @@ class Monitor:
 
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
-        self._check_time(t_ns)
+        t_ns = self._taken_time(t_ns)
         held_back = () if self._intake is None else self._intake.settle(t_ns)
         return self._settled(held_back, t_ns)
 
@@ -149,11 +149,11 @@ class Monitor:
             self._lanes.reach(t)
             self._reached = t
 
-    def _check_time(self, t: int) -> None:
+    def _taken_time(self, t: int) -> int:
+        """A time that was given, as a plain integer."""
         if self._report is not None:
             raise TraceError("the run is finished: call reset() before the next")
-        if not -TIME_LIMIT < t < TIME_LIMIT:
-            raise TraceError(f"time {t} ns is out of range: at most 2**62 ns (146 years)")
+        return whole_ticks(t)
 
     def finish(self, t: float | None = None) -> Report:
         """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
@@ -171,7 +171,7 @@ class Monitor:
         if self._report is not None:
             return self._report
         if t_ns is not None:
-            self._check_time(t_ns)
+            t_ns = self._taken_time(t_ns)
         for sample in () if self._intake is None else self._intake.close():
             self._judge(sample.t, sample.values)
         end = self._end(t_ns)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import operator
+import reprlib
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from typing import Any
@@ -44,7 +46,32 @@ def ticks_of_seconds(seconds: float | Fraction) -> int:
     # The float product is within half a tick of the exact one only up to 2**22 s, hence Fraction.
     ticks = round(Fraction(seconds) * TICKS_PER_SECOND)
     if abs(ticks) >= TIME_LIMIT:
-        raise TraceError(f"time {seconds} s is out of range: at most 2**62 ns (146 years)")
+        raise TraceError(
+            f"time {reprlib.repr(seconds)} s is out of range: at most 2**62 ns (146 years)"
+        )
+    return ticks
+
+
+def whole_ticks(t: Any) -> int:
+    """A number of ticks as a plain integer, NumPy's too.
+
+    Raises:
+        TraceError: it is no whole number, or beyond `TIME_LIMIT`.
+
+    >>> whole_ticks(5)
+    5
+    """
+    try:
+        ticks = operator.index(t)
+    except TypeError:
+        raise TraceError(
+            f"time {reprlib.repr(t)} is no whole number of nanoseconds: the methods without `_ns` "
+            "take seconds"
+        ) from None
+    if not -TIME_LIMIT < ticks < TIME_LIMIT:
+        raise TraceError(
+            f"time {reprlib.repr(ticks)} ns is out of range: at most 2**62 ns (146 years)"
+        )
     return ticks
 
 
@@ -56,7 +83,7 @@ def _plain(seconds: Any) -> float | Fraction:
             return plain if isinstance(plain, float | int) else Fraction(plain)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise TraceError(f"time {seconds!r} is no finite number: give seconds as a number")
+    raise TraceError(f"time {reprlib.repr(seconds)} is no finite number: give seconds as a number")
 
 
 def ticks_of_text(text: str) -> int:
