@@ -94,7 +94,7 @@ def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:
         return OF_TRUTH[UNKNOWN]
     if isinstance(left, str) or isinstance(right, str):
         return OF_TRUTH[TRUE if COMPARE[op](left, right) else FALSE]
-    difference = 0.0 if left == right else (left - right) * factor
+    difference = _difference(left, right, factor)
     match op:
         case CompareOp.LT | CompareOp.LE:
             value = -difference
@@ -105,6 +105,16 @@ def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:
         case CompareOp.NE:
             value = math.fabs(difference)
     return value, value
+
+
+def _difference(left: float, right: float, factor: float) -> float:
+    """One number less another; infinite where that is beyond what a float can be."""
+    if left == right:
+        return 0.0
+    try:
+        return (left - right) * factor
+    except OverflowError:  # of an integer, which has no greatest
+        return math.copysign(INFINITE, 1 if left > right else -1)
 
 
 def base_factor(leaf: Compare, spec: CheckedSpec) -> float:

@@ -173,3 +173,17 @@ def test_the_page_about_it_is_true():
     page = Path(__file__).parents[3] / "docs" / "reference" / "robustness.md"
     failures, tried = doctest.testfile(str(page), module_relative=False)
     assert (failures, tried > 4) == (0, True)
+
+
+def test_integers_beyond_all_floats():
+    """A number that no float holds is infinitely far from a bound, above it or below."""
+    spec = rvmon.loads(
+        "spec s\nsignal x : real\nevent e\nrequirement R1\n  upon e\n  then within 3 s x > 1\n"
+    )
+    for value, low in ((10**400, INFINITE), (-(10**400), 4.0)):
+        monitor = spec.robustness_monitor()
+        monitor.step(0, {"x": 1.0, "e": True})
+        monitor.step(1, {"x": value})
+        monitor.step(2, {"x": 5.0})
+        [measured] = monitor.finish(9)
+        assert measured.robustness.low == low
