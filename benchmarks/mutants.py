@@ -23,7 +23,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -55,16 +54,21 @@ def main(argv: Sequence[str]) -> int:
     drawn = draw((m for m in changes if m.change not in EQUIVALENT), options)
     with tempfile.TemporaryDirectory() as directory:
         trial = Trial(Path(directory), options)
-        killed = sum([trial.kills(mutant) for mutant in drawn])
+        left = drawn
+        for stage in stages_of(options.engine, options.pairs):
+            if left:
+                print(f"{len(left)} go through {stage}", flush=True)
+            left = [mutant for mutant in left if not trial.kills(mutant, stage)]
+    for mutant in left:
+        print(f"survived  {mutant}")
+    killed = len(drawn) - len(left)
     passed_over = len({m.change for m in changes} & EQUIVALENT.keys())
     print(
         f"engine {options.engine}, seed {options.seed}: {len(drawn)} mutants of {len(changes)} in "
-        f"{len(files)} files, {killed} killed, {len(drawn) - killed} survived; "
+        f"{len(files)} files, {killed} killed, {len(left)} survived; "
         f"{passed_over} known to be equivalent were not drawn"
     )
-    for stage, number in trial.killed_in.items():
-        print(f"{number} in {stage}")
-    return 0 if killed == len(drawn) else 1
+    return 1 if left else 0
 
 
 def _parse(argv: Sequence[str]) -> argparse.Namespace:
@@ -177,8 +181,6 @@ class Trial:
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
         # A changed file is newer than what was compiled, and what is compiled then is not kept.
         compileall.compile_dir(self.package, quiet=2)
-        self.stages = stages_of(options.engine, options.pairs)
-        self.killed_in: Counter[Stage] = Counter()
         self.known: dict[Stage, tuple[list[str], float]] = {}
 
     def _as_it_is(self, stage: Stage) -> tuple[list[str], float]:
@@ -191,23 +193,18 @@ class Trial:
                 sys.exit(f"without a change, {stage} do not pass the test: {verdict}")
         return self.known[stage]
 
-    def kills(self, mutant: Mutant) -> bool:
-        """Try a mutant, and print what became of it, and in which stage."""
+    def kills(self, mutant: Mutant, stage: Stage) -> bool:
+        """Try a mutant; if it does not survive, print what became of it."""
+        wanted, seconds = self._as_it_is(stage)
         place = self.package / mutant.path.relative_to(PACKAGE)
-        verdict = "survived"
-        for number, stage in enumerate(self.stages, start=1):
-            wanted, seconds = self._as_it_is(stage)
-            place.write_text(mutant.source, encoding="utf-8")
-            verdict, refused = self._run(stage, 10 + 5 * seconds)
-            shutil.copy2(mutant.path, place)
-            if verdict == "survived" and refused != wanted:
-                verdict = "refuses"
-            if verdict != "survived":
-                self.killed_in[stage] += 1
-                print(f"{verdict:9} {number}  {mutant}", flush=True)
-                return True
-        print(f"survived     {mutant}", flush=True)
-        return False
+        place.write_text(mutant.source, encoding="utf-8")
+        verdict, refused = self._run(stage, 10 + 5 * seconds)
+        shutil.copy2(mutant.path, place)
+        if verdict == "survived" and refused != wanted:
+            verdict = "refuses"
+        if verdict != "survived":
+            print(f"{verdict:9} {mutant}", flush=True)
+        return verdict != "survived"
 
     def _run(self, stage: Stage, most: float) -> tuple[str, list[str]]:
         """The test on the copy: `survived`, `killed` or `hung`; how many specs were refused."""
