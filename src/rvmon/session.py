@@ -157,7 +157,9 @@ class Spec:
 
         Raises:
             TraceError: the trace cannot be read; place and cause are named.
+            UnknownNameError: `only` or `engine` names what does not exist.
         """
+        _expect_engine(engine)
         chosen = self._chosen(only)
         end = None if until is None else ticks_of_seconds(until)
         if chosen == () and engine == "c":
@@ -247,6 +249,7 @@ class Spec:
         """
         from rvmon.monitor.batch_file import evaluate_file
 
+        _expect_engine(engine)
         return evaluate_file(
             self._compiled,
             self.schema,
@@ -374,11 +377,18 @@ class Spec:
         if hasattr(trace, "names") and hasattr(trace, "end"):
             recording: Recording = trace
             return recording
-        if isinstance(trace, Mapping) or hasattr(trace, "to_pydict"):
+        if isinstance(trace, Mapping) or hasattr(trace, "column_names"):
             columns = columns_of(trace)
-            names = frozenset(columns) & {*self.schema.signals, *self.schema.events}
+            declared = {*self.schema.signals, *self.schema.events}
+            names = frozenset(columns) & declared - {time}
             return Trace(tuple(column_samples(columns, self.schema, time)), names)
         return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in pairs_of(trace)))
+
+
+def _expect_engine(name: str) -> None:
+    from rvmon.monitor.compiled import OF_RECORDINGS, expect_engine
+
+    expect_engine(name, OF_RECORDINGS)
 
 
 def _evaluate_here(

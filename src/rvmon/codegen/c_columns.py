@@ -22,11 +22,11 @@ def columns_of_samples(samples: Sequence[Sample], names: Names) -> dict[str, Col
     """One row per sample.
 
     Args:
-        samples: with values that the specification can take.
+        samples: with names and values that the specification can take.
         names: of the compiled plan.
 
     Raises:
-        TraceError: an instant has two payloads of one event, or an undeclared name.
+        TraceError: an instant has two payloads of one event.
     """
     return _Columns(names, len(samples)).of(samples)
 
@@ -45,8 +45,6 @@ class _Columns:
     def of(self, samples: Sequence[Sample]) -> dict[str, Column]:
         for row, sample in enumerate(samples):
             for name, value in sample.values.items():
-                if name not in self.states:
-                    raise TraceError(f"sample at {format_ticks(sample.t)}: no name `{name}`")
                 if name in self.names.plan.signals:
                     self.set_signal(name, row, value)
                 else:

@@ -14,9 +14,10 @@ from rvmon.errors import TimeOrderError
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.generated import plan_alone
 from rvmon.monitor.recorded import report_of_records
+from rvmon.monitor.validate import Validator
 from rvmon.spec.checked import CheckedSpec
-from rvmon.trace.sample import Recording
-from rvmon.trace.time import format_ticks
+from rvmon.trace.sample import Recording, Sample
+from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
@@ -84,11 +85,17 @@ def evaluate_recording(
 
     Raises:
         TimeOrderError: an instant is not after the one before.
-        TraceError: an instant has two payloads of one event.
+        TraceError: a name or a value that the specification does not know, or an instant with two
+            payloads of one event.
     """
+    validator = Validator(compiled.checked, recording.names, frozenset())
+
+    def checked(sample: Sample) -> Sample:
+        return Sample(whole_ticks(sample.t), validator.check(sample.t, sample.values))
+
+    samples = map(checked, recording)
     with _Judging(compiled, only, recording.names) as judging:
         names = judging.library.names
-        samples = iter(recording)
         while some := list(islice(samples, PIECE)):
             times = np.array([sample.t for sample in some], np.int64)
             judging.take(times, columns_of_samples(some, names))
@@ -101,10 +108,10 @@ class _Judging:
     def __init__(
         self, compiled: CompiledSpec, only: Sequence[str] | None, names: frozenset[str] | None
     ) -> None:
-        declared = {*compiled.checked.signals, *compiled.checked.events}
+        declared = frozenset((*compiled.checked.signals, *compiled.checked.events))
         self.library = library_of(compiled, only)
         self._ids = [rule.requirement.id for rule in self.library.plan.rules]
-        self._run = BatchRun(self.library, frozenset(declared - (names or declared)))
+        self._run = BatchRun(self.library, declared - (declared if names is None else names))
         self._rows = 0
         self._origin: int | None = None
 

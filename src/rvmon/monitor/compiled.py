@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -35,6 +35,19 @@ MOST_SEEN = 19
 """So many truth values, seen at the trigger, fit into a number of 32 bits."""
 
 ENGINES = ("auto", "python", "automaton", "progression", "network")
+
+OF_RECORDINGS = (*ENGINES, "c")
+"""The engines that judge finished recordings."""
+
+
+def expect_engine(name: str, known: Sequence[str]) -> None:
+    """See that there is such an engine.
+
+    Raises:
+        UnknownNameError: there is none; those that there are are named.
+    """
+    if name not in known:
+        raise UnknownNameError(f"no engine `{name}`: there are {', '.join(known)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,8 +189,7 @@ class CompiledRequirement:
             UnknownNameError: there is no such engine.
             RvmonError: the engine was asked for by name and cannot judge this requirement.
         """
-        if name not in ENGINES:
-            raise UnknownNameError(f"no engine `{name}`: there are {', '.join(ENGINES)}")
+        expect_engine(name, ENGINES)
         if name == "network":
             return name
         if name == "progression":

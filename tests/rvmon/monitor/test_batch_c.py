@@ -1,0 +1,114 @@
+"""The engine `c`: what it refuses, and what it says where columns are missing."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.errors import UnknownNameError
+
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def cache(tmp_path_factory):
+    """Compiled monitors of these tests are kept for these tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def spec_of(declared: str, owed: str) -> rvmon.Spec:
+    """A specification of one requirement."""
+    return rvmon.loads(f"spec s\n{declared}\nrequirement R1\n  {owed}\n")
+
+
+@pytest.mark.parametrize("form", ["columns", "csv", "parquet"])
+def test_without_a_declared_column_all_is_unknown(form, tmp_path):
+    """A name that has no column is unknown throughout, also if no name has one."""
+    spec = spec_of("event e", "upon start then for 2 s not e")
+    trace = {"t": np.array([0.0, 5.0]), "other": np.array([1.0, 2.0])}
+    if form == "csv":
+        trace = tmp_path / "a.csv"
+        trace.write_text("t\n0\n1\n5\n")
+    elif form == "parquet":
+        arrow = pytest.importorskip("pyarrow")
+        parquet = pytest.importorskip("pyarrow.parquet")
+        table, trace = arrow.table(trace), tmp_path / "a.parquet"
+        parquet.write_table(table, trace)
+    for engine in ("auto", "c"):
+        assert spec.evaluate(trace, engine=engine).verdicts == {"R1": "I"}, engine
+
+
+DECLARED = """signal x : real
+signal n : int
+signal b : bool
+signal mode : {red, green}
+event e
+event pay(k: int, m: {low, high})"""
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("x", "9"),
+        ("x", True),
+        ("x", [1.0]),
+        ("x", 1j),
+        ("n", 1.5),
+        ("n", True),
+        ("b", 1),
+        ("b", "yes"),
+        ("mode", "blue"),
+        ("mode", 1),
+        ("e", 5),
+        ("e", 0),
+        ("e", "no"),
+        ("e", ""),
+        ("pay", {"zz": 3}),
+        ("pay", {"k": 1.5}),
+        ("pay", {"m": "none"}),
+    ],
+)
+@pytest.mark.parametrize("form", ["columns", "samples"])
+def test_values_of_another_type_are_refused(name, value, form):
+    """What no engine takes is told with the sample and the name, not judged."""
+    spec = spec_of(DECLARED, "always (x < 5 or n > 2 or b or mode == red or e or pay.k > 2)")
+    if form == "columns":
+        trace = {"t": [0.0, 1.0], name: [None, value]}
+    else:
+        trace = [(0.0, {}), (1.0, {name: value})]
+    told = []
+    for engine in ("automaton", "c"):
+        with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}") as error:
+            spec.evaluate(trace, engine=engine)
+        told.append(str(error.value))
+    assert told[0] == told[1]
+
+
+def test_an_undeclared_name_in_a_sample_is_refused():
+    """A name that the specification does not know is an error that names it."""
+    spec = spec_of("signal x : real", "always x < 5")
+    with pytest.raises(rvmon.TraceError, match="sample at 1 s: no signal or event named `y`"):
+        spec.evaluate([(0.0, {"x": 1.0}), (1.0, {"y": 1.0})], engine="c")
+
+
+def test_strings_in_a_parquet_file_are_refused(tmp_path):
+    """A column of another type is refused in a file as in memory."""
+    arrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "a.parquet"
+    parquet.write_table(arrow.table({"t": [0.0, 1.0], "x": ["1", "9"]}), path)
+    with pytest.raises(rvmon.TraceError, match="`x`"):
+        spec_of("signal x : real", "always x < 5").evaluate(path, engine="c")
+
+
+@pytest.mark.parametrize("trace", [{"t": np.array([0.0])}, [(0.0, {})], "nowhere.csv"])
+def test_an_unknown_engine_is_told_which_there_are(trace):
+    """The engine `c` judges recordings: it stands in the list."""
+    spec = spec_of("signal x : real", "always x < 5")
+    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
+        spec.evaluate(trace, engine="nope")
+    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network$"):
+        spec.monitor(engine="nope")
