@@ -11,7 +11,7 @@ from rvmon.monitor.columns.evaluate import ColumnJudge, columns_judge
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
 from rvmon.monitor.columns.rows import CHUNK, RowJudge
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.readers.ticks import ticks_of_column
+from rvmon.readers.ticks import ticks_in_range, ticks_of_column
 from rvmon.spec.checked import CheckedSpec
 from rvmon.trace.schema import Kind
 from rvmon.verdict.report import Report
@@ -27,6 +27,9 @@ FEW_ROWS = 1000
 _BY_COLUMNS = ("auto", "python")
 """Engines that leave it open how generated tables are looked up."""
 
+_WIDEST = 8
+"""Bytes of the widest numbers that are numbers of Python, too."""
+
 
 def _numeric_columns(table: Any, names: Sequence[str]) -> dict[str, NDArray[Any]] | None:
     """The named columns of a mapping of arrays or of an Arrow table, without copies if possible.
@@ -39,22 +42,27 @@ def _numeric_columns(table: Any, names: Sequence[str]) -> dict[str, NDArray[Any]
         Arrays of truth values, integers or floats; `None` if a column is something else.
     """
     found = {}
+    is_arrow = hasattr(table, "column_names")
+    if is_arrow and len(set(table.column_names)) < len(table.column_names):
+        return None
     for name in names:
-        if hasattr(table, "column_names"):
+        if is_arrow:
             if name not in table.column_names:
                 continue
             column = table.column(name)
             if column.null_count:
                 return None
-            column = column.to_numpy()
+            column = column.to_numpy(zero_copy_only=False)
         elif name in table:
             column = table[name]
         else:
             continue
-        array = column if isinstance(column, np.ndarray) else None
-        if array is None or array.ndim != 1 or array.dtype.kind not in "bif":
+        # A subclass, as an array with a mask, means something by its cells that is not seen here.
+        if type(column) not in (np.ndarray, np.memmap) or column.ndim != 1:
             return None
-        found[name] = array
+        if column.dtype.kind not in "bif" or column.dtype.itemsize > _WIDEST:
+            return None
+        found[name] = column
     return found
 
 
@@ -70,6 +78,9 @@ def arrays_of(
 
     Returns:
         `None` if something is not so. Whether the instants increase is not looked at.
+
+    Raises:
+        TraceError: an instant is not finite or out of range.
     """
     columns = _numeric_columns(table, [time, *spec.signals, *spec.events])
     if columns is None or time not in columns:
@@ -85,7 +96,7 @@ def arrays_of(
     if time.endswith("_ns"):
         if stamps.dtype.kind != "i":
             return None
-        times = stamps.astype(np.int64, copy=False)
+        times = ticks_in_range(stamps)
     else:
         times = ticks_of_column(stamps)
     return times, columns

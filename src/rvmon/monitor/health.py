@@ -51,8 +51,12 @@ class HealthLog:
         import numpy as np
 
         for name, column in columns.items():
+            if column.dtype.kind != "f":
+                continue
             # Mostly one sum tells that there is none.
-            if column.dtype.kind == "f" and np.isnan(np.add.reduce(column)):
+            with np.errstate(invalid="ignore", over="ignore"):
+                total = np.add.reduce(column)
+            if np.isnan(total):
                 rows = np.flatnonzero(np.isnan(column))
                 if len(rows):
                     key = (HealthKind.NAN, name, name)

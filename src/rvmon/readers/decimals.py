@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -40,10 +41,8 @@ def whole_numbers(cells: Cells) -> NDArray[np.int64] | None:
     >>> whole_numbers(Cells(text, np.array([0, 3]), np.array([2, 5]))).tolist()
     [12, -7]
     """
-    read = _mantissas(cells, 18)
-    if read is None or read[1].any():
-        return None
-    return read[0]
+    read = _mantissas(cells, 18, _without_points)
+    return None if read is None else read[0]
 
 
 def decimals(cells: Cells) -> NDArray[np.float64] | None:
@@ -53,7 +52,7 @@ def decimals(cells: Cells) -> NDArray[np.float64] | None:
     >>> decimals(Cells(text, np.array([0, 4]), np.array([3, 7]))).tolist()
     [0.5, -12.0]
     """
-    read = _mantissas(cells, _DIGITS)
+    read = _mantissas(cells, _DIGITS, _reader(cells))
     if read is None:
         return None
     mantissa, behind = read
@@ -70,7 +69,7 @@ def nanoseconds(cells: Cells) -> NDArray[np.int64] | None:
     >>> nanoseconds(Cells(text, np.array([0, 4]), np.array([3, 6]))).tolist()
     [500000000, 12000000000]
     """
-    read = _mantissas(cells, 18)
+    read = _mantissas(cells, 18, _reader(cells))
     if read is None:
         return None
     mantissa, behind = read
@@ -92,7 +91,9 @@ def truth_values(cells: Cells) -> NDArray[np.bool_] | None:
     return ones
 
 
-def _mantissas(cells: Cells, most: int) -> tuple[NDArray[np.int64], NDArray[Any]] | None:
+def _mantissas(
+    cells: Cells, most: int, reader: _Reader
+) -> tuple[NDArray[np.int64], NDArray[Any]] | None:
     """The digits of each cell as an integer, and how many stand behind the point."""
     text, starts = cells.text, cells.starts
     first = text.take(starts)
@@ -101,7 +102,7 @@ def _mantissas(cells: Cells, most: int) -> tuple[NDArray[np.int64], NDArray[Any]
     lengths = cells.ends - begins
     if not len(lengths) or lengths.min() < 1 or lengths.max() > most + 1:
         return None
-    read = (_with_points if (text == ord(".")).any() else _without_points)(cells, begins, lengths)
+    read = reader(cells, begins, lengths)
     if read is None:
         return None
     mantissa, behind, digits = read
@@ -112,6 +113,13 @@ def _mantissas(cells: Cells, most: int) -> tuple[NDArray[np.int64], NDArray[Any]
 
 _Read = tuple["NDArray[np.int64]", "NDArray[Any]", "NDArray[np.int64]"]
 """Mantissa, digits behind the point, digits."""
+
+_Reader = Callable[[Cells, "NDArray[np.int64]", "NDArray[np.int64]"], _Read | None]
+"""Reads cells, their signs left out; takes where they begin and how long they are."""
+
+
+def _reader(cells: Cells) -> _Reader:
+    return _with_points if (cells.text == ord(".")).any() else _without_points
 
 
 def _without_points(

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.columns import arrow_cells
 from rvmon.readers.csv_rows import Column, Layout, occurrences, read_layout
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
+from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds, whole_ticks
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
 ROWS = 1 << 16
@@ -68,12 +70,8 @@ def parquet_blocks(
 
     Raises:
         NotPlainError: there are gaps of other names or before the first value, payloads or labels,
-            or the instants do not increase.
+            or the instants do not increase or are out of range.
     """
-    import numpy as np
-
-    from rvmon.readers.ticks import ticks_of_column
-
     layout = _layout_or_not_plain(path, schema)
     columns = (*layout.signals, *layout.events)
     if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
@@ -82,13 +80,10 @@ def parquet_blocks(
     last = -TIME_LIMIT
     held: dict[str, Any] = {}
     for batch in _opened(path).iter_batches(ROWS, columns=[stamp, *(c.name for c in columns)]):
-        stamps = _array(batch, stamp, "i" if layout.in_ticks else "fi")
-        times = stamps.astype(np.int64, copy=False) if layout.in_ticks else ticks_of_column(stamps)
+        times = _instants(batch, stamp, in_ticks=layout.in_ticks)
         if not len(times) or times[0] <= last or not (times[1:] > times[:-1]).all():
             raise NotPlainError
         last = int(times[-1])
-        if last >= TIME_LIMIT:
-            raise NotPlainError
         found = {}
         for column in columns:
             gaps = column.name in fillable
@@ -107,11 +102,18 @@ def _layout_or_not_plain(path: str | Path, schema: Schema) -> Layout:
         raise NotPlainError from None
 
 
-def _array(batch: Any, name: str, kinds: str) -> NDArray[Any]:
-    column = batch.column(name)
+def _instants(batch: Any, stamp: str, *, in_ticks: bool) -> NDArray[np.int64]:
+    from rvmon.readers.ticks import ticks_in_range, ticks_of_column
+
+    column = batch.column(stamp)
     if column.null_count:
         raise NotPlainError
-    return _array_of(column, kinds)
+    try:
+        if in_ticks:
+            return ticks_in_range(_array_of(column, "i"))
+        return ticks_of_column(_array_of(column, "fi"))
+    except TraceError:  # whoever reads rows says in which it is
+        raise NotPlainError from None
 
 
 def _array_of(column: Any, kinds: str) -> NDArray[Any]:
@@ -167,8 +169,9 @@ def parquet_samples(
     names = [stamp, *(_called(column) for column in columns)]
     row = 0
     for batch in _opened(path).iter_batches(ROWS, columns=names):
-        for cells in batch.to_pylist():
+        for own in zip(*(arrow_cells(batch.column(name)) for name in names), strict=True):
             row += 1
+            cells = dict(zip(names, own, strict=True))
             yield row, _ticks(cells[stamp], row, in_ticks=layout.in_ticks), _values(cells, layout)
 
 
@@ -187,9 +190,12 @@ def _values(cells: Mapping[str, Any], layout: Layout) -> dict[str, Value]:
 
 
 def _ticks(stamp: Any, row: int, *, in_ticks: bool) -> int:
-    if in_ticks and isinstance(stamp, int):
-        return stamp
-    if not in_ticks and isinstance(stamp, int | float):
-        return ticks_of_seconds(stamp)
+    try:
+        if in_ticks and isinstance(stamp, int):
+            return whole_ticks(stamp)
+        if not in_ticks and isinstance(stamp, int | float):
+            return ticks_of_seconds(stamp)
+    except TraceError as error:
+        raise TraceError(f"row {row}: {error}") from None
     wanted = "a whole number of nanoseconds" if in_ticks else "a number of seconds"
     raise TraceError(f"row {row}: time `{stamp}` is not {wanted}")

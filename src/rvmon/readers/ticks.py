@@ -1,4 +1,4 @@
-"""Columns of seconds as ticks."""
+"""Columns of stamps as ticks."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.errors import TraceError
-from rvmon.trace.time import ticks_of_seconds
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, ticks_of_seconds, whole_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+_SECONDS = TIME_LIMIT // TICKS_PER_SECOND
+"""So many whole seconds are in range."""
 
 
 def ticks_of_column(seconds: NDArray[Any]) -> NDArray[np.int64]:
@@ -19,16 +21,35 @@ def ticks_of_column(seconds: NDArray[Any]) -> NDArray[np.int64]:
     Raises:
         TraceError: a number is not finite or out of range.
     """
-    if seconds.dtype.kind == "i" and not (np.abs(seconds) >= 4_600_000_000).any():
-        return seconds.astype(np.int64) * 1_000_000_000
+    if not len(seconds):
+        return np.empty(0, np.int64)
+    if seconds.dtype.kind == "i":
+        _refuse(seconds, _SECONDS)
+        return seconds.astype(np.int64) * TICKS_PER_SECOND
     values = seconds.astype(np.float64, copy=False)
-    if not np.isfinite(values).all() or (np.abs(values) >= 4.6e9).any():
-        bad = values[~(np.abs(values) < 4.6e9)][0]
-        ticks_of_seconds(float(bad))
-        raise TraceError(f"time {bad} s is out of range")
+    _refuse(values, _SECONDS + 1)
     whole = np.floor(values)
     parts = (values - whole) * 1e9
-    ticks = whole.astype(np.int64) * 1_000_000_000 + np.rint(parts).astype(np.int64)
+    ticks = whole.astype(np.int64) * TICKS_PER_SECOND + np.rint(parts).astype(np.int64)
     for row in np.flatnonzero(np.abs(parts - np.floor(parts) - 0.5) < 1e-5):
         ticks[row] = ticks_of_seconds(float(values[row]))
-    return ticks
+    return ticks_in_range(ticks)
+
+
+def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
+    """Integers as ticks.
+
+    Raises:
+        TraceError: one is out of range.
+    """
+    made = ticks.astype(np.int64, copy=False)
+    if len(made) and not -TIME_LIMIT < made.min() <= made.max() < TIME_LIMIT:
+        whole_ticks(made[(made <= -TIME_LIMIT) | (made >= TIME_LIMIT)][0].item())
+    return made
+
+
+def _refuse(seconds: NDArray[Any], most: int) -> None:
+    """Refuse seconds beyond those bounds, and what is no number."""
+    if not -most <= seconds.min() <= seconds.max() <= most:
+        fine = (seconds >= -most) & (seconds <= most)
+        ticks_of_seconds(seconds[~fine][0].item())

@@ -1,0 +1,161 @@
+"""What arrays and Arrow tables are taken for: what lists of the same values are."""
+
+import numpy as np
+import pyarrow
+import pytest
+from pyarrow import parquet
+
+import rvmon
+
+BOUND = "spec s\nsignal x : real\nrequirement R1\n  always x < 5\n"
+LIMIT = 2**62
+BEYOND = [[0, LIMIT + 5], [0, LIMIT], [-(2**63), 5], [-LIMIT, 5], [0, 2**63 - 1]]
+
+
+def told(spec: rvmon.Spec, trace: object, time: str, engine: str) -> str:
+    with pytest.raises(rvmon.TraceError) as error:
+        spec.evaluate(trace, time=time, engine=engine)
+    return str(error.value)
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton"])
+@pytest.mark.parametrize("stamps", BEYOND)
+def test_ticks_beyond_the_limits_are_refused(stamps, engine, tmp_path):
+    """Ticks of columns and Parquet files lie between the limits of time, at both ends."""
+    spec = rvmon.loads(BOUND)
+    table = {"t_ns": np.array(stamps), "x": np.array([1.0, 1.0])}
+    path = tmp_path / "a.parquet"
+    parquet.write_table(pyarrow.table(table), path)
+    for trace in (table, pyarrow.table(table), {"t_ns": stamps, "x": [1.0, 1.0]}):
+        assert "ns is out of range: at most 2**62 ns" in told(spec, trace, "t_ns", engine)
+    row = 1 if stamps[0] else 2
+    found = told(spec, path, "t", engine)
+    assert found.startswith(f"{path}: row {row}: time ")
+    assert "ns is out of range" in found
+
+
+@pytest.mark.parametrize("stamps", [[-(2**63), 5], [0, 4_611_686_019], [0.0, 1e300], [0, np.nan]])
+def test_seconds_beyond_the_limits_are_refused(stamps, tmp_path):
+    """So are seconds, and what is no number of seconds."""
+    spec = rvmon.loads(BOUND)
+    table = {"t": np.array(stamps), "x": np.array([1.0, 1.0])}
+    path = tmp_path / "a.parquet"
+    parquet.write_table(pyarrow.table(table), path)
+    for engine in ("auto", "automaton"):
+        for trace in (table, pyarrow.table(table), {"t": stamps, "x": [1.0, 1.0]}):
+            found = told(spec, trace, "t", engine)
+            assert "out of range" in found or "not finite" in found
+        row = 1 if stamps[0] else 2
+        assert told(spec, path, "t", engine).startswith(f"{path}: row {row}: time ")
+
+
+@pytest.mark.parametrize("last", [4_611_686_018, 4_611_686_018.25, -4_611_686_018.25, 4.605e9])
+def test_seconds_up_to_the_limits_are_taken(last):
+    """What lists accept, arrays accept, and count it as the same ticks."""
+    spec = rvmon.loads(BOUND)
+    stamps = sorted([0, last])
+    lists = spec.evaluate({"t": stamps, "x": [1.0, 7.0]})
+    arrays = spec.evaluate({"t": np.array(stamps), "x": np.array([1.0, 7.0])})
+    assert arrays == lists
+    assert (
+        arrays.attempts[0].decided == lists.attempts[0].decided == int(stamps[1] * 4) * 10**9 // 4
+    )
+
+
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton"])
+def test_what_a_mask_hides_is_unknown(engine):
+    """A masked cell is no value, as None in a list is none."""
+    spec = rvmon.loads(BOUND)
+    hidden = np.ma.array([1.0, 9.0, 1.0], mask=[False, True, False])
+    report = spec.evaluate({"t": np.arange(3.0), "x": hidden}, engine=engine)
+    assert report == spec.evaluate({"t": [0, 1, 2], "x": [1.0, None, 1.0]}, engine="automaton")
+    assert report.verdicts["R1"] == "I"
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton"])
+def test_the_time_column_is_no_signal(engine, tmp_path):
+    """A signal of the name of the time column has no source in arrays, lists and files."""
+    spec = rvmon.loads("spec s\nsignal t : real\nrequirement R1\n  always t < 5\n")
+    table = {"t": np.array([0.0, 1.0])}
+    (tmp_path / "a.csv").write_text("t\n0\n1\n")
+    reports = [
+        spec.evaluate(trace, engine=engine)
+        for trace in (table, {"t": [0.0, 1.0]}, pyarrow.table(table))
+    ]
+    assert reports[0] == reports[1] == reports[2]
+    from_file = spec.evaluate(tmp_path / "a.csv", engine=engine)
+    assert reports[0].verdicts == from_file.verdicts == {"R1": "I"}
+    assert {one.kind.value for one in reports[0].health} == {"absent"}
+
+
+def test_truth_values_of_record_batches_are_read():
+    """A batch of rows is judged as a table of them is."""
+    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
+    columns = {"t": pyarrow.array([0.0, 1.0]), "p": pyarrow.array([True, False])}
+    batch = pyarrow.RecordBatch.from_pydict(columns)
+    assert spec.evaluate(batch) == spec.evaluate(pyarrow.table(columns))
+    assert spec.evaluate(batch).verdicts == {"R1": "F"}
+
+
+@pytest.mark.parametrize("name", ["t", "x"])
+def test_two_columns_of_a_name_are_refused(name):
+    """No value is taken from one of two columns that nobody can tell apart."""
+    names = ["t", "x", name]
+    table = pyarrow.table([[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]], names)
+    with pytest.raises(rvmon.TraceError, match=f"column `{name}` stands twice in the table"):
+        rvmon.loads(BOUND).evaluate(table)
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton"])
+@pytest.mark.parametrize("unit", ["s", "ns"])
+@pytest.mark.parametrize("time", ["t", "t_ns"])
+def test_dates_are_no_instants(time, unit, engine, tmp_path):
+    """A date or a duration is not taken for a number of seconds; what to give is said."""
+    spec = rvmon.loads(BOUND)
+    values = np.array([1.0, 1.0])
+    for kind in ("datetime64", "timedelta64"):
+        table = {time: np.array([3, 4], f"{kind}[{unit}]"), "x": values}
+        path = tmp_path / "a.parquet"
+        parquet.write_table(pyarrow.table(table), path)
+        for trace in (table, pyarrow.table(table), path):
+            found = told(spec, trace, time, engine)
+            assert "number" in found
+            assert ("1970-01-01T0" if kind == "datetime64" else "3 ") in found
+    table = {"t": [0, 1], "x": np.array([3, 4], f"datetime64[{unit}]")}
+    for trace in (table, pyarrow.table(table)):
+        assert "`x`: expected a number, found '1970" in told(spec, trace, "t", engine)
+
+
+def test_dates_that_are_not_declared_do_not_matter():
+    """Columns that the specification does not name may hold anything."""
+    table = {"t": [0, 1], "x": [1.0, 1.0], "when": np.array([3, 4], "datetime64[ns]")}
+    for trace in (table, pyarrow.table(table)):
+        assert rvmon.loads(BOUND).evaluate(trace).verdicts == {"R1": "P"}
+
+
+@pytest.mark.parametrize("wrong", [5, None, 2.5, "soon", b"1", np.array(3), np.float64(1)])
+@pytest.mark.parametrize("name", ["t", "x"])
+def test_what_is_no_column_is_refused(name, wrong):
+    """A single value in the place of a column is named."""
+    table = {"t": [0, 1], "x": [1.0, 1.0], name: wrong}
+    with pytest.raises(rvmon.TraceError, match=f"column `{name}`: expected an array or a list"):
+        rvmon.loads(BOUND).evaluate(table)
+
+
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton"])
+def test_wide_floats_are_refused(engine):
+    """A number that is no double would be rounded: every engine says so."""
+    table = {"t": np.arange(3.0), "x": np.ones(3, np.longdouble)}
+    assert "`x`: expected a number" in told(rvmon.loads(BOUND), table, "t", engine)
+
+
+@pytest.mark.parametrize("rows", [3, 3000])
+def test_infinite_numbers_are_values(rows):
+    """Sums over a column may be beyond the doubles or no number: nothing warns of that."""
+    spec = rvmon.loads(BOUND)
+    for values in ([np.inf, -np.inf, 1e308], [1e308, 1e308, 1e308], [np.nan, np.inf, -np.inf]):
+        column = np.resize(np.array(values), rows)
+        report = spec.evaluate({"t": np.arange(float(rows)), "x": column})
+        lists = spec.evaluate({"t": list(range(rows)), "x": column.tolist()}, engine="automaton")
+        assert report.verdicts == lists.verdicts
+        assert report.health == lists.health
