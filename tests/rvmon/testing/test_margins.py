@@ -5,10 +5,11 @@ import pytest
 from rvmon.monitor.robustness import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked import TimeModel
-from rvmon.testing.differential import case_of, judge
+from rvmon.testing.differential import case_of
 from rvmon.testing.drive import tell
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.law import judge
 from rvmon.testing.margins import margins
 from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Decision
