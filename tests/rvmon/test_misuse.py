@@ -128,7 +128,7 @@ def test_ticks_given_online_are_whole_numbers(spec, engine, wrong):
     monitor.step_ns(1, {"knock": True, "closed": True})
     ends = () if wrong is None else (monitor.finish_ns,)
     for call in (lambda t: monitor.step_ns(t, {}), monitor.advance_ns, *ends):
-        with pytest.raises(TraceError, match=r"no whole number of nanoseconds|out of range") as told:
+        with pytest.raises(TraceError, match=r"no whole number|out of range") as told:
             call(wrong)
         assert len(str(told.value)) < 200
     assert [attempt.decided for attempt in monitor.advance_ns(5_000_000_000)] == [2_000_000_002]

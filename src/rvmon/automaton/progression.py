@@ -12,7 +12,7 @@ from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, holds
 from rvmon.formula.core import Literal, Temporal
 from rvmon.formula.progress import after, step, value
-from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Residual
+from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
 
 _CACHE_LIMIT = 20_000
 """Edges that are kept; with more, all are forgotten (they can be made again)."""
@@ -22,6 +22,9 @@ MOST_CLOCKS = 256
 
 A window above 0 that is started anew at every tick of held time would need one for every tick.
 """
+
+MOST_CLAUSES = 4_096
+"""Ways to fulfil what one attempt owes that may be weighed at once, before they are reduced."""
 
 Edge = tuple[int, tuple[int, ...]]
 """Target and the sources of its clocks."""
@@ -42,7 +45,8 @@ class Progression:
         name: of the requirement, for messages.
 
     Raises:
-        TooManyObligationsError: in a step, if an attempt owes more than `MOST_CLOCKS` at once.
+        TooManyObligationsError: in a step, if an attempt owes more than `MOST_CLOCKS` at once, or
+            in more than `MOST_CLAUSES` ways.
     """
 
     def __init__(self, owed: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
@@ -123,7 +127,13 @@ class Progression:
         def read(literal: Literal) -> Residual:
             return HOLDS if holds(literal.sense, cells[literal.proposition]) else FAILS
 
-        reached = step(self._locations[index].residual, ages, read)
+        try:
+            reached = step(self._locations[index].residual, ages, read, MOST_CLAUSES)
+        except TooManyClausesError:
+            raise TooManyObligationsError(
+                f"an attempt of {self._name} can be fulfilled in more than {MOST_CLAUSES} ways: "
+                "use the engine `auto` or `network`"
+            ) from None
         residual, sources = normalise(reached, len(ages))
         if len(sources) > MOST_CLOCKS:
             raise TooManyObligationsError(
