@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.codegen.c_build import NATIVE, built
+from rvmon.codegen.c_build import NATIVE, loaded
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
 from rvmon.codegen.c_source import c_files
@@ -102,8 +102,7 @@ class BatchLibrary:
             "-shared",
             "-fPIC",
         ]
-        path = built(made.texts, [f"{made.prefix}_batch.c"], ".so", flags)
-        library = ctypes.CDLL(str(path))
+        library = loaded(made.texts, [f"{made.prefix}_batch.c"], flags)
         address, number = ctypes.c_void_p, ctypes.c_int64
 
         def function(name: str, result: Any, *arguments: Any) -> Any:

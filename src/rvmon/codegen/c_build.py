@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import sys
@@ -21,17 +23,21 @@ NATIVE = "-march=native"
 """Has the compiler use all that this machine's processor can do."""
 
 
-def compiler() -> str:
-    """The C compiler: `$CC`, or the first of cc, gcc, clang.
+def compiler() -> list[str]:
+    """The command of the C compiler: `$CC`, be it with options, or the first of cc, gcc, clang.
 
     Raises:
         RvmonError: there is none.
     """
-    named = os.environ.get("CC")
-    for name in [named] if named else ["cc", "gcc", "clang"]:
+    named = os.environ.get("CC", "")
+    try:
+        words = shlex.split(named)
+    except ValueError:  # a quotation that does not end
+        words = [named]
+    for name, *options in [words] if words else [["cc"], ["gcc"], ["clang"]]:
         found = shutil.which(name)
         if found:
-            return found
+            return [found, *options]
     raise RvmonError(
         f"no C compiler found ({named or 'cc, gcc, clang'}): install one, or name it with CC=…"
     )
@@ -42,17 +48,28 @@ def cache_directory() -> Path:
 
     Raises:
         RvmonError: the place belongs to someone else, or others may write there.
+
+    Source: XDG Base Directory Specification: paths that are not absolute are passed over.
     """
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    if not os.path.isabs(base):
+        base = os.path.join(os.path.expanduser("~"), ".cache")
     path = Path(base) / "rvmon"
     try:
         path.mkdir(parents=True, exist_ok=True, mode=0o700)
         state = path.stat()
     except OSError as error:
-        raise RvmonError(f"cannot keep compiled monitors in {path}: {error.strerror}") from None
+        raise _not_kept(path, error) from None
     if hasattr(os, "getuid") and (state.st_uid != os.getuid() or state.st_mode & 0o022):
         raise RvmonError(f"{path} can be written by others: `chmod 700` it, or set XDG_CACHE_HOME")
     return path
+
+
+def _not_kept(folder: Path, error: OSError) -> RvmonError:
+    return RvmonError(
+        f"cannot keep compiled monitors in {folder}: {error.strerror}: name another place with "
+        "XDG_CACHE_HOME"
+    )
 
 
 def processor() -> str:
@@ -82,19 +99,50 @@ def built(
         libraries: for the linker.
 
     Raises:
-        RvmonError: there is no compiler, or it failed.
+        RvmonError: there is no compiler, it failed, or the cache takes no files.
     """
-    command = [compiler(), *FLAGS, *flags]
+    command = [*compiler(), *FLAGS, *flags]
     machine = processor() if NATIVE in flags else sys.platform
     key = hashlib.sha256(repr((sorted(texts.items()), command, machine)).encode()).hexdigest()
     target = cache_directory() / f"{key[:40]}{suffix}"
     if target.exists():
         return target
+    try:
+        _make(target, texts, [*command, *sources], libraries)
+    except OSError as error:
+        raise _not_kept(target.parent, error) from None
+    return target
+
+
+def loaded(texts: Mapping[str, str], sources: Sequence[str], flags: Sequence[str]) -> ctypes.CDLL:
+    """A shared library of some files, as `built` makes it; one that cannot be loaded is made anew.
+
+    Raises:
+        RvmonError: it cannot be made, or not be loaded.
+    """
+    path = built(texts, sources, ".so", flags)
+    try:
+        return ctypes.CDLL(str(path))
+    except OSError:  # cut off, or of another machine that shares the folder
+        path.unlink(missing_ok=True)
+    path = built(texts, sources, ".so", flags)
+    try:
+        return ctypes.CDLL(str(path))
+    except OSError as error:
+        raise RvmonError(
+            f"cannot load a compiled monitor: {error}: name a cache on a disk that programs may "
+            "run from with XDG_CACHE_HOME"
+        ) from None
+
+
+def _make(
+    target: Path, texts: Mapping[str, str], command: Sequence[str], libraries: Sequence[str]
+) -> None:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         for name, text in texts.items():
             (Path(scratch) / name).write_text(text, encoding="utf-8")
         made = Path(scratch) / "made"
-        words = [*command, *sources, "-o", str(made), *libraries]
+        words = [*command, "-o", str(made), *libraries]
         done = _run(words, scratch)
         if done.returncode and NATIVE in words:  # not every compiler has it for every processor
             words.remove(NATIVE)
@@ -102,7 +150,6 @@ def built(
         if done.returncode:
             raise RvmonError(f"the C compiler failed: {' '.join(words)}\n{done.stderr}")
         made.replace(target)  # atomic: others see the whole file or none
-    return target
 
 
 def _run(words: Sequence[str], folder: str) -> subprocess.CompletedProcess[str]:

@@ -48,9 +48,9 @@ def cache_folder() -> Path | None:
     """Where tables are kept; `None` if nowhere: switched off, or others could write there."""
     if os.environ.get("RVMON_CACHE", "").lower() in ("off", "0", "no"):
         return None
-    base = os.environ.get("XDG_CACHE_HOME")
+    base = Path(os.environ.get("XDG_CACHE_HOME", ""))
     try:
-        folder = (Path(base) if base else Path.home() / ".cache") / "rvmon"
+        folder = (base if base.is_absolute() else Path.home() / ".cache") / "rvmon"
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         return folder if _is_ours(folder) else None
     except (OSError, RuntimeError):

@@ -1,0 +1,87 @@
+"""The cache of compiled C, and the compiler that fills it."""
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+import pytest
+
+import rvmon
+
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+
+SPEC = "spec s\nsignal p : bool\nrequirement R1\n  always p\n"
+TRACE = {"t": [0.0, 1.0], "p": [True, False]}
+
+
+def verdicts() -> dict[str, str]:
+    """What a specification that was loaded just now says by compiled C."""
+    return dict(rvmon.loads(SPEC).evaluate(TRACE, engine="c").verdicts)
+
+
+def test_a_file_that_was_cut_off_is_made_anew(tmp_path, monkeypatch):
+    """A library that cannot be loaded is compiled once more."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "first"))
+    assert verdicts() == {"R1": "F"}
+    (whole,) = (tmp_path / "first" / "rvmon").glob("*.so")
+    # Elsewhere: a process that has loaded a file does not look at it again.
+    broken = tmp_path / "second" / "rvmon" / whole.name
+    broken.parent.mkdir(parents=True, mode=0o700)
+    broken.write_bytes(whole.read_bytes()[:50])
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "second"))
+    assert verdicts() == {"R1": "F"}
+    assert broken.stat().st_size == whole.stat().st_size
+
+
+def test_what_cannot_be_loaded_is_told(tmp_path, monkeypatch):
+    """If what was made anew cannot be loaded either, that is said, with what to do."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("CC", str(tmp_path / "cc"))
+    (tmp_path / "cc").write_text(
+        '#!/bin/sh\nwhile [ "$1" != -o ]; do shift; done\necho nothing > "$2"\n'
+    )
+    (tmp_path / "cc").chmod(0o700)
+    with pytest.raises(rvmon.RvmonError, match=r"cannot load a compiled monitor: .*XDG_CACHE_HOME"):
+        verdicts()
+
+
+def test_a_folder_that_takes_no_files_is_told(tmp_path, monkeypatch):
+    """Where nothing can be written, the folder and the cause are named."""
+
+    def refused(**_: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    if os.geteuid():
+        (tmp_path / "rvmon").mkdir(mode=0o500)
+    else:  # who may write everywhere
+        monkeypatch.setattr(tempfile, "TemporaryDirectory", refused)
+    with pytest.raises(rvmon.RvmonError, match=r"monitors in .*rvmon: Permission denied: name"):
+        verdicts()
+
+
+def test_a_relative_cache_is_passed_over(tmp_path, monkeypatch):
+    """A cache that is named by a relative path is none: that of the home folder is taken."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("XDG_CACHE_HOME", "here")
+    assert verdicts() == {"R1": "F"}
+    assert not Path("here").exists()
+    assert len(list(Path("home/.cache/rvmon").glob("*.so"))) == 1
+
+
+def test_a_compiler_with_options(tmp_path, monkeypatch):
+    """`CC` is a command: what stands behind the name are its options."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("CC", "cc -O1 -DUNUSED='a b'")
+    assert verdicts() == {"R1": "F"}
+
+
+@pytest.mark.parametrize("named", ["no-such-compiler -O1", "cc 'open"])
+def test_a_compiler_that_there_is_not(named, tmp_path, monkeypatch):
+    """What `CC` names is said, if it is no compiler."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("CC", named)
+    with pytest.raises(rvmon.RvmonError, match=f"no C compiler found .{named}"):
+        verdicts()
