@@ -39,7 +39,8 @@ _COMPARISONS = {
     CompareOp.GE: "at_least",
     CompareOp.GT: "more",
 }
-_LIBRARY = {NumericOp.SQRT: "sqrt", NumericOp.HYPOT: "hypot"}
+_ROOTS = {NumericOp.SQRT: "sqrt", NumericOp.HYPOT: "length"}
+"""Functions that `<math.h>` has, or that need it."""
 
 
 def uses_library(plan: Plan) -> bool:
@@ -47,7 +48,7 @@ def uses_library(plan: Plan) -> bool:
     return any(
         f"{name}(" in "".join(node_body(plan, Names(plan), place))
         for place in range(len(plan.graph.nodes))
-        for name in _LIBRARY.values()
+        for name in _ROOTS.values()
     )
 
 
@@ -189,8 +190,8 @@ def _update(names: Names, function: UpdateFunction, name: str) -> str:
 def _arithmetic(op: NumericOp, args: list[str]) -> str:
     if op in _INFIX:
         return f"finite({args[0]} {_INFIX[op]} {args[1]})"
-    if op in _LIBRARY:
-        return f"finite({_LIBRARY[op]}({', '.join(args)}))"
+    if op in _ROOTS:
+        return f"finite({_ROOTS[op]}({', '.join(args)}))"
     match op:
         case NumericOp.NEG:
             return f"finite(-{args[0]})"

@@ -1,5 +1,6 @@
 """The engine `c`: what it refuses, and what it says where columns are missing."""
 
+import math
 import shutil
 
 import numpy as np
@@ -112,3 +113,18 @@ def test_an_unknown_engine_is_told_which_there_are(trace):
         spec.evaluate(trace, engine="nope")
     with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network$"):
         spec.monitor(engine="nope")
+
+
+def test_lengths_of_vectors_are_those_of_python():
+    """`hypot` gives the number that all engines compute, to the last bit."""
+    dice = np.random.default_rng(1)
+    x = np.concatenate([dice.random(3000), [0.0, 3e200, 1e-200, 1.0, 1e308]])
+    y = np.concatenate([np.round(dice.normal(0, 9, 3000), 2), [0.0, 4e200, 3e-200, 1e-9, 1.0]])
+    trace = {"t": np.arange(len(x)), "x": x, "y": y}
+    trace["h"] = np.array(list(map(math.hypot, x.tolist(), y.tolist())))
+    spec = spec_of("signal x, y, h : real", "always hypot(x, y) == h")
+    assert spec.evaluate(trace, engine="c").verdicts == {"R1": "P"}
+    unknown = {"t": np.arange(2), "x": np.array([np.inf, 1e308]), "y": np.array([1.0, 1.7e308])}
+    spec = spec_of("signal x, y : real", "upon start\n  then within 1 s hypot(x, y) > 5")
+    for engine in ("automaton", "c"):
+        assert spec.evaluate(unknown, engine=engine).verdicts == {"R1": "I"}
