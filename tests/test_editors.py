@@ -85,7 +85,7 @@ def test_numbers_with_units():
 def findings():
     """The findings about a file with an error."""
     from rvmon.errors import SpecError
-    from rvmon.spec import compile_text
+    from rvmon.spec.compile import compile_text
 
     with pytest.raises(SpecError) as caught:
         compile_text('requirement R "a \\"quote\\"" always a', name="a.rv")

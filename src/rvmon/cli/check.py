@@ -93,7 +93,7 @@ def _checked(
 ) -> tuple[CheckedSpec | None, Sequence[Diagnostic]]:
     """The specification, or nothing if it is unfit for use, and what is to be said about it."""
     from rvmon.errors import SpecError
-    from rvmon.spec import compile_text
+    from rvmon.spec.compile import compile_text
 
     directory = None if name == "-" else Path(name).parent
     shown = "<stdin>" if name == "-" else name

@@ -1,25 +1,22 @@
 """Parsers whose tables were worked out before: kept in the user's cache folder, as JSON.
 
-To work out the tables of a grammar takes ten times as long as to read them. The cache holds data
-and no code; it is keyed by the grammar and by the version of the parser generator, so that it is
-never out of date and can be deleted at any time. Whatever is wrong with it, the tables are worked
-out anew. `RVMON_CACHE=off` switches it off.
+To work out the tables of a grammar takes ten times as long as to read them. They are keyed by the
+grammar and by the version of the parser generator, so that they are never out of date.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import tempfile
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import lark
 from lark.grammar import Rule
 from lark.lexer import TerminalDef
+
+from rvmon.cache import cache_folder, keep, read_kept
 
 _FORMAT = 1
 
@@ -44,34 +41,11 @@ def parser_of(grammar: str, options: Mapping[str, Any]) -> lark.Lark:
     return made
 
 
-def cache_folder() -> Path | None:
-    """Where tables are kept; `None` if nowhere: switched off, or others could write there."""
-    if os.environ.get("RVMON_CACHE", "").lower() in ("off", "0", "no"):
-        return None
-    base = Path(os.environ.get("XDG_CACHE_HOME", ""))
-    try:
-        folder = (base if base.is_absolute() else Path.home() / ".cache") / "rvmon"
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        return folder if _is_ours(folder) else None
-    except (OSError, RuntimeError):
-        return None
-
-
-def _is_ours(path: Path) -> bool:
-    """Whether nobody else can write there, as far as the system can tell."""
-    if not hasattr(os, "getuid"):
-        return True
-    found = path.stat()
-    return found.st_uid == os.getuid() and not found.st_mode & 0o022
-
-
 def _read(path: Path) -> lark.Lark | None:
+    body = read_kept(path)
+    if body is None:
+        return None
     try:
-        if not _is_ours(path):
-            return None
-        checksum, _, body = path.read_bytes().partition(b"\n")
-        if hashlib.sha256(body).hexdigest().encode() != checksum:
-            return None
         known: lark.Lark = lark.Lark.load(_thawed(json.loads(body)))
         known.ignore_tokens = list(known.lexer_conf.ignore)
     except Exception:  # noqa: BLE001 - whatever is wrong with a cache, it can be done without
@@ -80,18 +54,8 @@ def _read(path: Path) -> lark.Lark | None:
 
 
 def _write(path: Path, made: lark.Lark) -> None:
-    """Put the tables where others see them whole or not at all; if that fails, never mind."""
     data, memo = made.memo_serialize([TerminalDef, Rule])
-    body = json.dumps(_frozen({"data": data, "memo": memo}), separators=(",", ":")).encode()
-    name = ""
-    with suppress(OSError):
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            name = file.name
-            file.write(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
-        Path(name).replace(path)
-        return
-    if name:
-        Path(name).unlink(missing_ok=True)
+    keep(path, json.dumps(_frozen({"data": data, "memo": memo}), separators=(",", ":")).encode())
 
 
 def _frozen(value: Any) -> Any:

@@ -8,7 +8,7 @@ import pytest
 from rvmon.diagnostics.colour import SEVERITIES, coloured, wants_colour
 from rvmon.diagnostics.render import render_full
 from rvmon.errors import SpecError
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 
 
 class Terminal(io.StringIO):

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon.errors import SpecError
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.spec.printer import format_formula
 
 NAMES = """spec demo

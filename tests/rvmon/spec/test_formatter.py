@@ -6,7 +6,7 @@ import re
 import pytest
 
 from rvmon.errors import SpecError
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.spec.formatter import format_text
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.spec_text import meaning, scribbled, spec_text

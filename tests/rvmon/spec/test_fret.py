@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.testing import oracle
 from rvmon.trace.sample import Sample
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from rvmon.diagnostics.render import render_concise, render_full, render_json
 from rvmon.errors import SpecError
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.spec.formatter import format_text
 from rvmon.spec.rules.registry import all_rules
 

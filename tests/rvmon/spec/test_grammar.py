@@ -8,7 +8,7 @@ import pytest
 from lark import logger
 
 from rvmon.errors import SpecError
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.spec.parse import GRAMMAR_OPTIONS, grammar_text
 from rvmon.spec.reads import names_of_spec
 from rvmon.spec.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED

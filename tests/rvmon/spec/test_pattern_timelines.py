@@ -6,7 +6,7 @@ from importlib import resources
 
 import pytest
 
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.testing import oracle
 from rvmon.trace.sample import Sample
 

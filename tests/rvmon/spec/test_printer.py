@@ -4,8 +4,8 @@ import random
 
 import pytest
 
-from rvmon.spec import compile_text
 from rvmon.spec.checked import Arithmetic, Compare, Literal, SignalValue
+from rvmon.spec.compile import compile_text
 from rvmon.spec.printer import format_duration, format_formula, format_numeric
 from rvmon.spec.tense import subformulas
 from rvmon.spec.units import unit_table

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rvmon.errors import SpecError
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.spec.effort import DEEPEST, LARGEST
 from rvmon.spec.findings import MOST
 from rvmon.spec.formatter import format_text

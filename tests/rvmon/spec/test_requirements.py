@@ -169,7 +169,7 @@ def test_for_each(requirement, codes):
 
 def test_unread_names_are_warned_of(checked):
     """A signal that nothing reads is a warning with its place."""
-    from rvmon.spec import compile_text
+    from rvmon.spec.compile import compile_text
 
     text = "signal a, b : bool\nevent e\nrequirement R upon a then eventually a"
     _, warnings = compile_text(text)

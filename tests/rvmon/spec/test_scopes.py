@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 from rvmon.testing import oracle
 from rvmon.trace.sample import Sample
 

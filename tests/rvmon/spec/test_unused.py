@@ -2,7 +2,7 @@
 
 import pytest
 
-from rvmon.spec import compile_text
+from rvmon.spec.compile import compile_text
 
 DEMAND = "event a, b\nrequirement R\n  upon a\n  then within T b\n"
 

@@ -1,0 +1,69 @@
+"""Specifications that were compiled before, from the user's cache folder."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.cache import cache_folder, keep, read_kept
+from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.stored import restored, stored
+
+if TYPE_CHECKING:
+    from rvmon.diagnostics.diagnostic import Diagnostic
+
+    Compiled = tuple[CheckedSpec, tuple[Diagnostic, ...]]
+
+_HERE = Path(__file__).parent
+
+
+def compile_kept(
+    text: str,
+    *,
+    name: str = "<string>",
+    constants: Mapping[str, str] | None = None,
+    directory: Path | None = None,
+) -> Compiled:
+    """As `rvmon.spec.compile.compile_text`, which is asked once for each text.
+
+    What is kept is keyed by all that it depends on: text, name, constants, and the compiler. A text
+    that imports others is compiled each time.
+    """
+    folder = None if "import" in text else cache_folder()
+    if folder is None:
+        return _compiled(text, name, constants, directory)
+    said = json.dumps([_compiler(), name, text, sorted((constants or {}).items())])
+    path = folder / f"spec-{hashlib.sha256(said.encode()).hexdigest()}.json"
+    found = _read(path)
+    if found is None:
+        found = _compiled(text, name, constants, directory)
+        keep(path, json.dumps(stored(found), separators=(",", ":")).encode())
+    return found
+
+
+def _compiled(
+    text: str, name: str, constants: Mapping[str, str] | None, directory: Path | None
+) -> Compiled:
+    from rvmon.spec.compile import compile_text
+
+    return compile_text(text, name=name, constants=constants, directory=directory)
+
+
+def _compiler() -> str:
+    """What tells one compiler from another: a hash of its files."""
+    files = sorted([*_HERE.glob("*.py"), *_HERE.glob("*.lark"), *_HERE.glob("rules/*.py")])
+    return hashlib.sha256(b"".join(one.read_bytes() for one in files)).hexdigest()
+
+
+def _read(path: Path) -> Compiled | None:
+    body = read_kept(path)
+    if body is None:
+        return None
+    try:
+        spec, warnings = restored(json.loads(body))
+    except (ValueError, LookupError, TypeError, RecursionError):
+        return None
+    return (spec, warnings) if isinstance(spec, CheckedSpec) else None
