@@ -52,12 +52,12 @@ class Tokens:
             self.location[which], self.anchor[which], self.region[which], self.place[which]
         )
 
-    def same(self, other: Tokens) -> bool:
-        """Whether all attempts are where those of the other are."""
-        return all(
-            np.array_equal(getattr(self, one.name), getattr(other, one.name))
-            for one in fields(self)
-        )
+    def differ(self, other: Tokens) -> NDArray[np.bool_]:
+        """Which attempts are not where those of the other are."""
+        found = np.zeros(len(self), bool)
+        for one in fields(self):
+            found |= getattr(self, one.name) != getattr(other, one.name)
+        return found
 
     def put(self, which: Any, others: Tokens) -> None:
         """Replace some of them."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -89,6 +89,30 @@ def moves_of(automaton: Automaton, gap: int | None) -> Moves | None:
         restarts,
         ~loops | restarts,
         np.array(list(automaton.time_values), np.int64),
+    )
+
+
+def joint_moves(moves: Moves, one: NDArray[Any], other: NDArray[Any]) -> Moves:
+    """The moves under two letters at a time, as long as both lead to the same.
+
+    Args:
+        moves: of an automaton.
+        one: int[k], classes of letters; the joint letter `i` is `one[i]` with `other[i]`.
+        other: int[k].
+
+    Returns:
+        Tables by joint letter, that lead to `PASSED` where the two lead apart.
+    """
+    targets, restarts = moves.targets[:, one], moves.restarts[:, one]
+    apart = (targets != moves.targets[:, other]) | (restarts != moves.restarts[:, other])
+    targets = np.where(apart, PASSED, targets)
+    restarts = restarts & ~apart
+    return replace(
+        moves,
+        class_of=np.arange(len(one)),
+        targets=targets,
+        restarts=restarts,
+        leads_on=(targets != moves.owner[:, None]) | restarts,
     )
 
 

@@ -17,6 +17,9 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+_SHOWN = 3
+"""So many attempts are shown of a sequence of them."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Decisions:
@@ -152,7 +155,8 @@ class JudgedAttempts(Sequence[Attempt]):
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return repr(tuple(self))
+        first = ", ".join([*map(repr, self[:_SHOWN]), *["…"][: len(self) - _SHOWN]])
+        return f"<{len(self)} attempts: {first}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What other processes get: the attempts themselves."""

@@ -21,7 +21,7 @@ from rvmon.monitor.columns.drive import (
     starting,
 )
 from rvmon.monitor.columns.letters import Letters, letters_along
-from rvmon.monitor.columns.moves import Moves
+from rvmon.monitor.columns.moves import Moves, joint_moves
 from rvmon.monitor.columns.records import DecidedAttempts, Decisions
 from rvmon.monitor.columns.starts import Starts
 from rvmon.monitor.columns.timeline import Piece, Timeline
@@ -91,9 +91,15 @@ class ColumnRule:
         starts, letters = letters_along(self._compiled.alphabet, truths, axis)
         for track, truth in zip(self._tracks, truths, strict=True):
             track.take(truth, axis)
-        if letters[0] is not letters[1]:
+        known = letters[0] is letters[1]
+        if not known:
             self._doubt(piece, starts, letters)
+        before = None if known else self._one_run()
         outcome, reading = self._driven(piece, starts, letters, limit)
+        if before is not None:
+            together, tokens = before
+            still = outcome.decided[together] == FAR
+            self._note_parted(piece, together[still], tokens.pick(still), starts, letters, limit)
         self._note(piece, outcome, starts, letters, reading)
         if axis.start < axis.stop:
             self._letters = (letters[0].item(-1), letters[1].item(-1))
@@ -127,6 +133,52 @@ class ColumnRule:
         places = np.maximum(starts[apart[found]], following)
         self._doubted[none] = piece.axis.instants(places)
         self._doubt_seen[none] = piece.seen(self._witness.leaves, places)
+
+    def _one_run(self) -> tuple[Numbers, Tokens]:
+        """The attempts of which both runs are at one place, and where."""
+        worse, better = self._worse, self._better
+        together = (
+            np.arange(len(worse)) if better is None else np.flatnonzero(~worse.differ(better))
+        )
+        return together, worse.pick(together)
+
+    def _note_parted(
+        self,
+        piece: Piece,
+        together: Numbers,
+        tokens: Tokens,
+        starts: Numbers,
+        letters: tuple[Numbers, Numbers],
+        limit: int,
+    ) -> None:
+        """Note of open attempts of which the runs parted in the piece where they first did.
+
+        Args:
+            piece: of the trace.
+            together: the attempts whose runs were at one place before it.
+            tokens: their place.
+            starts: of the stretches of one letter.
+            letters: of the stretches, in both readings.
+            limit: the instant that time has come to.
+        """
+        if self._better is None:
+            return
+        parted = self._worse.differ(self._better)[together]
+        if not parted.any():
+            return
+        together, tokens = together[parted], tokens.pick(parted)
+        following = tokens.place + 1
+        classes, count = self._moves.class_of, self._moves.targets.shape[1]
+        pairs, joint = np.unique(
+            classes[letters[0]] * count + classes[letters[1]], return_inverse=True
+        )
+        moves = joint_moves(self._moves, *np.divmod(pairs, count))
+        made = Letters(moves, starts, joint, piece.axis.stop)
+        came = Driver(moves, made, piece.axis, limit).drive(tokens)
+        stretch = np.searchsorted(starts, came.place, "right") - 1
+        places = np.maximum(starts[stretch], following)
+        self._doubted[together] = piece.axis.instants(places)
+        self._doubt_seen[together] = piece.seen(self._witness.leaves, places)
 
     def _driven(
         self, piece: Piece, starts: Numbers, letters: tuple[Numbers, Numbers], limit: int
@@ -203,7 +255,7 @@ class ColumnRule:
         self._worse = self._worse.pick(which)
         if self._better is not None:
             self._better = self._better.pick(which)
-            if self._better.same(self._worse):
+            if not self._better.differ(self._worse).any():
                 self._better = None
 
     def finish(self, timeline: Timeline, end: int, last: int) -> None:

@@ -138,3 +138,52 @@ def test_no_row_is_no_trace(end):
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
     report = spec.evaluate({"t": np.empty(0), "p": np.empty(0, bool)}, until=end)
     assert report.verdicts == {"R1": "NT"}
+
+
+def test_many_attempts_are_shown_in_short():
+    """Showing a report makes the first attempts alone, and says how many there are."""
+    report = rvmon.loads(SPEC.format(time="held")).evaluate(recording(3), time="t_ns")
+    shown = repr(report.attempts)
+    assert shown.startswith(f"<{len(report.attempts)} attempts: {report.attempts[0]!r}, ")
+    assert shown.endswith(f"{report.attempts[2]!r}, …>")
+    assert shown in repr(report)
+    few = rvmon.loads("spec s\nsignal speed : real\nrequirement R1\n  always speed < 2\n")
+    columns = recording(3)
+    attempts = few.evaluate(columns, time="t_ns").attempts
+    assert repr(attempts) == f"<1 attempts: {attempts[0]!r}>"
+
+
+UNKNOWN = {
+    "before it is asked for": ([0, 1, 3], [None, 5.0, None], "3 ns"),
+    "until it is asked for, and on": ([0, 1], [None, None], "0 s"),
+    "in a window that does not count, and in one that does": (
+        [0, 1, 2, 4, 5],
+        [5.0, None, 5.0, 5.0, None],
+        "5 ns",
+    ),
+    "twice when it is asked for": ([0, 3, 4, 5], [5.0, None, 5.0, None], "3 ns"),
+}
+
+
+@pytest.mark.parametrize("size", [4, 2000])
+@pytest.mark.parametrize("case", UNKNOWN)
+def test_what_left_an_attempt_open_is_told_with_its_instant(case, size):
+    """The instant at which the unknown made a difference is named, not one before."""
+    instants, values, since = UNKNOWN[case]
+    spec = rvmon.loads(
+        "spec s\nsignal x : real\nevent e\nrequirement R1\n  upon e\n  then G[3 ns, 8 ns] x > 1\n"
+    )
+    t = np.append(instants, np.arange(20, 1520))
+    x = np.append([np.nan if value is None else value for value in values], np.full(1500, 5.0))
+    columns = {"t_ns": t, "x": x, "e": t == 0}
+    blocks = [
+        (t[at : at + size], {name: columns[name][at : at + size] for name in ("x", "e")})
+        for at in range(0, len(t), size)
+    ]
+    report = evaluate_plain(
+        spec._compiled, ["x", "e"], lambda: blocks, only=None, engine="auto", until=None
+    )
+    assert report is not None
+    assert isinstance(report.attempts, JudgedAttempts)
+    assert report.attempts[0].reason == f"left open by the input: `x > 1` unknown at {since}"
+    assert report == of_a_monitor(spec, columns, int(t[-1]))
