@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -10,11 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.codegen.c_build import NATIVE, loaded
+from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.plan import Plan
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, TraceError
+from rvmon.trace.time import format_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -90,12 +93,14 @@ class BatchLibrary:
         optimised: whether it is to be fast; otherwise it is compiled sooner.
 
     Raises:
-        RvmonError: there is no C compiler, or a requirement has no automaton.
+        RvmonError: there is no C compiler, a requirement has no automaton, or a whole number is no
+            double.
     """
 
     def __init__(self, plan: Plan, *, optimised: bool = True) -> None:
         self.names = Names(plan)
         self.plan = plan
+        self.limits = whole_limits(plan)
         made = c_files(plan)
         flags = [
             *(("-O3", "-fno-math-errno", NATIVE) if optimised else ("-O0",)),
@@ -169,9 +174,12 @@ class BatchRun:
             How many rows were taken: fewer than given if one is out of order.
 
         Raises:
+            TraceError: a whole number is larger than C computes with exactly.
             RvmonError: memory ran out, or a static capacity.
         """
         plan = self._library.plan
+        for name, limit in self._library.limits.items():
+            _expect_exact(name, columns.get(name, Column()).values, limit, times)
         keep: list[Any] = [times := np.ascontiguousarray(times, np.int64), advances]
         none = Column()
         values = [
@@ -219,6 +227,26 @@ class BatchRun:
         count = self._library.records(self._batch, ctypes.byref(start))
         if count:
             self._records.append(ctypes.string_at(start, count * RECORD.itemsize))
+
+
+def _expect_exact(
+    name: str, values: NDArray[Any] | None, limit: int, times: NDArray[np.int64]
+) -> None:
+    """See that a column of whole numbers, if it is one, keeps to its limit."""
+    if values is None or values.dtype.kind != "i" or not len(values):
+        return
+    if -limit <= int(values.min()) and int(values.max()) <= limit:
+        return
+    row = int(np.flatnonzero((values < -limit) | (values > limit))[0])
+    raise too_large(name, int(values[row]), limit, int(times[row]))
+
+
+def too_large(name: str, value: int, limit: int, t: int) -> TraceError:
+    """The error that a whole number of a sample is beyond what doubles compute with exactly."""
+    return TraceError(
+        f"sample at {format_ticks(t)}: `{name}` is {reprlib.repr(value)}, but compiled monitors "
+        f"compute with doubles, here exactly up to {limit} only: use the engine `auto`"
+    )
 
 
 def _laid(values: NDArray[Any] | None, kind: np.dtype[Any]) -> NDArray[Any] | None:

@@ -9,6 +9,7 @@ from typing import assert_never
 from rvmon.codegen.c_names import Memory, Names, memory_of
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import events_of
+from rvmon.errors import RvmonError
 from rvmon.formula.state import Elapsed, Leaf, State, StateOp
 from rvmon.spec.checked import (
     Arithmetic,
@@ -211,8 +212,17 @@ def _nested(function: str, args: list[str]) -> str:
 
 
 def real(value: float) -> str:
-    """A number as a C literal of type double, exactly."""
+    """A number as a C literal of type double, exactly.
+
+    Raises:
+        RvmonError: there is no such double.
+    """
     number = float(value)
+    if number != value:
+        raise RvmonError(
+            f"the whole number {value} has more digits than the doubles of generated code: "
+            "judge the specification with `rvmon run`, or write another bound"
+        )
     if not math.isfinite(number):
         raise ValueError(f"{value} is no number of a specification")
     text = repr(number)

@@ -47,7 +47,7 @@ def c_files(plan: Plan) -> CFiles:
     """Generate C.
 
     Raises:
-        RvmonError: a requirement has no automaton.
+        RvmonError: a requirement has no automaton, or a number of the specification is no double.
     """
     for rule in plan.rules:
         if rule.automaton is None:

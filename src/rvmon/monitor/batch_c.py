@@ -95,10 +95,10 @@ def evaluate_recording(
 
     samples = map(checked, recording)
     with _Judging(compiled, only, recording.names) as judging:
-        names = judging.library.names
+        library = judging.library
         while some := list(islice(samples, PIECE)):
             times = np.array([sample.t for sample in some], np.int64)
-            judging.take(times, columns_of_samples(some, names))
+            judging.take(times, columns_of_samples(some, library.names, library.limits))
         return judging.report(recording.end if until is None else until)
 
 

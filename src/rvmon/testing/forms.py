@@ -209,7 +209,7 @@ class _Compiled:
         with BatchRun(self.library, _absent(self.case)) as run:
             taken = run.feed(
                 np.array([row.t for row in rows], np.int64),
-                columns_of_samples(rows, self.library.names),
+                columns_of_samples(rows, self.library.names, self.library.limits),
                 np.array([isinstance(a, int) for a in self.actions], np.uint8),
             )
             if taken != len(rows):

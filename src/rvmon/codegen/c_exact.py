@@ -1,0 +1,106 @@
+"""How large whole numbers may be, so that doubles compute with them as Python does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import prod
+from typing import assert_never
+
+from rvmon.codegen.plan import Plan
+from rvmon.dataflow.numbers import operands
+from rvmon.spec.checked import (
+    Arithmetic,
+    Captured,
+    Compare,
+    FieldValue,
+    Literal,
+    Numeric,
+    NumericOp,
+    SignalValue,
+    UpdateFunction,
+    UpdateValue,
+)
+from rvmon.trace.time import TICKS_PER_SECOND
+
+EXACT = 1 << 53
+"""Up to this magnitude doubles hold all whole numbers."""
+
+_LIMITS = (*(EXACT >> shift for shift in range(54)), 0)
+
+
+def whole_limits(plan: Plan) -> Mapping[str, int]:
+    """By signal and `event.field`, the greatest magnitude of whole numbers that C computes exactly.
+
+    Floats have no limit: Python computes with doubles, too, where one takes part.
+    """
+    limits = dict.fromkeys(plan.signals, EXACT)
+    for event in plan.events:
+        limits |= {f"{event}.{field}": EXACT for field in plan.spec.events[event].fields}
+    for expression in _compared(plan):
+        limit = next(limit for limit in _LIMITS if limit == 0 or _stays_exact(expression, limit))
+        for name in map(_input, operands(expression)):
+            if name is not None:
+                limits[name] = min(limits[name], limit)
+    return limits
+
+
+def _compared(plan: Plan) -> Iterator[Numeric]:
+    for state in plan.graph.nodes:
+        if isinstance(state.leaf, Compare):
+            yield state.leaf.left
+            yield state.leaf.right
+
+
+def _input(part: Numeric) -> str | None:
+    match part:
+        case SignalValue(name=name) | UpdateValue(name=name):
+            return name
+        case FieldValue(event=event, field=field):
+            return f"{event}.{field}"
+        case _:
+            return None
+
+
+def _stays_exact(expression: Numeric, limit: int) -> bool:
+    """Whether no whole number in between is too large, if those that are read have a limit."""
+    match expression:
+        case Arithmetic(args=args):
+            size = _size(expression, limit)
+            return (size is None or size <= EXACT) and all(_stays_exact(a, limit) for a in args)
+        case UpdateValue(function=UpdateFunction.RATE):
+            # The powers of two in the ticks of a second do not count.
+            return 2 * limit * TICKS_PER_SECOND <= EXACT << 9
+        case UpdateValue(function=UpdateFunction.DELTA):
+            return 2 * limit <= EXACT
+        case _:
+            return True
+
+
+def _size(expression: Numeric, limit: int) -> int | None:
+    """The greatest magnitude of a result that is a whole number; `None`: it is always a float."""
+    match expression:
+        case Literal(value=value):
+            return abs(value) if isinstance(value, int) else None
+        case SignalValue() | FieldValue():
+            return limit
+        case UpdateValue(function=UpdateFunction.RATE):
+            return None
+        case UpdateValue():
+            return 2 * limit
+        case Arithmetic(op=op, args=args):
+            return _size_of_result(op, [_size(arg, limit) for arg in args])
+        case Captured():
+            raise ValueError("captured values are not generated")
+        case _:
+            assert_never(expression)
+
+
+def _size_of_result(op: NumericOp, sizes: Sequence[int | None]) -> int | None:
+    whole = [size for size in sizes if size is not None]
+    if op in (NumericOp.DIV, NumericOp.SQRT, NumericOp.HYPOT) or not whole:
+        return None
+    if op in (NumericOp.MIN, NumericOp.MAX):
+        return max(whole)
+    if len(whole) < len(sizes):
+        return None
+    return prod(whole) if op is NumericOp.MUL else sum(whole)
