@@ -149,7 +149,8 @@ class Spec:
         Args:
             trace: a path (`.csv`, `.jsonl`, `.parquet`), columns by name (arrays, an Arrow table),
                 a `Recording`, or an iterable of `(t, values)` with t in seconds.
-            time: the time column of columns; if its name ends in `_ns`, integer ticks.
+            time: the time column of columns, which is no signal besides; if its name ends in
+                `_ns`, integer ticks. Dates are refused: they are no seconds.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
