@@ -149,8 +149,7 @@ class Spec:
         Args:
             trace: a path (`.csv`, `.jsonl`, `.parquet`), columns by name (arrays, an Arrow table),
                 a `Recording`, or an iterable of `(t, values)` with t in seconds.
-            time: the time column of columns, which is no signal besides; if its name ends in
-                `_ns`, integer ticks. Dates are refused: they are no seconds.
+            time: the time column of columns, no signal; if its name ends in `_ns`, integer ticks.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
@@ -371,7 +370,7 @@ class Spec:
             from rvmon.readers.recording import FileRecording
 
             return FileRecording(trace, self.schema, ordered=self.checked.max_delay is None)
-        from rvmon.readers.columns import column_samples, columns_of
+        from rvmon.readers.columns import trace_of_columns
         from rvmon.readers.pairs import pairs_of
         from rvmon.trace.sample import Sample, Trace
 
@@ -379,10 +378,7 @@ class Spec:
             recording: Recording = trace
             return recording
         if isinstance(trace, Mapping) or hasattr(trace, "column_names"):
-            columns = columns_of(trace)
-            declared = {*self.schema.signals, *self.schema.events}
-            names = frozenset(columns) & declared - {time}
-            return Trace(tuple(column_samples(columns, self.schema, time)), names)
+            return trace_of_columns(trace, self.schema, time)
         return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in pairs_of(trace)))
 
 

@@ -8,9 +8,20 @@ from numbers import Integral
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
+
+
+def trace_of_columns(table: Any, schema: Schema, time: str) -> Trace:
+    """Columns as a recording; see `columns_of` and `column_samples` for what is taken and raised.
+
+    >>> trace_of_columns({"t": [0, 1]}, Schema({}, {}), "t").names
+    frozenset()
+    """
+    columns = columns_of(table)
+    names = frozenset(columns) & {*schema.signals, *schema.events} - {time}
+    return Trace(tuple(column_samples(columns, schema, time)), names)
 
 
 def columns_of(table: Any) -> dict[str, list[Any]]:
