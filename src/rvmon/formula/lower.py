@@ -244,6 +244,8 @@ class _Lowering:
                 then = self.core(operand, positive is not rising)
                 # Nothing is before the first position: `previous φ` is false there.
                 before = factory.core_previous(then, first=positive is rising)
+                previous = Unary(UnaryOp.PREVIOUS, operand)
+                self.origins.setdefault(before, Origin(previous, positive is not rising))
                 return (factory.all_of if positive else factory.any_of)([now, before])
             case _:
                 raise AssertionError("other operators were sorted out")

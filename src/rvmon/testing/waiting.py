@@ -23,6 +23,9 @@ _PAST = {
 }
 
 
+_EDGES = {UnaryOp.RISE, UnaryOp.FALL}
+
+
 class Waiting:
     """One attempt as it stands at a moment.
 
@@ -49,6 +52,9 @@ class Waiting:
         self._reached = moment.reached
         self._truths = Truths(word, start.captured)
         parts = [*subformulas(requirement.consequent)]
+        edges = [one for one in parts if isinstance(one, Unary) and one.op in _EDGES]
+        # `rise φ` is `φ and not previous φ`: both may be told by themselves.
+        parts += [Unary(UnaryOp.PREVIOUS, one.operand) for one in edges]
         looks_back = any(isinstance(p, Unary | Binary) and p.op in _PAST for p in parts)
         self._concerned = range(0 if looks_back else start.position, len(letters))
         self._parts = parts
