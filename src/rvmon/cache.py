@@ -20,18 +20,29 @@ def cache_folder() -> Path | None:
     """Where files are kept; `None` if nowhere: switched off, or others could write there."""
     if os.environ.get("RVMON_CACHE", "").lower() in ("off", "0", "no"):
         return None
-    base = os.environ.get("XDG_CACHE_HOME", "")
     try:
-        # A relative path is to be ignored (XDG base directory specification).
-        home = Path(base) if os.path.isabs(base) else Path.home() / ".cache"
-        folder = home / "rvmon"
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        return folder if _is_ours(folder) else None
+        folder = made_folder()
+        return folder if is_ours(folder) else None
     except (OSError, RuntimeError):
         return None
 
 
-def _is_ours(path: Path) -> bool:
+def made_folder() -> Path:
+    """The user's cache folder of rvmon, made if need be.
+
+    Raises:
+        OSError: it cannot be made.
+        RuntimeError: the user has no home.
+
+    Source: XDG Base Directory Specification: paths that are not absolute are passed over.
+    """
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    folder = (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "rvmon"
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return folder
+
+
+def is_ours(path: Path) -> bool:
     """Whether nobody else can write there, as far as the system can tell."""
     if not hasattr(os, "getuid"):
         return True
@@ -42,7 +53,7 @@ def _is_ours(path: Path) -> bool:
 def read_kept(path: Path) -> bytes | None:
     """What was written there; `None` if that is nothing, not ours, or not whole."""
     try:
-        if not _is_ours(path):
+        if not is_ours(path):
             return None
         checksum, _, body = path.read_bytes().partition(b"\n")
         os.utime(path)

@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from rvmon.cache import is_ours, made_folder
 from rvmon.errors import RvmonError
 
 FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-ffp-contract=off")
@@ -48,24 +49,18 @@ def cache_directory() -> Path:
 
     Raises:
         RvmonError: the place belongs to someone else, or others may write there.
-
-    Source: XDG Base Directory Specification: paths that are not absolute are passed over.
     """
-    base = os.environ.get("XDG_CACHE_HOME", "")
-    if not os.path.isabs(base):
-        base = os.path.join(os.path.expanduser("~"), ".cache")
-    path = Path(base) / "rvmon"
     try:
-        path.mkdir(parents=True, exist_ok=True, mode=0o700)
-        state = path.stat()
+        path = made_folder()
+        ours = is_ours(path)
     except OSError as error:
-        raise _not_kept(path, error) from None
-    if hasattr(os, "getuid") and (state.st_uid != os.getuid() or state.st_mode & 0o022):
+        raise _not_kept(error.filename, error) from None
+    if not ours:
         raise RvmonError(f"{path} can be written by others: `chmod 700` it, or set XDG_CACHE_HOME")
     return path
 
 
-def _not_kept(folder: Path, error: OSError) -> RvmonError:
+def _not_kept(folder: object, error: OSError) -> RvmonError:
     return RvmonError(
         f"cannot keep compiled monitors in {folder}: {error.strerror}: name another place with "
         "XDG_CACHE_HOME"
