@@ -9,6 +9,7 @@ import numpy as np
 
 from rvmon.codegen.c_batch import Told
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS
+from rvmon.monitor.lazy import LazyAttempts
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 _OPEN = DECISIONS.index(Decision.OPEN)
 
 
-class RecordedAttempts(Sequence[Attempt]):
+class RecordedAttempts(LazyAttempts):
     """Attempts without reasons, made from the records of a compiled monitor.
 
     Args:
@@ -45,13 +46,6 @@ class RecordedAttempts(Sequence[Attempt]):
 
     def __iter__(self) -> Iterator[Attempt]:
         return (self._attempt(*record) for record in self._records.tolist())
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Sequence):
-            return NotImplemented
-        return tuple(self) == tuple(other)
-
-    __hash__ = None  # type: ignore[assignment]
 
     def _attempt(
         self,

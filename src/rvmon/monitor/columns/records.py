@@ -10,15 +10,13 @@ import numpy as np
 
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.columns.track import UNSEEN
+from rvmon.monitor.lazy import LazyAttempts
 from rvmon.monitor.witness import Witness
 from rvmon.verdict.attempt import Attempt, decided_attempt
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-_SHOWN = 3
-"""So many attempts are shown of a sequence of them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,7 +114,7 @@ class DecidedAttempts(Sequence[Attempt]):
         )
 
 
-class JudgedAttempts(Sequence[Attempt]):
+class JudgedAttempts(LazyAttempts):
     """All attempts of a report, in its order.
 
     Args:
@@ -146,17 +144,6 @@ class JudgedAttempts(Sequence[Attempt]):
 
     def __iter__(self) -> Iterator[Attempt]:
         return map(self._attempt, self._order.tolist())
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Sequence):
-            return NotImplemented
-        return tuple(self) == tuple(other)
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        first = ", ".join([*map(repr, self[:_SHOWN]), *["…"][: len(self) - _SHOWN]])
-        return f"<{len(self)} attempts: {first}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What other processes get: the attempts themselves."""
