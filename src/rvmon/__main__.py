@@ -2,6 +2,6 @@
 
 import sys
 
-from rvmon.cli import main
+from rvmon.cli import program
 
-sys.exit(main())
+sys.exit(program())

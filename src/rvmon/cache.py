@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 
@@ -64,6 +63,8 @@ def read_kept(path: Path) -> bytes | None:
 
 def keep(path: Path, body: bytes) -> None:
     """Write a file so that others see it whole or not at all; if that fails, never mind."""
+    import tempfile
+
     name = ""
     with suppress(OSError):
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:

@@ -7,6 +7,7 @@ Exit codes: 0 fine, 1 a requirement failed, 2 wrong input or spec, 3 internal er
 from __future__ import annotations
 
 import argparse
+import gc
 import io
 import os
 import sys
@@ -29,6 +30,20 @@ COMMANDS = {
     "verify": "model-check a network of timed automata",
     "conform": "hold recorded runs against a network of timed automata",
 }
+
+
+_MANY = 50_000
+"""Objects are so many before the first search for cycles: imports make none."""
+
+
+def program() -> int:
+    """The process `rvmon`: as `main`, and spared what a process that soon ends has no need of."""
+    # NumPy's algebra, of which nothing is used, would start a thread per core.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    gc.set_threshold(_MANY)
+    code = main()
+    gc.freeze()  # what is left goes with the process: it is not searched once more
+    return code
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

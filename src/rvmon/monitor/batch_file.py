@@ -8,12 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.batch import evaluate_plain
-from rvmon.monitor.batch_c import evaluate_c_blocks
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.generated import can_feed, plan_requirements
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.csv_blocks import csv_blocks
-from rvmon.readers.parquet import parquet_blocks
 from rvmon.trace.schema import Schema
 from rvmon.verdict.report import Report
 
@@ -23,11 +20,21 @@ if TYPE_CHECKING:
 
     _Block = tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]
 
-READERS: Mapping[str, Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]] = {
-    ".csv": csv_blocks,
-    ".parquet": parquet_blocks,
-}
-"""By ending of the file's name."""
+    Reader = Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]
+
+
+def _reader_of(path: str | Path) -> Reader | None:
+    """What reads blocks of a file, by the ending of its name."""
+    match Path(path).suffix.lower():
+        case ".csv":
+            from rvmon.readers.csv_blocks import csv_blocks
+
+            return csv_blocks
+        case ".parquet":
+            from rvmon.readers.parquet import parquet_blocks
+
+            return parquet_blocks
+    return None
 
 
 def _fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[str]:
@@ -67,7 +74,7 @@ def evaluate_file(
         `None` where rows have to be read and judged one by one: the file is not plain, or each row
         may matter.
     """
-    reader = READERS.get(Path(path).suffix.lower())
+    reader = _reader_of(path)
     if reader is None:
         return None
     fillable = _fillable(compiled, only)
@@ -86,6 +93,8 @@ def evaluate_file(
             return ready.pop() if ready else read()
 
         if engine == "c":
+            from rvmon.monitor.batch_c import evaluate_c_blocks
+
             return evaluate_c_blocks(compiled, names, blocks(), only=only, until=until)
         return evaluate_plain(compiled, names, blocks, only=only, engine=engine, until=until)
     except (NotPlainError, StopIteration):

@@ -12,8 +12,6 @@ from typing import TextIO
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
-from rvmon.readers.jsonl_rows import jsonl_samples
-from rvmon.readers.parquet import parquet_layout, parquet_samples
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema
@@ -58,6 +56,8 @@ class FileRecording:
                 layout = self._layout(split_lines(text))
             self._take_names(layout)
         elif self._format == "parquet":
+            from rvmon.readers.parquet import parquet_layout
+
             with self._named_errors():
                 self._take_names(parquet_layout(self.path, schema))
 
@@ -72,6 +72,8 @@ class FileRecording:
             TraceError: with file and line; the samples before it have been given out.
         """
         if self._format == "parquet":
+            from rvmon.readers.parquet import parquet_samples
+
             with self._named_errors():
                 yield from self._merged(parquet_samples(self.path, self._schema))
             return
@@ -81,6 +83,8 @@ class FileRecording:
                 rows = split_lines(text)
                 yield from self._merged(csv_samples(rows, self._layout(rows)))
             else:
+                from rvmon.readers.jsonl_rows import jsonl_samples
+
                 yield from self._merged(jsonl_samples(text, self._schema, self._ignored))
 
     def _merged(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
