@@ -23,6 +23,9 @@ from rvmon.formula.progress import Phase, after, instance, phase, step
 from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
 from rvmon.formula.state import State
 
+AT_DECISION = -2
+"""The start of what was instantiated at the instant of the decision; no clock has this number."""
+
 
 @dataclass(frozen=True, slots=True)
 class Cause:
@@ -30,7 +33,9 @@ class Cause:
 
     Attributes:
         node: the obligation, or the literal if none lies above it.
-        start: the instant at which the obligation was instantiated.
+        start: what tells when the obligation was instantiated: of a run of a machine the number of
+            a clock, `NO_CLOCK` if that was at the trigger, `AT_DECISION` if then; of a network
+            the instant.
         over: whether its window passed; else `literal` decided it at the instant of decision.
         literal: the proposition that decided it, if a single one did.
     """
@@ -46,35 +51,31 @@ class CauseFinder:
 
     Args:
         cells: what the propositions are at the decision, as the deciding run takes them.
-        t: the instant of the decision.
-        triggered: the instant of the trigger; stands for those that no clock remembers.
+        ages: of the clocks at the decision.
         verdict: the decision.
-        by_time: whether time alone decided, without a letter at `t`.
+        by_time: whether time alone decided, without a letter.
     """
 
     def __init__(
         self,
         cells: Mapping[State, Cell],
-        t: int,
-        triggered: int,
+        ages: Sequence[int],
         *,
         verdict: bool,
         by_time: bool,
     ) -> None:
         self.cells = cells
-        self.t = t
-        self.triggered = triggered
+        self.ages = ages
         self.verdict = verdict
         self.by_time = by_time
         self.wanted = HOLDS if verdict else FAILS
 
-    def of(self, residual: Residual, anchors: Sequence[int]) -> Cause | None:
-        """The cause of a decision, which this residual became at `t`; `None` if it is constant."""
-        ages = [self.t - anchor for anchor in anchors]
+    def of(self, residual: Residual) -> Cause | None:
+        """The cause of a decision, which this residual became; `None` if it is constant."""
 
         def decided(atom: Atom) -> bool:
             alone: Residual = frozenset([frozenset([atom])])
-            left = after(alone, ages) if self.by_time else step(alone, ages, self._read)
+            left = after(alone, self.ages) if self.by_time else step(alone, self.ages, self._read)
             return left == self.wanted
 
         clauses = sorted(residual, key=len)
@@ -85,8 +86,7 @@ class CauseFinder:
             key=lambda atom: (atom[1], atom[0].id),
         )
         for node, clock in found:
-            start = self.triggered if clock == NO_CLOCK else anchors[clock]
-            cause = self._of_atom(node, start)
+            cause = self._of_atom(node, clock)
             if cause is not None:
                 return cause
         return None
@@ -94,20 +94,20 @@ class CauseFinder:
     def _read(self, literal: Literal) -> Residual:
         return HOLDS if holds(literal.sense, self.cells[literal.proposition]) else FAILS
 
-    def _of_atom(self, node: Literal | Next | Until | Release, start: int) -> Cause | None:
+    def _of_atom(self, node: Literal | Next | Until | Release, clock: int) -> Cause | None:
         match node:
             case Literal():
-                return Cause(node, self.t, False, node)
+                return Cause(node, AT_DECISION, False, node)
             case Next(operand=operand):
                 return self._of_instance(operand)
             case Until() | Release():
-                if phase(node, self.t - start) is Phase.OVER:
-                    return Cause(node, start, True, None)
+                if clock > NO_CLOCK and phase(node, self.ages[clock]) is Phase.OVER:
+                    return Cause(node, clock, True, None)
                 ends_it = isinstance(node, Until) is self.verdict
                 part = node.right if ends_it else node.left
                 if isinstance(part, Literal):
-                    return Cause(node, start, False, part)
-                return self._of_instance(part) or Cause(node, start, False, None)
+                    return Cause(node, clock, False, part)
+                return self._of_instance(part) or Cause(node, clock, False, None)
             case _:
                 assert_never(node)
 
@@ -122,7 +122,7 @@ class CauseFinder:
                 causes = (self._of_instance(arg) for arg in decided)
                 return next((cause for cause in causes if cause is not None), None)
             case Literal() | Next() | Until() | Release():
-                return self._of_atom(node, self.t)
+                return self._of_atom(node, AT_DECISION)
             case Since() | Previous():
                 raise AssertionError("a residual holds nothing of the past")
             case _:

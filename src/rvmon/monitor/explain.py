@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.automaton.location import FAILED, PASSED
-from rvmon.automaton.machine import Token
+from rvmon.automaton.machine import Machine, Token
 from rvmon.automaton.stretch import run
+from rvmon.dataflow.flow import Flow
 from rvmon.formula.horizon import horizon
-from rvmon.formula.progress import after, value
-from rvmon.formula.state import UNKNOWN
+from rvmon.formula.progress import after
 from rvmon.monitor.bench import Bench, Open
-from rvmon.monitor.cause import CauseFinder
 from rvmon.monitor.judge import Judge
-from rvmon.monitor.wording import deadline, settled_alone
+from rvmon.monitor.reasons import Reasons
+from rvmon.monitor.sentence import told
+from rvmon.monitor.wording import settled_alone
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
@@ -32,29 +33,59 @@ def explain_decision(
     judge: Judge, attempt: Open, verdict: bool, t: int, before: Token
 ) -> Explanation:
     """Why an attempt was decided at `t`; see `rvmon.monitor.bench.Clerk.decided`."""
-    words = judge.compiled.words
     letter = judge.letters[0 if verdict else 1]
-    location, anchors = _just_before(judge, before, letter, t)
-    residual = judge.machine.residual(location)
-    by_time = value(after(residual, [t - anchor for anchor in anchors])) != UNKNOWN
-    cells = judge.compiled.alphabet.cells_of(letter)
-    finder = CauseFinder(cells, t, attempt.triggered, verdict=verdict, by_time=by_time)
-    cause = finder.of(residual, anchors)
-    if cause is None:
-        return Explanation("nothing was owed" if verdict else "it can never hold")
+    machine, flow = judge.machine, judge.flow
+    token = just_before(machine, before, letter, judge.position, t, flow.gap)
+    reasons = Reasons(judge.compiled, machine)
+    return explained(reasons, token, letter, verdict, t, attempt.triggered, flow)
+
+
+def explained(
+    reasons: Reasons,
+    before: Token,
+    letter: int,
+    verdict: bool,
+    t: int,
+    triggered: int,
+    flow: Flow,
+) -> Explanation:
+    """Why an attempt was decided.
+
+    Args:
+        reasons: of its requirement.
+        before: its token at the last position before the decision.
+        letter: under which it was decided.
+        verdict: the decision.
+        t: its instant.
+        triggered: the instant of the trigger.
+        flow: as it stood at the decision.
+    """
+    finding = reasons.of(before, letter, verdict, t)
+    cause = finding.cause
+    start = finding.start(before, t, triggered)
     return Explanation(
-        words.reason(cause, verdict, t, judge.flow),
-        deadline=deadline(residual, anchors),
-        blame=None if verdict else words.blame(cause, t, judge.flow),
+        told(finding.sentence, t, start, flow),
+        deadline=None if cause is None else reasons.deadline(before),
+        blame=None if verdict or cause is None else reasons.words.blame(cause, t, start, flow),
     )
 
 
-def _just_before(judge: Judge, token: Token, letter: int, t: int) -> Token:
-    """The token as it stood at the last position before `t`."""
-    gap, position = judge.flow.gap, judge.position
+def just_before(
+    machine: Machine, token: Token, letter: int, position: int, t: int, gap: int | None
+) -> Token:
+    """The token as it stood at the last position before `t`.
+
+    Args:
+        machine: of the token.
+        token: as it stood at `position`.
+        letter: of all positions from there on.
+        position: see `token`.
+        t: an instant behind it.
+        gap: between two positions; `None` if only samples are positions.
+    """
     if gap is None or position + gap > t - 1:
         return token
-    return run(judge.machine, token, letter, position + gap, t - 1, gap)[0]
+    return run(machine, token, letter, position + gap, t - 1, gap)[0]
 
 
 def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) -> Explanation:

@@ -11,6 +11,7 @@ from rvmon.monitor.cause_network import NetworkCauseFinder
 from rvmon.monitor.explain import Explanation, earlier, longer
 from rvmon.monitor.network_judge import WAITING, NetworkJudge
 from rvmon.monitor.owed_network import owed_at
+from rvmon.monitor.sentence import told
 from rvmon.verdict.attempt import Blame
 
 
@@ -25,11 +26,11 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
     cause = NetworkCauseFinder(network, verdict, found[1]).of(core, position)
     if cause is None:
         return Explanation("nothing was owed" if verdict else "it can never hold")
-    words = judge.compiled.words
-    blame: Blame | None = None if verdict else words.blame(cause, t, judge.flow)
+    words, start = judge.compiled.words, cause.start
+    blame: Blame | None = None if verdict else words.blame(cause, t, start, judge.flow)
     alone = settled(known_alone(network, found[1] - 1), position)
     return Explanation(
-        words.reason(cause, verdict, t, judge.flow),
+        told(words.sentence(cause, verdict), t, start, judge.flow),
         deadline=None if alone is None else alone[0],
         blame=blame,
     )

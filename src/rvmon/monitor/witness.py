@@ -10,9 +10,10 @@ from rvmon.codegen.runtime.bulk import unpacked
 from rvmon.dataflow.flow import Flow
 from rvmon.monitor.bench import Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.explain import explain_decision
+from rvmon.monitor.explain import explained, just_before
 from rvmon.monitor.judge import Judge
-from rvmon.monitor.ledger import values_shown
+from rvmon.monitor.ledger import truths_shown
+from rvmon.monitor.reasons import Reasons
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -30,6 +31,7 @@ class Witness:
     Attributes:
         leaves: the nodes of the plan that it reads of the input.
         places: the nodes of the plan that its letters are made of.
+        reasons: of its decisions.
     """
 
     def __init__(self, compiled: CompiledRequirement, plan: Plan, clerk: Clerk) -> None:
@@ -38,7 +40,11 @@ class Witness:
         self._clerk = clerk
         index = plan.graph.index
         self.places = tuple(index[state] for state in compiled.alphabet.propositions)
-        self.leaves = tuple(index[leaf] for leaf, _ in compiled.leaves if leaf in index)
+        read = [(index[leaf], text) for leaf, text in compiled.leaves if leaf in index]
+        self.leaves = tuple(leaf for leaf, _ in read)
+        self._texts = tuple(text for _, text in read)
+        self._machine = compiled.machine("auto")
+        self.reasons = Reasons(compiled, self._machine)
         self.details = self._details
 
     def judge(
@@ -56,7 +62,7 @@ class Witness:
             position: the instant that the values are of.
             attempts: the open ones.
         """
-        judge = Judge(self.compiled, self.compiled.machine("auto"), flow, self._clerk, {})
+        judge = Judge(self.compiled, self._machine, flow, self._clerk, {})
         judge.letters = letters
         judge.position = position
         judge.attempts = attempts
@@ -80,14 +86,15 @@ class Witness:
         for index, place in enumerate(self.places):
             instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
         flow = Stood(self._plan, nodes, dict(zip(self.places, since, strict=True)), instants)
-        judge = self.judge(flow, (letter, other), position, [])
-        opened = Open(attempt.triggered, before, seen_then)
-        why = explain_decision(judge, opened, attempt.verdict is Verdict.PASS, t, before)
+        passed = attempt.verdict is Verdict.PASS
+        letter = letter if passed else other
+        token = just_before(self._machine, before, letter, position, t, self._plan.gap)
+        why = explained(self.reasons, token, letter, passed, t, attempt.triggered, flow)
         return {
             "reason": why.reason,
             "deadline": why.deadline,
-            "at_trigger": values_shown(judge, seen_then),
-            "at_decision": values_shown(judge, seen),
+            "at_trigger": truths_shown(self._texts, seen_then),
+            "at_decision": truths_shown(self._texts, seen),
             "owed": why.owed,
             "captured": {},
             "blame": why.blame,

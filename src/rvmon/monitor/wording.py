@@ -11,6 +11,7 @@ from rvmon.formula.progress import after, value
 from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.cause import Cause
+from rvmon.monitor.sentence import Base, LastWith, Place, Sentence
 from rvmon.spec.checked import Formula, Unary, UnaryOp
 from rvmon.spec.printer import format_duration, format_formula
 from rvmon.trace.time import format_ticks
@@ -51,41 +52,41 @@ class Words:
         formula = self.formula(node)
         return "what is owed" if formula is None else format_formula(formula)
 
-    def window(self, node: Until | Release, start: int) -> tuple[int, int | None]:
-        """The window of a node that was instantiated at `start`; an opened one as it was before."""
+    def window(self, node: Until | Release) -> tuple[int, int | None]:
+        """The window of a node, in ticks after its start; of an opened one as it was before."""
         whole = self._windows.get(node, node)
-        return start + whole.low, None if whole.high is None else start + whole.high
+        return whole.low, whole.high
 
-    def reason(self, cause: Cause, verdict: bool, t: int, flow: Flow) -> str:
-        """One sentence about a decision at `t`."""
-        node = cause.node
+    def sentence(self, cause: Cause, verdict: bool) -> Sentence:
+        """One sentence about a decision and all that have this cause."""
+        node, decided = cause.node, Place(Base.DECISION)
         if isinstance(node, Literal):
-            return f"{self._named(node, verdict)} at {format_ticks(t)}"
+            return (f"{self._named(node, verdict)} at ", decided)
         if cause.over:
-            return self._window_over(node, cause.start, t, flow)
+            return self._window_over(node)
         if cause.literal is None:
-            return f"`{self.text(node)}` {_decided(verdict)} at {format_ticks(t)}"
+            return (f"`{self.text(node)}` {_decided(verdict)} at ", decided)
         named = self._named(cause.literal, verdict)
         if isinstance(node, Until):
             if verdict:
-                return f"{named} {format_ticks(t - cause.start)} after {format_ticks(cause.start)}"
-            return f"{named} at {format_ticks(t)}, before `{self.text(node.right)}`"
+                return (f"{named} ", Place(Base.AGE), " after ", Place(Base.START))
+            return (f"{named} at ", decided, f", before `{self.text(node.right)}`")
         if verdict:
-            return f"{named} at {format_ticks(t)}, which ends what was owed"
+            return (f"{named} at ", decided, ", which ends what was owed")
         if not isinstance(node.left, Constant):
-            return f"{named} at {format_ticks(t)}"
-        return f"{named} {format_ticks(t - cause.start)} into {self._kept(node, cause)}"
+            return (f"{named} at ", decided)
+        return (f"{named} ", Place(Base.AGE), f" into {self._kept(node, cause)}")
 
     def _kept(self, node: Release, cause: Cause) -> str:
         """What was to be kept up, in two words: `never-for-2 s`, `always`."""
         origin = self._origins.get(cause.literal) if cause.literal else None
         never = origin is not None and not self._is_positive(origin)
-        first, last = self.window(node, cause.start)
+        first, last = self.window(node)
         if last is None:
             return "never" if never else "always"
-        span = f"for-{format_duration(last - cause.start)}"
-        if first > cause.start:
-            span = f"from-{format_duration(first - cause.start)}-{span}"
+        span = f"for-{format_duration(last)}"
+        if first > 0:
+            span = f"from-{format_duration(first)}-{span}"
         return f"never-{span}" if never else span
 
     def _is_positive(self, origin: Origin) -> bool:
@@ -104,21 +105,20 @@ class Words:
             formula, positive = formula.operand, not positive
         return f"`{format_formula(formula)}`" + ("" if positive is verdict else " false")
 
-    def _window_over(self, node: Until | Release, start: int, t: int, flow: Flow) -> str:
-        first, last = self.window(node, start)
-        window = f"window [{format_ticks(first)}, {format_ticks(last or t)}]"
-        if isinstance(node, Release):
-            return f"{window} over, `{self.text(node.right)}` throughout"
+    def _window_over(self, node: Until | Release) -> Sentence:
+        low, high = self.window(node)
+        last = Place(Base.DECISION) if high is None else Place(Base.START, high)
+        window = ("window [", Place(Base.START, low), ", ", last)
         right = node.right
+        if isinstance(node, Release):
+            return (*window, f"] over, `{self.text(right)}` throughout")
         if not isinstance(right, Literal):
-            return f"{window} closed without `{self.text(right)}`"
-        value = TRUE if right.sense is Sense.TRUE else FALSE
-        seen = flow.last_with(flow.graph.index[right.proposition], value, t)
-        when = "never" if seen is None else format_ticks(seen)
-        return f"{window} closed, `{self.text(right)}` last true: {when}"
+            return (*window, f"] closed without `{self.text(right)}`")
+        seen = LastWith(right.proposition, TRUE if right.sense is Sense.TRUE else FALSE)
+        return (*window, f"] closed, `{self.text(right)}` last true: ", seen)
 
-    def blame(self, cause: Cause, t: int, flow: Flow) -> Blame:
-        """What failed at `t`."""
+    def blame(self, cause: Cause, t: int, start: int, flow: Flow) -> Blame:
+        """What failed at `t`, instantiated at `start`."""
         node = cause.node
         formula = self.formula(node)
         span = None if formula is None else formula.span
@@ -126,12 +126,13 @@ class Words:
             span = formula.operand.span
         window: tuple[int, int | None] = (t, t)
         if isinstance(node, Until | Release):
-            window = self.window(node, cause.start)
+            low, high = self.window(node)
+            window = (start + low, None if high is None else start + high)
         at: tuple[int, ...] = ()
         if cause.literal is not None:
             at = (flow.since[flow.graph.index[cause.literal.proposition]],)
-        start, end = (0, 0) if span is None else (span.start, span.end)
-        return Blame(self.text(node), start, end, window, at)
+        first, last = (0, 0) if span is None else (span.start, span.end)
+        return Blame(self.text(node), first, last, window, at)
 
     def owed(self, residual: Residual, anchors: Sequence[int]) -> str:
         """What a residual still asks for, as text of the spec."""
