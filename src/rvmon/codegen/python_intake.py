@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rvmon.codegen.plan import Plan
+from rvmon.codegen.python_cones import ConeWriter
 from rvmon.codegen.python_leaves import leaf_expression
 from rvmon.codegen.python_nodes import Roles, bits
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
@@ -15,6 +16,9 @@ from rvmon.trace.schema import Kind
 
 _WHOLE = 64
 """Up to so many names, samples that hold all of them are taken name by name."""
+
+_PAIRED = 24
+"""Up to so many names, a row is searched for a value that alone is another."""
 
 _CLASSES = {
     Kind.BOOL: "(bool,)",
@@ -31,14 +35,22 @@ class IntakeWriter:
         plan: what to judge.
         roles: of its nodes.
         visit: writes what follows.
+        cones: writes what follows if one value alone is another.
         arriving: the names that have a source.
     """
 
     def __init__(
-        self, plan: Plan, roles: Roles, visit: VisitWriter, arriving: tuple[str, ...]
+        self,
+        plan: Plan,
+        roles: Roles,
+        visit: VisitWriter,
+        cones: ConeWriter,
+        arriving: tuple[str, ...],
     ) -> None:
         self.plan = plan
         self.roles = roles
+        self.visit = visit
+        self.cones = cones
         self.arriving = arriving
         self.sparse = visit.sparse()
         self.span = visit.span()
@@ -46,29 +58,33 @@ class IntakeWriter:
         self.instant = self._instant_leaves()
         self.every = [line for n, name in enumerate(arriving) for line in self._every(n, name)]
         """What updates do though their values are the same."""
-        self.single = [
-            (n, name)
-            for n, name in enumerate(arriving)
-            if len(arriving) > 1 and self._is_single(name)
-        ]
+        self.single = [(n, name) for n, name in enumerate(arriving) if self._is_single(name)]
+        """Names whose updates do nothing but bring a value."""
+
+    def functions(self) -> Iterator[str]:
+        """What samples do that bring one value."""
+        for number, name in self.single:
+            yield from self._one(number, name)
+            yield ""
+            yield ""
 
     def lines(self) -> Iterator[str]:
         """All of them, and the tables that they look up."""
         yield "def step(self, t, values):"
         yield '    """Take one sample; returns what it decided."""'
         yield from indented(self._quick())
-        yield "    if t.__class__ is not int or not self.after < t < LIMIT:"
-        yield "        return self.clerk.other(t, values)"
         if self.single:
             yield "    if one is not None:"
             yield "        return one(self, t, x, values)"
-        yield "    if not whole:"
-        yield "        return self.some(t, values)"
-        yield from indented(self._whole() if self.whole else [])
+        yield "    if t.__class__ is not int or not self.after < t < LIMIT:"
+        yield "        return self.clerk.other(t, values)"
+        if not self.whole:
+            yield "    return self.some(t, values)"
+        else:
+            yield f"    if size != {len(self.arriving)}:"
+            yield "        return self.some(t, values)"
+            yield from indented(self._whole())
         yield ""
-        for number, name in self.single:
-            yield from self._one(number, name)
-            yield ""
         if self.single:
             listed = ", ".join(f"{name!r}: one{number}" for number, name in self.single)
             yield f"ONE = {{{listed}}}"
@@ -96,31 +112,47 @@ class IntakeWriter:
 
     def _quick(self) -> Iterator[str]:
         """See what a sample holds; be done with one that brings nothing new."""
-        quiet = f"self.after < {self._quiet()} and t.__class__ is int"
-        names = list(enumerate(self.arriving)) if self.whole else []
+        in_order = "t.__class__ is int and self.after < {}"
+        quiet = [f"if {in_order.format(self._quiet())}:"]
         if self.single:
             yield "one = None"
         yield "try:"
-        yield f"    whole = {f'len(values) == {len(names)}' if names else False}"
-        yield "    if whole:"
-        for number, name in names:
-            yield f"        x{number} = values[{name!r}]"
-        if names and not self.every:
+        yield "    size = len(values)"
+        if self.whole:
+            yield f"    if size == {len(self.arriving)}:"
+            for number, name in enumerate(self.arriving):
+                yield f"        x{number} = values[{name!r}]"
             yield "        last = self.last"
-            same = " and ".join(f"x{n} is {self._before(name)}" for n, name in names)
-            yield f"        if {same} and {quiet}:"
-            yield from indented(self._done(), 3)
-        yield "            return ()" if names and not self.every else "        pass"
-        yield "    elif not values:"
-        yield f"        if {quiet}:"
-        yield from indented(self._done(), 3)
-        yield "            return ()"
-        if self.single:
-            yield "    elif len(values) == 1:"
+            if not self.every:
+                yield from indented([*quiet, *indented(self._compared())], 2)
+        yield f"    {'elif' if self.whole else 'if'} not size:"
+        yield from indented([*quiet, *indented([*self.visit.done(), "return ()"])], 2)
+        if len(self.single) > 1 or not self.whole:
+            yield "    elif size == 1:"
             yield "        for name, x in values.items():"
-            yield "            one = self.ONE.get(name)"
+            yield f"            if {in_order.format('t < LIMIT')}:"
+            yield "                one = self.ONE.get(name)"
         yield "except (AttributeError, LookupError, TypeError, ValueError):"
         yield "    return self.clerk.other(t, values)"
+
+    def _compared(self) -> Iterator[str]:
+        """Compare a whole row with the one before; go on with a value that alone is another."""
+        names = list(enumerate(self.arriving))
+        if len(self.single) < len(names) or len(names) > _PAIRED:
+            yield f"if {self._same(names)}:"
+            yield from indented([*self.visit.done(), "return ()"])
+            return
+        for number, name in names:
+            branch = "elif" if number else "if"
+            yield f"{branch} x{number} is not {self._before(name)}:"
+            lines = [f"one, x = one{number}, x{number}"]
+            rest = names[number + 1 :]
+            yield from indented([f"if {self._same(rest)}:", *indented(lines)] if rest else lines)
+        yield "else:"
+        yield from indented([*self.visit.done(), "return ()"])
+
+    def _same(self, names: Sequence[tuple[int, str]]) -> str:
+        return " and ".join(f"x{number} is {self._before(name)}" for number, name in names)
 
     def _before(self, name: str) -> str:
         """What a value is compared with: the one before."""
@@ -131,7 +163,7 @@ class IntakeWriter:
         lines: list[str] = []
         for number, name in enumerate(self.arriving):
             lines += self._noticed(number, name)
-        yield from at_hand(lines, *(() if self.every else ("last",)))
+        yield from at_hand(lines, "last")
         yield from lines
         yield from self._time()
         yield from indented(self._expired())
@@ -204,12 +236,17 @@ class IntakeWriter:
     def _one(self, number: int, name: str) -> Iterator[str]:
         yield f"def one{number}(self, t, x, values):"
         yield f"    # {name!a}"
-        lines = [f"if x is {self._before(name)}:", f"    if {self._quiet()}:"]
-        lines += indented([*self._done(), "return ()"], 2)
-        lines += [f"elif {self._is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
-        lines += [*self._time(), "dirty = 0", f"if x is not {self._before(name)}:"]
-        lines += indented(self._new("x", name))
-        yield from indented([*at_hand(lines), *lines, *self._after()])
+        head = [f"if x is {self._before(name)}:", f"    if {self._quiet()}:"]
+        head += indented([*self.visit.done(), "return ()"], 2)
+        head += [f"elif {self._is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
+        lines = []
+        if name in self.plan.signals and self.cones.can_follow(name, self.instant):
+            lines.append(f"elif {self._quiet()}:")
+            lines += indented(self.cones.followed(name, self._kept("x", name, given=True)))
+        general = [*self._time(), "dirty = 0", f"if x is not {self._before(name)}:"]
+        general += indented(self._new("x", name))
+        general += self._after()
+        yield from indented([*at_hand(head), *head, *lines, *at_hand(general, "last"), *general])
 
     # A sample of any names.
 
@@ -236,7 +273,7 @@ class IntakeWriter:
         yield "    for name, x in values.items():"
         yield "        self.dirty |= self.TAKE[name](self, t, x)"
         yield f"    self.{self._go_on}(t)"
-        yield from indented(self._done())
+        yield from indented(self.visit.done())
 
     def _taken(self, variable: str, name: str) -> Iterator[str]:
         """Take one value, which may be any that is valid."""
@@ -260,12 +297,7 @@ class IntakeWriter:
 
     def _changed(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
         """Take another value; `given`: it is not `None`."""
-        signal = self.plan.signals.index(name)
-        yield f"if s[{signal}] is None and self.first[{signal}] is None:"
-        yield f"    self.first[{signal}] = t"
-        known = variable if given else f"MISSING if {variable} is None else {variable}"
-        yield f"last[{signal}] = {known}"
-        yield f"s[{signal}] = {variable}"
+        yield from self._kept(variable, name, given=given)
         others = bits(self.plan.graph.by_name.get(name, ()))
         for place in self.plan.graph.by_name.get(name, ()):
             leaf = self.plan.graph.nodes[place].leaf
@@ -275,6 +307,15 @@ class IntakeWriter:
                 yield f"    dirty |= {1 << place}"
         if others:
             yield f"dirty |= {others}"
+
+    def _kept(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
+        """Keep another value of a signal."""
+        signal = self.plan.signals.index(name)
+        yield f"if s[{signal}] is None and self.first[{signal}] is None:"
+        yield f"    self.first[{signal}] = t"
+        known = variable if given else f"MISSING if {variable} is None else {variable}"
+        yield f"last[{signal}] = {known}"
+        yield f"s[{signal}] = {variable}"
 
     def _occurs(self, variable: str, name: str) -> Iterator[str]:
         yield f"self.occur({self.plan.events.index(name)}, {variable})"
@@ -316,11 +357,6 @@ class IntakeWriter:
             yield "if t > self.wake:"
         yield "    self.through(t - 1)"
 
-    def _done(self) -> Iterator[str]:
-        yield "self.after = t"
-        if self.plan.gap is None:
-            yield "self.position = t"
-
     def _after(self) -> Iterator[str]:
         """Go on with what changed."""
         busy = "t >= self.wake"
@@ -329,10 +365,7 @@ class IntakeWriter:
         yield f"if dirty or {busy}:"
         yield "    self.dirty |= dirty"
         yield f"    self.{self._go_on}(t)"
-        yield from self._done()
-        yield "if self.news:"
-        yield "    return self.clerk.told()"
-        yield "return ()"
+        yield from self.visit.told()
 
     @property
     def _go_on(self) -> str:

@@ -91,9 +91,7 @@ def comparison(plan: Plan, leaf: Compare) -> str:
     left, right = leaf.left, leaf.right
     if isinstance(left, SignalValue) and isinstance(right, Literal):
         held = f"s[{plan.signals.index(left.name)}]"
-        return (
-            f"1 if {held} is None else 2 if {held} {leaf.op.value} {_literal(right.value)} else 0"
-        )
+        return f"1 if {held} is None else 2 if {held} {leaf.op.value} {literal(right.value)} else 0"
     both = f"compared({_COMPARE[leaf.op]}, {_number(plan, left)}, {_number(plan, right)})"
     events = events_of(left, right)
     if not events:
@@ -105,7 +103,7 @@ def comparison(plan: Plan, leaf: Compare) -> str:
 def _number(plan: Plan, expression: Numeric) -> str:
     match expression:
         case Literal(value=value):
-            return _literal(value)
+            return literal(value)
         case SignalValue(name=name):
             return f"s[{plan.signals.index(name)}]"
         case FieldValue(event=event, field=field):
@@ -122,7 +120,8 @@ def _number(plan: Plan, expression: Numeric) -> str:
             assert_never(expression)
 
 
-def _literal(value: float | int | str) -> str:
+def literal(value: float | int | str) -> str:
+    """A value of a specification as Python writes it."""
     if isinstance(value, float) and not math.isfinite(value):
         raise ValueError(f"{value} is no number of a specification")
     return repr(value)

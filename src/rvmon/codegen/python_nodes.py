@@ -176,19 +176,12 @@ class NodeWriter:
         left, right = (self.value(operand) for operand in operands)
         low, high = state.low, state.high
         if _is_latch(state):
-            yield f"n = v[{place}]"
-            if left != "2":
-                yield f"m = {left}"
-                yield "if m < n:"
-                yield "    n = m"
-            yield f"m = {right}"
-            yield "if m > n:"
-            yield "    n = m"
+            yield from self._latched(place, left, right)
             return
         yield f"l = {left}"
         yield f"r = {right}"
         if keeps_stretches(state):
-            yield f"n, e = self.since_({place}, t, l, r)"
+            yield f"n, e = marked[{place}].step(t, before, l, r)"
             yield from self._wake(place, "e", "")
             return
         yield f"e = w[{place}]"
@@ -199,11 +192,23 @@ class NodeWriter:
         ]
         yield f"if {' or '.join([*unknown, f'b[{place}] != e'])}:"
         slow = "beyond_" if high is None else "within_"
-        yield f"    n = self.{slow}({place}, t, l, r, {low if high is None else high})"
+        yield f"    n = self.{slow}({place}, t, before, l, r, {low if high is None else high})"
         if high is None:
             yield from self._beyond(place, low, left, right)
         else:
             yield from self._within(place, high, left, right)
+
+    def _latched(self, place: int, left: str, right: str) -> Iterator[str]:
+        """The greater of the right operand, and the lesser of the left one and the value before."""
+        if right == "2" or left == "0":
+            yield f"n = {right}"
+            return
+        yield f"n = v[{place}]"
+        for operand, sign, idle in ((left, "<", "2"), (right, ">", "0")):
+            if operand != idle:
+                yield f"m = {operand}"
+                yield f"if m {sign} n:"
+                yield "    n = m"
 
     def _within(self, place: int, high: int, left: str, right: str) -> Iterator[str]:
         """As `rvmon.codegen.runtime.past.within`, both readings at once."""

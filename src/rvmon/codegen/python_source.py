@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.codegen.plan import Plan, PlannedRule
+from rvmon.codegen.python_cones import ConeWriter
 from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_nodes import (
     NodeWriter,
@@ -46,13 +47,16 @@ class _Writer:
         present = tuple(name for name in names if arriving is None or name in arriving)
         self.judges = [_judge(rule) for rule in plan.rules]
         calm = all(judge == "SoloRule" for judge in self.judges)
-        self.visit = VisitWriter(plan, self.roles, NodeWriter(plan, self.roles), calm=calm)
-        self.intake = IntakeWriter(plan, self.roles, self.visit, present)
+        nodes = NodeWriter(plan, self.roles)
+        self.visit = VisitWriter(plan, self.roles, nodes, calm=calm)
+        self.cones = ConeWriter(plan, self.roles, nodes, self.visit)
+        self.intake = IntakeWriter(plan, self.roles, self.visit, self.cones, present)
 
     def lines(self) -> Iterator[str]:
         yield from self._leaves()
         yield from self.visit.functions()
         yield from self._letters()
+        yield from self.intake.functions()
         yield "class Generated(Unit):"
         yield f'    """Judges {", ".join(rule.requirement.id for rule in self.plan.rules)}."""'
         yield ""
@@ -64,7 +68,7 @@ class _Writer:
         yield from indented(self.visit.watch())
         yield from indented(self.visit.lines())
         yield ""
-        yield from indented(self.visit.cones())
+        yield from indented(self.cones.looked_up())
 
     def _leaves(self) -> Iterator[str]:
         """What the numbers of the nodes that are read off the input stand for."""

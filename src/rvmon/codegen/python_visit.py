@@ -9,14 +9,14 @@ from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_nodes import NEVER, NodeWriter, Roles, bits, keeps_stretches
 from rvmon.spec.checked import Mode
 
-_ARRAYS = ("v", "s", "last", "w", "b", "wakes", "queued", "timers", "since", "until", "before")
+_ARRAYS = (
+    *("v", "s", "last", "w", "b", "wakes", "queued", "timers", "before"),
+    "marked",
+)
 """Attributes of the monitor that statements have at hand under their own name."""
 
 _STRAIGHT = 40
 """Up to so many nodes stand one after the other; more are looked up by what changed."""
-
-_CONES = 1500
-"""So many nodes at most stand in what is written for changes of one leaf."""
 
 
 def at_hand(lines: list[str], *given: str) -> Iterator[str]:
@@ -91,14 +91,13 @@ class VisitWriter:
         """The method `visit`."""
         nodes = list(self._nodes() if self.straight else self._many())
         given = "self.dirty | self.fading" if self.momentary else "self.dirty"
-        before = "self.position" if self.plan.gap is None else f"t - {self.plan.gap}"
         yield "def visit(self, t):"
         yield '    """Move to the position at `t`."""'
         yield "    if self.origin is None:"
         yield "        self.start(t)"
         yield "        return"
         yield f"    dirty = {given}"
-        yield f"    before = self.before = {before}"
+        yield f"    before = self.before = {self.preceding()}"
         if self.sparse():
             yield f"    if t - before > {self.span()}:"
             yield f"        dirty |= {self.sparse()}"
@@ -111,19 +110,41 @@ class VisitWriter:
         yield "        self.dirty = 0"
         if self.momentary:
             yield "    self.fading = fading"
-        yield "    self.position = t"
+        yield from indented(self.judged())
+
+    def preceding(self) -> str:
+        """The position before."""
+        return "self.position" if self.plan.gap is None else f"t - {self.plan.gap}"
+
+    def judged(self) -> Iterator[str]:
+        """Have the position judged, if it concerns a requirement."""
+        yield "self.position = t"
         if self.plan.gap is not None and self.plan.gap > 1:
-            yield "    self.conclude(t, letters, triggers)"
+            yield "self.conclude(t, letters, triggers)"
             return
         if not self.calm:
-            yield "    dues = self.dues"
-        yield f"    if {' or '.join(self._concerns())}:"
-        yield "        self.conclude(t, letters, triggers)"
-        yield from indented(self._alarm())
+            yield "dues = self.dues"
+        yield f"if {' or '.join(self._concerns())}:"
+        how = "conclude_calmly" if self.calm else "conclude"
+        yield f"    self.{how}(t, letters, triggers)"
+        yield from self._alarm()
+
+    def done(self) -> Iterator[str]:
+        """Note that a sample was taken."""
+        yield "self.after = t"
+        if self.plan.gap is None:
+            yield "self.position = t"
+
+    def told(self) -> Iterator[str]:
+        """Return what was decided."""
+        yield from self.done()
+        yield "if self.news:"
+        yield "    return self.clerk.told()"
+        yield "return ()"
 
     def _concerns(self) -> Iterator[str]:
         """If none of these holds, a position is not to be judged."""
-        yield "letters & self.active or triggers"
+        yield "letters and letters & self.active or triggers"
         if self.momentary:
             yield "fading"
         if self.gathers:
@@ -153,10 +174,18 @@ class VisitWriter:
             waiting.append("self.repeating")
         if self.plan.gap is None and not self.calm:
             waiting.append("self.restless")
+        wake = list(self._next_wake())
         if waiting:
             yield f"if {' or '.join(waiting)}:"
             yield "    self.wake = t + 1"
-            yield "    return"
+            yield "else:"
+        yield from indented(wake, 1 if waiting else 0)
+
+    def _next_wake(self) -> Iterator[str]:
+        if self.calm and self.nodes.watched is not None and len(self.nodes.watched) == 1:
+            yield f"wake = wakes[{self.nodes.watched[0]}]"
+            yield "self.wake = wake if wake < LIMIT else LIMIT"
+            return
         yield "wake = LIMIT"
         if self.nodes.watched is None:
             yield "if timers and timers[0][0] < wake:"
@@ -194,20 +223,21 @@ class VisitWriter:
             dirty = bits(tuple(other for other in self.kept if parents >> other & 1))
             yield f"if dirty & {1 << place}:"
             yield from indented(self.nodes.statements(place))
-            yield from indented(self._momentary(place))
+            yield from indented(self.momentary_lines(place))
             yield f"    if n != v[{place}]:"
-            yield from indented(self._changed(place, "n", dirty), 2)
+            yield from indented(self.changed(place, "n", dirty), 2)
 
-    def _momentary(self, place: int) -> Iterator[str]:
+    def momentary_lines(self, place: int) -> Iterator[str]:
+        """Whether a leaf speaks of this position only, behind its statements."""
         if self.momentary >> place & 1:
             yield f"if n and self.momentary & {1 << place}:"
             yield f"    fading |= {1 << place}"
 
-    def _changed(self, place: int, value: str, dirty: int) -> Iterator[str]:
+    def changed(self, place: int, value: str, dirty: int) -> Iterator[str]:
         """A node has another value: tell whom it concerns."""
         if self.roles.letters[place]:
-            yield f"until[{3 * place} + v[{place}]] = before"
-            yield f"since[{place}] = t"
+            yield f"self.until[{3 * place} + v[{place}]] = before"
+            yield f"self.since[{place}] = t"
             yield f"letters |= {self.roles.letters[place]}"
         if self.roles.triggers[place]:
             yield f"triggers |= {self.roles.triggers[place]}"
@@ -221,60 +251,3 @@ class VisitWriter:
         yield "    letters, triggers, fading = self.evaluate(t, dirty)"
         yield "else:"
         yield "    letters, triggers, fading = cone(self, t)"
-
-    def cones(self) -> Iterator[str]:
-        """For each leaf a function that evaluates it and what depends on it; few have too many."""
-        if self.straight:
-            return
-        found = []
-        for place, state in enumerate(self.plan.graph.nodes):
-            if state.leaf is not None:
-                found.append(self._above(place))
-        if sum(map(len, found)) > _CONES:
-            found = []
-        for places in found:
-            yield f"def cone{places[0]}(self, t):"
-            lines = [*self.nodes.statements(places[0]), *self._momentary(places[0])]
-            lines += [f"if n == v[{places[0]}]:", "    return 0, 0, fading"]
-            lines += ["if n == 2:", *indented(self._cone(places, "2"))]
-            lines += ["elif n == 0:", *indented(self._cone(places, "0"))]
-            lines += ["else:", *indented(self._cone(places, "1"))]
-            yield "    letters = triggers = fading = dirty = 0"
-            yield from indented([*at_hand(lines), *lines])
-            yield "    return letters, triggers, fading"
-            yield ""
-        cones = ", ".join(f"{1 << places[0]}: cone{places[0]}" for places in found)
-        yield f"CONES = {{{cones}}}"
-
-    def _cone(self, places: list[int], value: str) -> Iterator[str]:
-        """What the new value of a leaf makes of the nodes above it."""
-        nodes = self.nodes
-        leaf, *above = places
-        number = {place: index for index, place in enumerate(places)}
-        nodes.settling(leaf, value)
-        yield from self._changed(leaf, value, 0)
-        sure = 1 << leaf
-        for place in above:
-            parents = self.roles.parents[place]
-            dirty = bits(tuple(number[other] for other in above if parents >> other & 1))
-            reached = any(
-                sure >> below & 1 and self.roles.parents[below] >> place & 1 for below in places
-            )
-            lines = list(nodes.statements(place))
-            if len(lines) == 1 and nodes.settling(place, lines[0].removeprefix("n = ")):
-                yield f"if v[{place}] != {nodes.settled[place]}:"
-                yield from indented(self._changed(place, nodes.settled[place], dirty))
-                continue
-            lines += [f"if n != v[{place}]:", *indented(self._changed(place, "n", dirty))]
-            if not reached:
-                yield f"if dirty & {1 << number[place]}:"
-            yield from indented(lines, 0 if reached else 1)
-        nodes.settled.clear()
-
-    def _above(self, place: int) -> list[int]:
-        """A node and those whose value depends on it, in order."""
-        found = 1 << place
-        for other in self.kept:
-            if other >= place and found >> other & 1:
-                found |= self.roles.parents[other]
-        return [other for other in self.kept if found >> other & 1]

@@ -92,7 +92,7 @@ _MADE: Mapping[str, type] = {
     one.__name__: one
     for one in (
         *(Attempt, Blame, Open, Network, Positions, Run),
-        *(generated.History, generated.Since, generated.Stretches, flowing._Run),
+        *(generated.History, generated.Since, flowing._Run),
     )
 }
 

@@ -48,7 +48,7 @@ class Seat(Witness):
     ) -> None:
         super().__init__(compiled, plan, ledger)
         self._unit = unit
-        self._told = ledger.told
+        self._tell = ledger.told.append
         self._counts = counts
         self._seen_of = _picking(self.leaves)
         self._noted = noted
@@ -119,22 +119,16 @@ class Seat(Witness):
         """
         unit = self._unit
         unit.news = True
-        self._told(
-            self._rank,
-            decided_attempt(
-                self._id,
-                number,
-                triggered,
-                triggered if self._upon_end else t,
-                _PASS if verdict else _FAIL,
-                self.details,
-                # One flat tuple, which costs the collector of garbage next to nothing.
-                (
-                    *(seen, t, before, rule.letter, rule.other, rule.position),
-                    *self._noted(unit.v, unit.since, unit.until),
-                ),
-            ),
+        decided = triggered if self._upon_end else t
+        # One flat tuple, which costs the collector of garbage next to nothing.
+        noted = (
+            *(seen, t, before, rule.letter, rule.other, rule.position),
+            *self._noted(unit.v, unit.since, unit.until),
         )
+        record = decided_attempt(
+            self._id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
+        )
+        self._tell((decided, self._rank, number, record))
 
 
 def _picking(places: tuple[int, ...]) -> Pick:

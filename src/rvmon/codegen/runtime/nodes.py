@@ -132,26 +132,16 @@ class Nodes:
 
     # What nodes call.
 
-    def since_(self, place: int, t: int, left: int, right: int) -> tuple[int, int]:
-        """The value of a `since` with both bounds, and when it changes by time alone."""
-        node = self.marked[place]
-        if left == UNKNOWN or right == UNKNOWN or node.pessimistic is not node.optimistic:
-            return node.step(t, self.before, left, right), node.wake
-        one = node.pessimistic
-        return (TRUE if one.step(t, self.before, left == TRUE, right == TRUE) else FALSE), one.wake
-
-    def within_(self, place: int, t: int, left: int, right: int, high: int) -> int:
+    def within_(self, place: int, t: int, last: int, left: int, right: int, high: int) -> int:
         """The value of a `since` with an upper bound, over what may be unknown."""
-        last = self.before
         w, b = self.w, self.b
         w[place], holds, wake = within(w[place], t, last, high, left == TRUE, right == TRUE)
         b[place], may, other = within(b[place], t, last, high, left != FALSE, right != FALSE)
         self.set_wake(place, min(wake, other))
         return TRUE if holds else UNKNOWN if may else FALSE
 
-    def beyond_(self, place: int, t: int, left: int, right: int, low: int) -> int:
+    def beyond_(self, place: int, t: int, last: int, left: int, right: int, low: int) -> int:
         """The value of a `since` with a lower bound, over what may be unknown."""
-        last = self.before
         w, b = self.w, self.b
         w[place], holds, wake = beyond(w[place], t, last, low, left == TRUE, right == TRUE)
         b[place], may, other = beyond(b[place], t, last, low, left != FALSE, right != FALSE)

@@ -13,13 +13,16 @@ NEVER = 1 << 63
 FALSE, UNKNOWN, TRUE = 0, 1, 2
 
 
-class Stretches:
-    """One Boolean reading of `left S[low, high] right`: the merged instants at which it holds.
+class Since:
+    """`left S[low, high] right` with Kleene's values: the merged stretches in which it holds.
+
+    As soon as an operand is unknown there are two readings: this one takes the unknown for false,
+    the one beside it for true, until both agree again.
 
     Source: interval marking after Basin, Klaedtke and Zalinescu 2011.
     """
 
-    __slots__ = ("gap", "growing", "high", "left", "low", "right", "runs", "wake")
+    __slots__ = ("better", "gap", "growing", "high", "left", "low", "right", "runs")
 
     def __init__(self, low: int, high: int | None, gap: int) -> None:
         self.low = low
@@ -29,35 +32,51 @@ class Stretches:
         self.right = False
         self.growing = False
         self.runs: deque[list[int]] = deque()
-        self.wake = NEVER
-        """When the value changes by time alone, the operands staying."""
+        self.better: Since | None = None
 
-    def step(self, t: int, last: int, left: bool, right: bool) -> bool:
-        """Take the operands at `t`; those given before held at all positions up to `last`."""
+    def step(self, t: int, last: int, left: int, right: int) -> tuple[int, int]:
+        """Take the operands at `t`; those given before held at all positions up to `last`.
+
+        Returns the value, and when it changes by time alone, the operands staying.
+        """
+        if left == UNKNOWN or right == UNKNOWN or self.better is not None:
+            return self._step_both(t, last, left, right)
         runs = self.runs
         if self.growing:
             runs[-1][1] = last + self.high
             self.growing = False
         elif self.right and not self.left:
             self.mark(last + self.low, last + self.high)
-        self.left, self.right = left, right
-        self.wake = NEVER
-        if not left:
+        self.right = right == TRUE
+        self.left = left == TRUE
+        if not self.left:
             runs.clear()
-            return right and self.low == 0
+            return (TRUE if self.right and self.low == 0 else FALSE), NEVER
         if right:
-            self.mark(t + self.low, NEVER)
+            # As `mark`, in place: it is what samples come to most often.
+            start = t + self.low
+            if runs and start - self.gap <= runs[-1][1]:
+                runs[-1][1] = NEVER
+            else:
+                runs.append([start, NEVER])
             self.growing = True
         while runs:
             start, end = runs[0]
             if end >= t:
                 if start > t:
-                    self.wake = start
-                    return False
-                self.wake = end + 1 if end < NEVER else NEVER
-                return True
+                    return FALSE, start
+                return TRUE, end + 1 if end < NEVER else NEVER
             runs.popleft()
-        return False
+        return FALSE, NEVER
+
+    def _step_both(self, t: int, last: int, left: int, right: int) -> tuple[int, int]:
+        better = self.better or self._copy()
+        self.better = None
+        holds, wake = self.step(t, last, _worse(left), _worse(right))
+        may_hold, other = better.step(t, last, _better(left), _better(right))
+        if not self._same(better):
+            self.better = better
+        return (TRUE if holds else UNKNOWN if may_hold else FALSE), min(wake, other)
 
     def mark(self, start: int, end: int) -> None:
         """Add the stretch from `start` to `end`."""
@@ -66,46 +85,24 @@ class Stretches:
         else:
             self.runs.append([start, end])
 
-    def copy(self) -> Stretches:
-        """The same, independent from now on."""
-        made = Stretches(self.low, self.high, self.gap)
+    def _copy(self) -> Since:
+        made = Since(self.low, self.high, self.gap)
         made.left, made.right, made.growing = self.left, self.right, self.growing
         made.runs = deque([list(one) for one in self.runs])
         return made
 
-    def same(self, other: Stretches) -> bool:
+    def _same(self, other: Since) -> bool:
         """Whether both will always have the same value from now on."""
         mine = (self.left, self.right, self.growing)
         return mine == (other.left, other.right, other.growing) and self.runs == other.runs
 
 
-class Since:
-    """`left S[low, high] right` with Kleene's values: a pessimistic and an optimistic reading.
+def _worse(truth: int) -> int:
+    return TRUE if truth == TRUE else FALSE
 
-    As long as nothing was unknown, they are one.
-    """
 
-    __slots__ = ("optimistic", "pessimistic", "wake")
-
-    def __init__(self, low: int, high: int | None, gap: int) -> None:
-        self.pessimistic = self.optimistic = Stretches(low, high, gap)
-        self.wake = NEVER
-
-    def step(self, t: int, last: int, left: int, right: int) -> int:
-        """The value at `t`; `last` is the position before."""
-        worse, better = self.pessimistic, self.optimistic
-        if worse is better:
-            if left != UNKNOWN and right != UNKNOWN:
-                holds = worse.step(t, last, left == TRUE, right == TRUE)
-                self.wake = worse.wake
-                return TRUE if holds else FALSE
-            better = self.optimistic = worse.copy()
-        holds = worse.step(t, last, left == TRUE, right == TRUE)
-        may_hold = better.step(t, last, left != FALSE, right != FALSE)
-        self.wake = min(worse.wake, better.wake)
-        if worse.same(better):
-            self.optimistic = worse
-        return TRUE if holds else UNKNOWN if may_hold else FALSE
+def _better(truth: int) -> int:
+    return FALSE if truth == FALSE else TRUE
 
 
 def within(

@@ -105,13 +105,13 @@ class Rule:
         """Whether an attempt starts at a position where the trigger has this truth."""
         start = truth == TRUE and (self.pulse or self.before == FALSE or not self.known)
         self.before = truth
-        self.known = self.known or truth != UNKNOWN
-        if not self.episodic:
-            return start
-        if self.running:
-            self.running = truth != FALSE
-            return False
-        self.running = start
+        if truth != UNKNOWN:
+            self.known = True
+        if self.episodic:
+            if self.running:
+                self.running = truth != FALSE
+                return False
+            self.running = start
         return start
 
     @property

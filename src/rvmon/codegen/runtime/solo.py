@@ -58,11 +58,17 @@ class SoloRule(Rule):
 
     def begin(self, t: int, triggered: int) -> None:
         """Start an attempt at the position `t`, at which the values are."""
-        if self.position < t:
-            self.visit(t)
+        if self.attempts or self.runs:
+            if self.position < t:
+                self.visit(t)
+            self.begin_alone(t, triggered)
+            return
+        letter, other = self.letters(self.values)
+        self.letter, self.other = letter, other
+        self.position = t
         machine = self.machine
-        kind = machine.class_of[self.letter]
-        if self.runs or kind != machine.class_of[self.other]:
+        kind = machine.class_of[letter]
+        if kind != machine.class_of[other]:
             self.begin_alone(t, triggered)
             return
         number, seen = self.clerk.entered(self)
@@ -75,26 +81,22 @@ class SoloRule(Rule):
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, at which the values are."""
-        if not self.runs:
-            Rule.visit(self, t)
-            return
         worse, better = self.letters(self.values)
         kinds = self.machine.class_of
-        if kinds[worse] != kinds[better]:
+        kind = kinds[worse]
+        if self.attempts or kind != kinds[better]:
             self.attempts = self.undecided()
             self.runs.clear()
-        if self.attempts:
             Rule.visit(self, t)
-            if not self.runs:
-                return
-        else:
-            self.letter, self.other = worse, better
-            self.position = t
-        target = self.targets[kinds[worse]]
-        if target <= PASSED:
-            triggered, number, seen = self.runs.pop(self.place)
-            token: Token = (self.place, ())
-            self.clerk.decided_in_run(self, number, triggered, seen, target == PASSED, t, token)
+            return
+        self.letter, self.other = worse, better
+        self.position = t
+        if self.runs:
+            target = self.targets[kind]
+            if target <= PASSED:
+                triggered, number, seen = self.runs.pop(self.place)
+                token: Token = (self.place, ())
+                self.clerk.decided_in_run(self, number, triggered, seen, target == PASSED, t, token)
 
     def pass_to(self, t: int) -> None:
         """Let time come to `t` with the letters as they are; positions up to there are stepped."""

@@ -184,6 +184,29 @@ class Unit(Nodes):
         if self.gathered:
             self.leave()
 
+    def conclude_calmly(self, t: int, letters: int, triggers: int) -> None:
+        """As `conclude`, where all requirements are episodes that only letters decide."""
+        rules = self.rules
+        letters &= self.active
+        while letters:
+            bit = letters & -letters
+            letters ^= bit
+            rule = rules[bit.bit_length() - 1]
+            rule.visit(t)
+            if not (rule.runs or rule.attempts):
+                self.active ^= bit
+        while triggers:
+            bit = triggers & -triggers
+            triggers ^= bit
+            index = bit.bit_length() - 1
+            rule = rules[index]
+            if rule.starts(self.v[self.RULES[index][2]]):
+                rule.begin(t, t)
+                if rule.runs or rule.attempts:
+                    self.active |= bit
+        if self.gathered:
+            self.leave()
+
     def set_alarm(self) -> None:
         """Work out before when nothing happens; it may come to nothing at that instant."""
         if self.origin is None:
