@@ -62,7 +62,7 @@ def explained(
     """
     finding = reasons.of(before, letter, verdict, t)
     cause = finding.cause
-    start = finding.start(before, t, triggered)
+    start = finding.start(before[1], t, triggered)
     return Explanation(
         told(finding.sentence, t, start, flow),
         deadline=None if cause is None else reasons.deadline(before),

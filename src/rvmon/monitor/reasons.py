@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from rvmon.automaton.location import location_of
 from rvmon.automaton.machine import Machine, Token
@@ -14,6 +16,9 @@ from rvmon.monitor.cause import Cause, CauseFinder
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.sentence import Sentence
 from rvmon.monitor.wording import deadline
+
+Instant = TypeVar("Instant")
+"""In ticks: one, or an array of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,18 +33,18 @@ class Finding:
     cause: Cause | None
     sentence: Sentence
 
-    def start(self, before: Token, t: int, triggered: int) -> int:
+    def start(self, anchors: Sequence[Instant], t: Instant, triggered: Instant) -> Instant:
         """The instant at which what decided was instantiated.
 
         Args:
-            before: the token before the decision.
+            anchors: of the token before the decision.
             t: the instant of the decision.
             triggered: of the attempt.
         """
         clock = self.cause.start if self.cause else NO_CLOCK
         if clock == NO_CLOCK:
             return triggered
-        return before[1][clock] if clock > NO_CLOCK else t
+        return anchors[clock] if clock > NO_CLOCK else t
 
 
 class Reasons:
@@ -60,13 +65,12 @@ class Reasons:
         self._found: dict[tuple[int, ...], Finding] = {}
         self._deadlines: dict[int, int | None] = {}
 
-    def region(self, before: Token, t: int) -> tuple[int, ...]:
-        """In which of its windows a token is at an instant: a number for each clock."""
-        location, anchors = before
+    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
+        """For each clock of a location, the ages at which a window opens or is over, ascending."""
         cuts = self._cuts.get(location)
         if cuts is None:
             cuts = self._cuts[location] = location_of(self._machine.residual(location)).cuts
-        return tuple([bisect_right(own, t - at) for own, at in zip(cuts, anchors, strict=True)])
+        return cuts
 
     def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
         """What is said of a decision.
@@ -77,7 +81,9 @@ class Reasons:
             verdict: the decision.
             t: its instant.
         """
-        key = (before[0], letter, verdict, *self.region(before, t))
+        location, anchors = before
+        ages = zip(self.cuts(location), anchors, strict=True)
+        key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
         found = self._found.get(key)
         if found is None:
             found = self._found[key] = self._find(before, letter, verdict, t)

@@ -9,8 +9,9 @@ import numpy as np
 
 from rvmon.codegen.c_batch import Told
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS
-from rvmon.monitor.lazy import LazyAttempts
 from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.attempt_json import Pattern, seconds_texts
+from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
@@ -46,6 +47,30 @@ class RecordedAttempts(LazyAttempts):
 
     def __iter__(self) -> Iterator[Attempt]:
         return (self._attempt(*record) for record in self._records.tolist())
+
+    def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
+        """See `LazyAttempts`."""
+        records = self._records
+        own = records["requirement"] == self._ids.index(requirement)
+        chosen = np.flatnonzero(own & (records["verdict"] == VERDICTS.index(verdict)))
+        return (self[index] for index in chosen.tolist())
+
+    def texts(self, origin: int) -> Iterator[tuple[str, str]]:
+        """See `LazyAttempts`."""
+        records = self._records
+        alike = records["requirement"].astype(np.int64)
+        for name in ("verdict", "decision"):
+            alike = alike << 8 | records[name]
+        texts = np.empty(len(records), object)
+        for kind in np.unique(alike).tolist():  # these differ in numbers alone
+            own = np.flatnonzero(alike == kind)
+            columns: dict[str, Any] = {
+                name: records[name][own].tolist() for name in ("number", "triggered", "decided")
+            }
+            columns["triggered_s"] = seconds_texts(columns["triggered"], origin)
+            columns["decided_s"] = seconds_texts(columns["decided"], origin)
+            texts[own] = Pattern(self[own.item(0)], [""]).texts(columns, [])
+        return zip(map(self._ids.__getitem__, records["requirement"].tolist()), texts, strict=True)
 
     def _attempt(
         self,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import assert_never
+from typing import Any, assert_never
 
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.state import State
@@ -36,8 +36,13 @@ class Place:
     base: Base
     plus: int = 0
 
-    def ticks(self, decided: int, start: int) -> int:
-        """What stands there, where these are the instants."""
+    def ticks(self, decided: Any, start: Any) -> Any:
+        """What stands there.
+
+        Args:
+            decided: the instant of the decision, ticks; or an array of such instants.
+            start: the instant at which what decided was instantiated; or as many.
+        """
         match self.base:
             case Base.DECISION:
                 return decided + self.plus

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -12,14 +14,15 @@ SHOWN = {Verdict.FAIL: 4, Verdict.INCONCLUSIVE: 2, Verdict.PASS: 2}
 
 def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
     """By requirement, the attempts that get a timeline, in order of trigger."""
-    shown: dict[str, list[Attempt]] = {name: [] for name in report.verdicts}
-    room = {(name, verdict): most for name in shown for verdict, most in SHOWN.items()}
-    for attempt in report.attempts:
-        place = attempt.requirement, attempt.verdict
-        if room[place]:
-            room[place] -= 1
-            shown[attempt.requirement].append(attempt)
-    return {name: sorted(some, key=lambda one: one.number) for name, some in shown.items()}
+    shown = {}
+    for name in report.verdicts:
+        some = [
+            attempt
+            for verdict, most in SHOWN.items()
+            for attempt in islice(report.of(name, verdict), most)
+        ]
+        shown[name] = sorted(some, key=lambda one: one.number)
+    return shown
 
 
 def opening(report: Report) -> tuple[str, Attempt | None]:

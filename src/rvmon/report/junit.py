@@ -71,8 +71,7 @@ def _add_case(
         return
     reasons = [
         _clean(f"attempt {attempt.number}, {_when(attempt.decided)}: {attempt.reason}")
-        for attempt in report.attempts
-        if attempt.requirement == name and attempt.verdict is verdict
+        for attempt in report.of(name, verdict)
     ]
     kind = "failure" if verdict is Verdict.FAIL else "skipped"
     told = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")

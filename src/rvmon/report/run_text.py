@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.report.forecast import forecast_sentence
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
@@ -52,15 +54,10 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
         if name in report.misses:
             console.print(_miss_text(name, report.misses[name]))
         for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
-            attempts = [
-                attempt
-                for attempt in report.attempts
-                if attempt.requirement == name and attempt.verdict is verdict
-            ]
-            for attempt in attempts[:SHOWN_PER_REQUIREMENT]:
+            for attempt in islice(report.of(name, verdict), SHOWN_PER_REQUIREMENT):
                 console.print(_attempt_text(attempt, requirement))
-            if len(attempts) > SHOWN_PER_REQUIREMENT:
-                rest = len(attempts) - SHOWN_PER_REQUIREMENT
+            rest = report.counts.get(name, {}).get(verdict, 0) - SHOWN_PER_REQUIREMENT
+            if rest > 0:
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")
     if report.goals:
         console.print(_goals_text(report.goals))
@@ -92,6 +89,8 @@ def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
 
 def _least_robustness(report: Report) -> dict[str, str]:
     """By requirement the least robustness of its attempts, where it was found."""
+    if isinstance(report.attempts, LazyAttempts):
+        return {}  # nobody has measured these
     least: dict[str, float] = {}
     for attempt in report.attempts:
         if attempt.robustness is not None:

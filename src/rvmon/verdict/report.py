@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import Verdict
 
 
@@ -38,6 +39,21 @@ class Report:
     end: int | None = None
     misses: Mapping[str, str] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
+
+    def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
+        """The attempts of one requirement with one verdict, in their order.
+
+        Args:
+            requirement: its id.
+            verdict: `P`, `F` or `I`.
+        """
+        if isinstance(self.attempts, LazyAttempts):
+            return self.attempts.of(requirement, verdict)
+        return (
+            attempt
+            for attempt in self.attempts
+            if attempt.requirement == requirement and attempt.verdict is verdict
+        )
 
     def to_json(self) -> str:
         """The report as JSON text, in the shape that `rvmon run --format json` prints.

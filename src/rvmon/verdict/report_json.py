@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import fields, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import msgspec
 
 from rvmon.errors import TraceError
 from rvmon.trace.health import Health
-from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.attempt_json import attempt_text, encoded, record
+from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
-
-_ALWAYS = ("number", "triggered", "decided", "verdict", "decision", "reason")
-"""Keys that every attempt has in JSON; the others are left out where they are empty."""
 
 
 class _AttemptsJson(msgspec.Struct):
@@ -36,13 +34,9 @@ class _ReportJson(msgspec.Struct):
 
 def encode(report: Report) -> str:
     """Write a report as JSON text."""
-    attempts: dict[str, list[dict[str, object]]] = {name: [] for name in report.verdicts}
-    for attempt in report.attempts:
-        seconds = {
-            "triggered_s": _seconds(attempt.triggered, report.origin),
-            "decided_s": _seconds(attempt.decided, report.origin),
-        }
-        attempts[attempt.requirement].append({**_attempt(attempt), **seconds})
+    attempts: dict[str, list[str]] = {name: [] for name in report.verdicts}
+    for name, text in _texts(report):
+        attempts[name].append(text)
     document = {
         "trace": report.trace,
         "origin": report.origin,
@@ -50,7 +44,7 @@ def encode(report: Report) -> str:
         "requirements": {
             name: {
                 "verdict": verdict,
-                "attempts": attempts[name],
+                "attempts": msgspec.Raw(f"[{','.join(attempts[name])}]".encode()),
                 "counts": report.counts[name],
                 **({"nearest_miss": report.misses[name]} if name in report.misses else {}),
             }
@@ -59,7 +53,14 @@ def encode(report: Report) -> str:
         "health": report.health,
         **({"goals": report.goals} if report.goals else {}),
     }
-    return msgspec.json.encode(document).decode()
+    return encoded(document)
+
+
+def _texts(report: Report) -> Iterable[tuple[str, str]]:
+    """The requirement and the text of each attempt."""
+    if isinstance(report.attempts, LazyAttempts):
+        return report.attempts.texts(report.origin)
+    return ((one.requirement, attempt_text(one, report.origin)) for one in report.attempts)
 
 
 def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
@@ -74,9 +75,8 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
     """
     attempts: dict[str, list[dict[str, object]]] = {}
     for attempt in before:
-        attempts.setdefault(attempt.requirement, []).append(_attempt(attempt))
-    document = {"trace": trace, "error": error, "judged_before": attempts}
-    return msgspec.json.encode(document).decode()
+        attempts.setdefault(attempt.requirement, []).append(record(attempt))
+    return encoded({"trace": trace, "error": error, "judged_before": attempts})
 
 
 def decode(text: str | bytes) -> Report:
@@ -107,17 +107,3 @@ def decode(text: str | bytes) -> Report:
     found = {name: entry.nearest_miss for name, entry in document.requirements.items()}
     misses = {name: miss for name, miss in found.items() if miss}
     return replace(report, misses=misses, goals=document.goals)
-
-
-def _attempt(attempt: Attempt) -> dict[str, object]:
-    shown: dict[str, object] = {}
-    for field in fields(Attempt):
-        value = getattr(attempt, field.name)
-        if field.name in _ALWAYS or value not in (None, "", {}):
-            shown[field.name] = value
-    del shown["requirement"]
-    return shown
-
-
-def _seconds(instant: int | None, origin: int) -> float | None:
-    return None if instant is None else (instant - origin) / TICKS_PER_SECOND

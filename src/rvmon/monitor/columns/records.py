@@ -8,11 +8,15 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from rvmon.automaton.machine import Token
 from rvmon.formula.state import UNKNOWN
+from rvmon.monitor.columns.texts import texts_of
 from rvmon.monitor.columns.track import UNSEEN
-from rvmon.monitor.lazy import LazyAttempts
+from rvmon.monitor.reasons import Finding
 from rvmon.monitor.witness import Witness
 from rvmon.verdict.attempt import Attempt, decided_attempt
+from rvmon.verdict.attempt_json import attempt_text
+from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -55,6 +59,11 @@ class DecidedAttempts(Sequence[Attempt]):
         witness: of the requirement.
         clocked: per location of the automaton, whether it has a clock.
         decisions: of the attempts.
+
+    Attributes:
+        decisions: the same.
+        reasons: of the requirement's decisions.
+        id: of the requirement.
     """
 
     def __init__(self, witness: Witness, clocked: Sequence[bool], decisions: Decisions) -> None:
@@ -62,7 +71,8 @@ class DecidedAttempts(Sequence[Attempt]):
         self._witness = witness
         self._clocked = clocked
         self._failed = np.cumsum(~decisions.passed) - 1
-        self._id = witness.compiled.requirement.id
+        self.reasons = witness.reasons
+        self.id = witness.compiled.requirement.id
 
     def __len__(self) -> int:
         return len(self.decisions.number)
@@ -77,7 +87,7 @@ class DecidedAttempts(Sequence[Attempt]):
         decisions = self.decisions
         passed = bool(decisions.passed[index])
         return decided_attempt(
-            self._id,
+            self.id,
             decisions.number.item(index),
             decisions.triggered.item(index),
             decisions.decided.item(index),
@@ -86,12 +96,24 @@ class DecidedAttempts(Sequence[Attempt]):
             self._noted(index, passed=passed),
         )
 
+    def finding(self, index: int) -> Finding:
+        """What is said of one of them."""
+        decisions = self.decisions
+        return self.reasons.of(
+            self._before(index),
+            decisions.letter.item(index),
+            bool(decisions.passed[index]),
+            decisions.decided.item(index),
+        )
+
+    def _before(self, index: int) -> Token:
+        location = self.decisions.location.item(index)
+        return location, (self.decisions.anchor.item(index),) if self._clocked[location] else ()
+
     def _noted(self, index: int, *, passed: bool) -> tuple[Any, ...]:
         """What `Witness.details` reads."""
         decisions, witness = self.decisions, self._witness
         t = decisions.decided.item(index)
-        location = decisions.location.item(index)
-        anchors = (decisions.anchor.item(index),) if self._clocked[location] else ()
         letter = decisions.letter.item(index)
         count = len(witness.places)
         values, since, until = [UNKNOWN] * count, [t] * count, [None] * (2 * count)
@@ -103,7 +125,7 @@ class DecidedAttempts(Sequence[Attempt]):
         return (
             decisions.seen_then.item(index),
             t,
-            (location, anchors),
+            self._before(index),
             letter,
             letter,
             t - 1,
@@ -145,6 +167,17 @@ class JudgedAttempts(LazyAttempts):
     def __iter__(self) -> Iterator[Attempt]:
         return map(self._attempt, self._order.tolist())
 
+    def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
+        """See `LazyAttempts`."""
+        wanted = np.concatenate([_chosen(part, requirement, verdict) for part in self._parts])
+        return map(self._attempt, self._order[wanted[self._order]].tolist())
+
+    def texts(self, origin: int) -> Iterator[tuple[str, str]]:
+        """See `LazyAttempts`."""
+        names = np.concatenate([_names(part) for part in self._parts])
+        texts = np.concatenate([_texts(part, origin) for part in self._parts])
+        return zip(names[self._order].tolist(), texts[self._order].tolist(), strict=True)
+
     def __reduce__(self) -> tuple[Any, ...]:
         """What other processes get: the attempts themselves."""
         return tuple, (tuple(self),)
@@ -152,3 +185,29 @@ class JudgedAttempts(LazyAttempts):
     def _attempt(self, number: int) -> Attempt:
         part = int(np.searchsorted(self._first, number, "right")) - 1
         return self._parts[part][number - int(self._first[part])]
+
+
+def _chosen(part: Sequence[Attempt], requirement: str, verdict: Verdict) -> NDArray[np.bool_]:
+    """Which attempts of a part are of a requirement and have a verdict."""
+    if not isinstance(part, DecidedAttempts):
+        return np.array(
+            [one.requirement == requirement and one.verdict is verdict for one in part], bool
+        )
+    if part.id != requirement or verdict is Verdict.INCONCLUSIVE:
+        return np.zeros(len(part), bool)
+    passed = part.decisions.passed
+    return passed if verdict is Verdict.PASS else ~passed
+
+
+def _names(part: Sequence[Attempt]) -> NDArray[np.object_]:
+    """The requirement of each attempt of a part."""
+    if isinstance(part, DecidedAttempts):
+        return np.full(len(part), part.id, object)
+    return np.array([one.requirement for one in part], object)
+
+
+def _texts(part: Sequence[Attempt], origin: int) -> NDArray[np.object_]:
+    """The JSON text of each attempt of a part."""
+    if isinstance(part, DecidedAttempts):
+        return texts_of(part, origin)
+    return np.array([attempt_text(one, origin) for one in part], object)

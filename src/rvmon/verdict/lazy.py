@@ -6,6 +6,7 @@ from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
 
 _SHOWN = 3
 """So many attempts stand in the text of many."""
@@ -17,6 +18,23 @@ class LazyAttempts(Sequence[Attempt]):
     @abstractmethod
     def __iter__(self) -> Iterator[Attempt]:
         """The attempts, each made as it is asked for."""
+
+    @abstractmethod
+    def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
+        """Those of one requirement with one verdict, in their order, each made as it is asked for.
+
+        Args:
+            requirement: its id.
+            verdict: `P`, `F` or `I`.
+        """
+
+    @abstractmethod
+    def texts(self, origin: int) -> Iterator[tuple[str, str]]:
+        """The requirement and the JSON text of each, as `rvmon.verdict.attempt_json` writes it.
+
+        Args:
+            origin: the instant from which people count seconds, ticks.
+        """
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
