@@ -6,14 +6,16 @@ Changes are drawn evenly over their kinds, from the lines of the engine's files 
 executes (of C, from all lines). Each is tried in a copy of the package. A mutant is killed if the
 test finds a disagreement, hangs or breaks, or if the engine refuses other specifications than it
 did; one that survives is tried again with samples in portions and with snapshots, with 10,000
-pairs, then with the engines that have its files in common. Those listed in `EQUIVALENT` change
-no behaviour, for the reason given there; others are drawn in their place. Exits 1 if one survives.
+pairs, with the engines that have its files in common, then by the tests of their packages. Those
+listed in `EQUIVALENT` change no behaviour, for the reason given there; others are drawn in their
+place. Exits 1 if one survives.
 """
 
 from __future__ import annotations
 
 import argparse
 import compileall
+import itertools
 import os
 import random
 import re
@@ -41,6 +43,9 @@ MOST_MEMORY = 4 << 30
 THOROUGH = 10_000
 """Pairs of the second try."""
 
+LAWS = "tests/rvmon/laws"
+"""What holds of all engines is tested there."""
+
 MORE = 4
 """Times the pairs of the first try: for the engines that are tried last."""
 
@@ -55,7 +60,7 @@ def main(argv: Sequence[str]) -> int:
     with tempfile.TemporaryDirectory() as directory:
         trial = Trial(Path(directory), options)
         left = drawn
-        for stage in stages_of(options.engine, options.pairs):
+        for stage in stages_of(options.engine, files, options.pairs):
             if left:
                 print(f"{len(left)} go through {stage}", flush=True)
             left = [mutant for mutant in left if not trial.kills(mutant, stage)]
@@ -88,7 +93,9 @@ def _python_files(path: Path) -> list[Path]:
     return [file.resolve() for file in (sorted(path.rglob("*.py")) if path.is_dir() else [path])]
 
 
-def _command(options: argparse.Namespace, stage: Stage) -> list[str]:
+def _command(options: argparse.Namespace, stage: Stage | Tests) -> list[str]:
+    if isinstance(stage, Tests):
+        return ["-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *stage.folders]
     command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
     command += ["--traces", "4", "--pairs", str(stage.pairs), "--seed", str(options.seed)]
     if options.time:
@@ -109,14 +116,31 @@ class Stage:
         return f"{self.pairs} pairs of {' '.join(self.engines)}"
 
 
-def stages_of(engine: str, pairs: int) -> list[Stage]:
-    """What a mutant of an engine goes through until it is killed."""
-    stages = [Stage((engine,), pairs)]
+@dataclass(frozen=True, slots=True)
+class Tests:
+    """One try: the tests in some folders."""
+
+    folders: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return " ".join(self.folders)
+
+
+def stages_of(engine: str, files: Sequence[Path], pairs: int) -> list[Stage | Tests]:
+    """What a mutant of an engine, which consists of `files`, goes through until it is killed."""
+    stages: list[Stage | Tests] = [Stage((engine,), pairs)]
     if engine in SWITCHABLE:
         stages.append(Stage((f"{engine}+{NEXT}", f"{engine}+{INTERRUPT}"), pairs))
     stages.append(Stage((engine,), THOROUGH))
-    related = RELATED.get(engine, ())
-    return [*stages, Stage(related, MORE * pairs)] if related else stages
+    if related := RELATED.get(engine, ()):
+        stages.append(Stage(related, MORE * pairs))
+    return [*stages, Tests((*_tests_of(files), LAWS))]
+
+
+def _tests_of(files: Iterable[Path]) -> list[str]:
+    """The folders of the tests of the packages that have the files."""
+    packages = {file.relative_to(PACKAGE).parts[0] for file in files}
+    return [f"tests/rvmon/{package}" for package in sorted(packages)]
 
 
 def _changes(files: Sequence[Path], options: argparse.Namespace) -> Iterator[Mutant]:
@@ -151,19 +175,14 @@ def _executed_lines(files: Sequence[Path], options: argparse.Namespace) -> dict[
 
 
 def draw(found: Iterable[Mutant], options: argparse.Namespace) -> list[Mutant]:
-    """A seeded sample, the kinds of change in turn."""
-    dice = random.Random(options.seed)
+    """A seeded sample, the kinds of change in turn; what is drawn depends on no other mutant."""
     kinds: dict[str, list[Mutant]] = {}
     for mutant in found:
         kinds.setdefault(mutant.kind, []).append(mutant)
     for members in kinds.values():
-        dice.shuffle(members)
-    chosen: list[Mutant] = []
-    while len(chosen) < options.count and any(kinds.values()):
-        for members in kinds.values():
-            if members and len(chosen) < options.count:
-                chosen.append(members.pop())
-    return chosen
+        members.sort(key=lambda mutant: random.Random(f"{options.seed} {mutant.change}").random())
+    rounds = itertools.chain.from_iterable(itertools.zip_longest(*kinds.values()))
+    return [*itertools.islice(filter(None, rounds), options.count)]
 
 
 class Trial:
@@ -181,9 +200,9 @@ class Trial:
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
         # A changed file is newer than what was compiled, and what is compiled then is not kept.
         compileall.compile_dir(self.package, quiet=2)
-        self.known: dict[Stage, tuple[list[str], float]] = {}
+        self.known: dict[Stage | Tests, tuple[list[str], float]] = {}
 
-    def _as_it_is(self, stage: Stage) -> tuple[list[str], float]:
+    def _as_it_is(self, stage: Stage | Tests) -> tuple[list[str], float]:
         """What engines refuse without a change, and how many seconds the test takes."""
         if stage not in self.known:
             began = time.perf_counter()
@@ -193,7 +212,7 @@ class Trial:
                 sys.exit(f"without a change, {stage} do not pass the test: {verdict}")
         return self.known[stage]
 
-    def kills(self, mutant: Mutant, stage: Stage) -> bool:
+    def kills(self, mutant: Mutant, stage: Stage | Tests) -> bool:
         """Try a mutant; if it does not survive, print what became of it."""
         wanted, seconds = self._as_it_is(stage)
         place = self.package / mutant.path.relative_to(PACKAGE)
@@ -206,7 +225,7 @@ class Trial:
             print(f"{verdict:9} {mutant}", flush=True)
         return verdict != "survived"
 
-    def _run(self, stage: Stage, most: float) -> tuple[str, list[str]]:
+    def _run(self, stage: Stage | Tests, most: float) -> tuple[str, list[str]]:
         """The test on the copy: `survived`, `killed` or `hung`; how many specs were refused."""
         try:
             done = subprocess.run(

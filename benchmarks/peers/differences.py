@@ -235,6 +235,17 @@ DIFFERENCES = (
     Difference(
         "rtamt",
         "rtamt",
+        "dense",
+        "the same: so `or` is false there although its other operand is true",
+        f"once[1:1](({_P} since (once[1:1]{_P})) or {_Q})",
+        {"p": [_T, _T, _T], "q": [_T, _T, _T]},
+        [_F, _F, _T],
+        once(two(two(p, "S", once(p, 1, 1)), "or", q), 1, 1),
+        TimeModel.HELD,
+    ),
+    Difference(
+        "rtamt",
+        "rtamt",
         "dense online",
         "future operators have no effect: the operand itself is answered",
         f"always[0:1]{_P}",
