@@ -37,6 +37,9 @@ class ConeWriter:
         self.small = sum(map(len, self.cones)) <= _MOST
         self.each = plan.gap in (None, 1)
         """Whether every sample is a position."""
+        time_alone = visit.momentary or visit.repeats or not visit.calm
+        self.joins = self.each and nodes.watched is None and not time_alone
+        """Whether timers that are due are seen to beside a new value, where they do not meet."""
 
     def looked_up(self) -> Iterator[str]:
         """Where samples are gathered: a function per leaf, by the bit of it."""
@@ -59,24 +62,31 @@ class ConeWriter:
         yield f"CONES = {{{listed}}}"
 
     def followed(self, name: str, kept: Iterator[str]) -> Iterator[str]:
-        """What a sample does whose only news is a value `x`, time having changed nothing.
+        """What a sample does whose only news is a value `x`.
+
+        Time has changed nothing, or as `dirty` tells, nothing that depends on the value.
 
         Args:
             name: of the signal.
             kept: what keeps the value.
         """
-        (leaf,) = self.plan.graph.by_name[name]
-        (places,) = (places for places in self.cones if places[0] == leaf)
+        places = self._cone_of(name)
         lines = list(kept)
-        for test, value in self._values(leaf):
+        for test, value in self._values(places[0]):
             lines += [test, *indented(self._moved(places, value))]
         lines += self.visit.judged()
         lines += self.visit.told()
         if "before" in "\n".join(lines):
             yield f"before = {self.visit.preceding()}"
-        if self.visit.momentary:
-            yield "fading = 0"
-        yield "letters = triggers = dirty = 0"
+        if self.joins:
+            yield "letters = triggers = 0"
+            yield "if self.dirty:"
+            yield f"    self.before = {self.visit.preceding()}"
+            yield "    letters, triggers, _ = self.evaluate(t, self.dirty)"
+            yield "    self.dirty = 0"
+            yield "dirty = 0"
+        else:
+            yield f"letters = triggers = dirty = {'fading = ' if self.visit.momentary else ''}0"
         yield from at_hand(lines, "before", "dues", "last")
         yield from lines
 
@@ -99,6 +109,10 @@ class ConeWriter:
 
     def _moved(self, places: list[int], value: str) -> Iterator[str]:
         """What a sample does that may bring a leaf another value."""
+        if self.joins:
+            yield f"if v[{places[0]}] != {value}:"
+            yield from indented(self._cone(places, value))
+            return
         if not isinstance(self.plan.graph.nodes[places[0]].leaf, SignalAtom):
             yield f"if v[{places[0]}] == {value}:"
             yield from indented(self.visit.done())
@@ -114,6 +128,24 @@ class ConeWriter:
         """
         readers = self.plan.graph.by_name.get(name, ())
         return self.each and self.small and len(readers) == 1 and instant.issuperset(readers)
+
+    def apart(self, name: str, quiet: str) -> str:
+        """The condition under which a sample that brings another value of a signal is `followed`.
+
+        Args:
+            name: of the signal.
+            quiet: the condition under which nothing but a new value can change anything.
+        """
+        if not self.joins:
+            return quiet
+        cone = bits(tuple(self._cone_of(name)))
+        late = quiet.replace("t < self.wake", "t <= self.wake", 1)
+        return f"{late} and not (t == self.wake and self.meets(t, {cone}))"
+
+    def _cone_of(self, name: str) -> list[int]:
+        (leaf,) = self.plan.graph.by_name[name]
+        (places,) = (places for places in self.cones if places[0] == leaf)
+        return places
 
     def _cone(self, places: list[int], value: str) -> Iterator[str]:
         """What the new value of a leaf makes of the nodes above it."""

@@ -124,7 +124,7 @@ class IntakeWriter:
                 yield f"        x{number} = values[{name!r}]"
             yield "        last = self.last"
             if not self.every:
-                yield from indented([*quiet, *indented(self._compared())], 2)
+                yield from indented(self._compared(), 2)
         yield f"    {'elif' if self.whole else 'if'} not size:"
         yield from indented([*quiet, *indented([*self.visit.done(), "return ()"])], 2)
         if len(self.single) > 1 or not self.whole:
@@ -138,17 +138,22 @@ class IntakeWriter:
     def _compared(self) -> Iterator[str]:
         """Compare a whole row with the one before; go on with a value that alone is another."""
         names = list(enumerate(self.arriving))
+        quiet = f"t.__class__ is int and self.after < {self._quiet()}"
         if len(self.single) < len(names) or len(names) > _PAIRED:
-            yield f"if {self._same(names)}:"
+            yield f"if {self._same(names)} and {quiet}:"
             yield from indented([*self.visit.done(), "return ()"])
             return
+        yield "if t.__class__ is int and self.after < t < LIMIT:"
+        yield from indented(self._told_apart(names))
+
+    def _told_apart(self, names: Sequence[tuple[int, str]]) -> Iterator[str]:
         for number, name in names:
             branch = "elif" if number else "if"
             yield f"{branch} x{number} is not {self._before(name)}:"
             lines = [f"one, x = one{number}, x{number}"]
             rest = names[number + 1 :]
             yield from indented([f"if {self._same(rest)}:", *indented(lines)] if rest else lines)
-        yield "else:"
+        yield f"elif {self._quiet()}:"
         yield from indented([*self.visit.done(), "return ()"])
 
     def _same(self, names: Sequence[tuple[int, str]]) -> str:
@@ -241,7 +246,7 @@ class IntakeWriter:
         head += [f"elif {self._is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
         lines = []
         if name in self.plan.signals and self.cones.can_follow(name, self.instant):
-            lines.append(f"elif {self._quiet()}:")
+            lines.append(f"elif {self.cones.apart(name, self._quiet())}:")
             lines += indented(self.cones.followed(name, self._kept("x", name, given=True)))
         general = [*self._time(), "dirty = 0", f"if x is not {self._before(name)}:"]
         general += indented(self._new("x", name))

@@ -131,6 +131,8 @@ class _Writer:
         functions = (f"n{place}" if own else "None" for place, own in enumerate(kept))
         yield f"EVALUATE = {_tuple(functions)}"
         yield f"PARENTS = {roles.parents!r}"
+        if self.cones.joins:
+            yield "ABOVE = closures(PARENTS)"
         yield f"LETTERS = {roles.letters!r}"
         yield f"TRIGGERS = {roles.triggers!r}"
         yield f"READERS = { ({name: readers.get(name, 0) for name in plan.signals})!r}"

@@ -15,7 +15,7 @@ from rvmon.codegen.runtime.past import compared, finite, number
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.solo import SoloRule
 from rvmon.codegen.runtime.table import NEVER, Table, letter_table
-from rvmon.codegen.runtime.unit import Unit
+from rvmon.codegen.runtime.unit import Unit, closures
 from rvmon.codegen.tables import tables_of
 
 
@@ -31,7 +31,7 @@ def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]
     namespace |= {"__name__": "rvmon.generated", "math": math, "NEVER": NEVER, "LIMIT": LIMIT}
     namespace |= {"MISSING": MISSING, "Unit": Unit, "heappush": heapq.heappush}
     namespace |= {"Rule": Rule, "BulkRule": BulkRule, "SoloRule": SoloRule}
-    namespace["letter_table"] = letter_table
+    namespace |= {"letter_table": letter_table, "closures": closures}
     namespace |= {"compared": compared, "finite": finite, "number": number}
     source = unit_source(plan, arriving)
     # The source holds names and numbers of the specification as literals only.

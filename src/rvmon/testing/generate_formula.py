@@ -54,6 +54,7 @@ class Shape:
         future: whether future operators may occur.
         mixed: whether future operators may stand below past ones.
         numbers: whether comparisons and probes may occur.
+        events: whether events may be read.
         captured: names of captured numbers that may be read.
         longest: the greatest bound of an interval, ticks.
     """
@@ -63,6 +64,7 @@ class Shape:
     future: bool = True
     mixed: bool = True
     numbers: bool = True
+    events: bool = True
     captured: tuple[str, ...] = ()
     longest: int = 6
 
@@ -83,7 +85,7 @@ def atom(dice: Dice, shape: Shape) -> Formula:
         dice,
         (
             (50, "signal"),
-            (22, "event"),
+            (22 if shape.events else 0, "event"),
             (18 if shape.numbers else 0, "compare"),
             (6 if shape.numbers else 0, "probe"),
             (2, "constant"),
@@ -98,7 +100,7 @@ def atom(dice: Dice, shape: Shape) -> Formula:
         case "compare":
             return comparison(dice, shape)
         case "probe":
-            return _probe(dice)
+            return _probe(dice, shape)
         case "constant":
             return Constant(chance(dice, 50))
         case _:
@@ -112,7 +114,7 @@ def comparison(dice: Dice, shape: Shape) -> Formula:
         return Compare(op, SignalValue(LABEL), Literal(pick(dice, LABELS)))
     op = pick(dice, tuple(CompareOp))
     left: Numeric = SignalValue(pick(dice, NUMBERS))
-    if chance(dice, 30):
+    if shape.events and chance(dice, 30):
         left = field_value(dice)
     elif chance(dice, 40):
         left = arithmetic(dice, shape)
@@ -142,16 +144,17 @@ def field_value(dice: Dice) -> Numeric:
 
 
 def _input(dice: Dice, shape: Shape) -> Numeric:
-    if chance(dice, 15):
+    if shape.events and chance(dice, 15):
         return field_value(dice)
     if shape.captured and chance(dice, 20):
         return Captured(pick(dice, shape.captured))
     return SignalValue(pick(dice, NUMBERS))
 
 
-def _probe(dice: Dice) -> Formula:
+def _probe(dice: Dice, shape: Shape) -> Formula:
     probe = pick(dice, tuple(Probe))
-    names = (*BOOLS, *NUMBERS, *((*EVENTS, CARRIER, FURTHER) if probe is Probe.UPDATED else ()))
+    events = (*EVENTS, CARRIER, FURTHER) if shape.events and probe is Probe.UPDATED else ()
+    names = (*BOOLS, *NUMBERS, *events)
     return ProbeAtom(probe, pick(dice, names))
 
 

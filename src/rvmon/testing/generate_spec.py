@@ -49,6 +49,8 @@ class Profile:
         requirements: at most so many.
         numbers: whether comparisons and probes may occur.
         past: whether past operators may occur.
+        future: whether future operators may occur.
+        events: whether events may be read.
         mixed: whether future operators may stand below past ones.
         captures: whether requirements may hold `let`.
         for_each: whether requirements may hold `for each`.
@@ -61,6 +63,8 @@ class Profile:
     requirements: int = 2
     numbers: bool = True
     past: bool = True
+    future: bool = True
+    events: bool = True
     mixed: bool = True
     captures: bool = True
     for_each: bool = True
@@ -105,8 +109,10 @@ def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Re
     shape = Shape(
         step=time is not TimeModel.HELD,
         past=profile.past,
+        future=profile.future,
         mixed=profile.mixed,
         numbers=profile.numbers,
+        events=profile.events,
         captured=(*instance, *(capture.name for capture in captures)),
     )
     seen = Shape(
@@ -114,6 +120,7 @@ def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Re
         past=profile.past,
         future=False,
         numbers=profile.numbers,
+        events=profile.events,
         captured=instance,
     )
     trigger = _trigger(dice, seen, for_each)
@@ -165,8 +172,8 @@ def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
     kind = weighted(
         dice,
         (
-            (28, "event"),
-            (16, "event and"),
+            (28 if shape.events else 0, "event"),
+            (16 if shape.events else 0, "event and"),
             (12, "level"),
             (14, "start"),
             (18, "any"),

@@ -53,6 +53,8 @@ class Unit(Nodes):
         "rules",
     )
 
+    ABOVE: tuple[int, ...] = ()
+    """Per node, a bit for it and each that depends on it; left out where nobody asks."""
     NOTED: tuple[Callable[[list[int], list[int], list[int | None]], tuple[Any, ...]], ...]
     """Per requirement, where records are kept: what they note of `v`, `since` and `until`."""
     RULES: tuple[tuple[type[Rule], Callable[[list[int]], tuple[int, int]], int, bool, bool], ...]
@@ -142,6 +144,21 @@ class Unit(Nodes):
                 dirty |= self.PARENTS[place]
                 triggers |= self.TRIGGERS[place]
         return letters, triggers, fading
+
+    def meets(self, t: int, cone: int) -> bool:
+        """Have timers ring at `t`; whether what they may change is among some nodes.
+
+        Args:
+            t: the next position.
+            cone: a bit for each node, with all that depend on one of them.
+        """
+        due = self.dirty = self.dirty | self.ring(t)
+        while due:
+            bit = due & -due
+            due ^= bit
+            if self.ABOVE[bit.bit_length() - 1] & cone:
+                return True
+        return False
 
     def conclude(self, t: int, letters: int, triggers: int) -> None:
         """Have the position judged by those whom it concerns."""
@@ -323,3 +340,24 @@ class Unit(Nodes):
                 rule.begin(self.last_position(end), end)
         for rule in self.rules:
             rule.reach(reached)
+
+
+def closures(parents: Sequence[int]) -> tuple[int, ...]:
+    """Per node a bit for it and each that depends on it.
+
+    Args:
+        parents: per node a bit for each that depends on it directly; all of them stand behind it.
+
+    >>> closures([0b10, 0b100, 0])
+    (7, 6, 4)
+    """
+    found: list[int] = [0] * len(parents)
+    for place in reversed(range(len(parents))):
+        above = 1 << place
+        rest = parents[place]
+        while rest:
+            bit = rest & -rest
+            rest ^= bit
+            above |= found[bit.bit_length() - 1]
+        found[place] = above
+    return tuple(found)

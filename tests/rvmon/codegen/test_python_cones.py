@@ -1,0 +1,56 @@
+"""Samples that bring one new value, on monitors of many requirements."""
+
+import random
+
+import pytest
+
+import rvmon
+from rvmon.codegen.runtime.unit import Unit, closures
+from rvmon.testing.generate_formula import Shape, formula
+from rvmon.testing.show import show
+
+SIGNALS = ("p", "q", "r")
+SHAPE = Shape(future=False, numbers=False, events=False)
+
+
+def many(dice, time, count):
+    """A specification of so many past formulas, and samples of which each brings a new value."""
+    signals = [f"signal {name} : bool" for name in SIGNALS]
+    texts = [f"requirement R{n}\n  always ({show(formula(dice, SHAPE, 3))})" for n in range(count)]
+    samples = [(0, dict.fromkeys(SIGNALS, False))]
+    values = dict(samples[0][1])
+    for _ in range(40):
+        t = samples[-1][0] + dice.choice((1, 1, 1, 2, 3, 7))
+        name = dice.choice(SIGNALS)
+        values[name] = None if dice.random() < 0.03 else not values[name]
+        samples.append((t, dict(values) if dice.random() < 0.5 else {name: values[name]}))
+    return "\n".join(["spec many", f"time {time}", *signals, *texts]), samples
+
+
+def judged(spec, samples, engine):
+    """What each sample decided, and all records at the end."""
+    monitor = spec.monitor(engine=engine)
+    steps = [[*map(repr, monitor.step_ns(t, values))] for t, values in samples]
+    return steps, monitor.finish_ns(samples[-1][0] + 9)
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+@pytest.mark.parametrize("count", [2, 12])
+def test_they_judge_as_tables_do(time, count, monkeypatch):
+    """Whether timers are due beside the new value or not, and whether both meet or not."""
+    met = set()
+    meets = Unit.meets
+    monkeypatch.setattr(
+        Unit, "meets", lambda unit, t, cone: met.add(found := meets(unit, t, cone)) or found
+    )
+    for seed in range(60):
+        dice = random.Random(f"{time}/{count}/{seed}")
+        text, samples = many(dice, time, count)
+        spec = rvmon.loads(text)
+        assert judged(spec, samples, "python") == judged(spec, samples, "automaton"), text
+    assert met == {False, True}
+
+
+def test_what_depends_on_a_node_is_all_above_it():
+    """A node behind two others is above both, and above what is below them."""
+    assert closures([0b110, 0b1000, 0b1000, 0]) == (0b1111, 0b1010, 0b1100, 0b1000)
