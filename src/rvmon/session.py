@@ -71,7 +71,7 @@ class Spec:
             UnknownNameError: there is no such requirement.
             RvmonError: one of them is beyond generated code; which and why is said.
         """
-        from rvmon.monitor.generated import plan_alone
+        from rvmon.monitor.planned import plan_alone
 
         return plan_alone(self._compiled, only)
 

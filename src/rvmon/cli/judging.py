@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from rvmon.cli.progress import shown_while_reading
 from rvmon.errors import TraceError
 from rvmon.loading import load
-from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec
 from rvmon.trace.health import Health, HealthKind
@@ -223,6 +222,8 @@ def _second_look(
 def _goals(
     spec: Spec, samples: Sequence[Sample], end: int, names: frozenset[str] | None
 ) -> Mapping[str, Verdict]:
+    from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
+
     monitor = Spec(goals_as_requirements(spec.checked)).monitor(sources=names)
     for sample in samples:
         monitor.step_ns(sample.t, sample.values)

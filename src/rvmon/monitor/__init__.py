@@ -1,7 +1,28 @@
 """Online monitors: a specification judged sample by sample."""
 
-from rvmon.monitor.build import build_monitor
-from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec, compile_spec
-from rvmon.monitor.monitor import Monitor
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rvmon.monitor.build import build_monitor
+    from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec, compile_spec
+    from rvmon.monitor.monitor import Monitor
 
 __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "compile_spec"]
+
+# Recordings in columns are judged without a monitor: a name is imported when it is asked for.
+_HOMES = {
+    "CompiledRequirement": "rvmon.monitor.compiled",
+    "CompiledSpec": "rvmon.monitor.compiled",
+    "Monitor": "rvmon.monitor.monitor",
+    "build_monitor": "rvmon.monitor.build",
+    "compile_spec": "rvmon.monitor.compiled",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'rvmon.monitor' has no attribute '{name}'")
+    return getattr(import_module(_HOMES[name]), name)

@@ -9,7 +9,6 @@ import numpy as np
 
 from rvmon.monitor.columns.evaluate import ColumnJudge, columns_judge
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
-from rvmon.monitor.columns.rows import CHUNK, RowJudge
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.readers.ticks import ticks_in_range, ticks_of_column
 from rvmon.spec.checked import CheckedSpec
@@ -19,6 +18,8 @@ from rvmon.verdict.report import Report
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from rvmon.monitor.columns.rows import RowJudge
+
     Block = tuple[NDArray[np.int64], Columns]
 
 FEW_ROWS = 1000
@@ -26,6 +27,9 @@ FEW_ROWS = 1000
 
 _BY_COLUMNS = ("auto", "python")
 """Engines that leave it open how generated tables are looked up."""
+
+_PIECE = 1 << 17
+"""Instants that are compared together."""
 
 _WIDEST = 8
 """Bytes of the widest numbers that are numbers of Python, too."""
@@ -104,7 +108,7 @@ def arrays_of(
 
 def in_order(times: NDArray[np.int64]) -> bool:
     """Whether instants increase strictly; looked at in pieces that stay near the processor."""
-    pieces = (times[start : start + CHUNK + 1] for start in range(0, len(times), CHUNK))
+    pieces = (times[start : start + _PIECE + 1] for start in range(0, len(times), _PIECE))
     return all(bool((piece[1:] > piece[:-1]).all()) for piece in pieces)
 
 
@@ -140,7 +144,7 @@ def evaluate_plain(
         by_arrays = columns_judge(compiled, chosen, frozenset(names))
     if by_arrays is not None:
         rest = [name for name in chosen if name not in by_arrays.ids]
-        by_rows = RowJudge(compiled, names, only=rest, engine=engine) if rest else None
+        by_rows = _row_judge(compiled, names, rest, engine) if rest else None
         try:
             return _judged_by_both(by_arrays, by_rows, blocks(), until)
         except NotByColumnsError:
@@ -181,7 +185,16 @@ def evaluate_blocks(
         engine: `auto` or the name of one that judges samples.
         until: the end of the trace in ticks, if after its last row.
     """
-    judge = RowJudge(compiled, names, only=only, engine=engine)
+    judge = _row_judge(compiled, names, only, engine)
     for times, columns in blocks:
         judge.take(times, columns)
     return judge.report(until)
+
+
+def _row_judge(
+    compiled: CompiledSpec, names: Sequence[str], only: Sequence[str] | None, engine: str
+) -> RowJudge:
+    """What judges rows as samples; a monitor is imported for it."""
+    from rvmon.monitor.columns.rows import RowJudge
+
+    return RowJudge(compiled, names, only=only, engine=engine)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.batch import evaluate_plain
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.generated import can_feed, plan_requirements
+from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.trace.schema import Schema
 from rvmon.verdict.report import Report

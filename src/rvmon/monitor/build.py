@@ -6,8 +6,9 @@ from collections.abc import Iterable
 
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.generated import Forms, GeneratedMonitor, can_feed
+from rvmon.monitor.generated import Forms, GeneratedMonitor
 from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.planned import can_feed
 
 _GENERATED = ("auto", "python")
 

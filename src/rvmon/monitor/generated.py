@@ -2,124 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.letters import LetterDiagram
 from rvmon.automaton.machine import INFINITY
-from rvmon.codegen.plan import Plan, PlannedRule
-from rvmon.codegen.planning import plan_of
 from rvmon.codegen.python_unit import machine_of, unit_class
 from rvmon.codegen.runtime.nodes import LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
-from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.monitor.bench import Bench
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.hosted import HostedRule
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.monitor.seat import Seat
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
-
-
-def can_feed(requirement: CompiledRequirement) -> bool:
-    """Whether generated code in this process can work out what a requirement reads."""
-    return requirement.requirement.for_each is None and not requirement.requirement.captures
-
-
-def can_generate(requirement: CompiledRequirement) -> bool:
-    """Whether generated code can judge the attempts of a requirement, too."""
-    return not _beyond(requirement)
-
-
-def _beyond(requirement: CompiledRequirement) -> str:
-    """Why generated code cannot judge a requirement; empty if it can."""
-    if requirement.requirement.for_each:
-        return "uses `for each`"
-    if requirement.requirement.captures:
-        return "uses `let`"
-    if requirement.automaton is None:
-        return f"has no automaton: {requirement.refusal}"
-    if isinstance(requirement.automaton.class_of, LetterDiagram):
-        return f"tells {requirement.alphabet.size:,} combinations of its propositions apart"
-    return ""
-
-
-def plan_requirements(
-    compiled: CompiledSpec,
-    requirements: Sequence[CompiledRequirement],
-    *,
-    explained: bool = True,
-) -> Plan:
-    """The plan of some requirements of a specification.
-
-    Args:
-        compiled: the specification.
-        requirements: chosen from it.
-        explained: whether somebody will ask what is owed: the tables are smaller if not.
-    """
-    return plan_of(
-        compiled.checked,
-        [
-            PlannedRule(
-                one.requirement,
-                one.obligation.trigger,
-                one.alphabet,
-                automaton,
-                one.in_runs(automaton),
-                tuple(leaf for leaf, _ in one.leaves) if explained else None,
-            )
-            for one in requirements
-            for automaton in (_planned(one, explained),)
-        ],
-    )
-
-
-def _planned(requirement: CompiledRequirement, explained: bool) -> Automaton | None:
-    """The automaton of a requirement that generated code is to step; `None`: a judge does."""
-    if not can_generate(requirement):
-        return None
-    return requirement.automaton if explained else requirement.slim
-
-
-def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
-    """The plan of what is to run without rvmon.
-
-    Args:
-        compiled: the specification.
-        only: ids of its requirements; default all.
-
-    Raises:
-        UnknownNameError: there is no such requirement, or none is asked for.
-        RvmonError: one of them is beyond generated code; which and why is said.
-    """
-    chosen = list(compiled.requirements.values())
-    if only is not None:
-        names = list(only)
-        if not names:
-            known = ", ".join(compiled.requirements)
-            raise UnknownNameError(f"the list of requirements is empty: there are {known}")
-        for name in names:
-            if name not in compiled.requirements:
-                known = ", ".join(compiled.requirements)
-                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
-        chosen = [one for one in chosen if one.requirement.id in names]
-    if compiled.checked.max_delay is not None:
-        raise RvmonError("generated code cannot sort samples: leave out `max delay`")
-    for one in chosen:
-        if reason := _beyond(one):
-            raise RvmonError(
-                f"{one.requirement.id} {reason}; generated code cannot judge it: "
-                "leave it out with --only, or use `rvmon run`"
-            )
-    return plan_requirements(compiled, chosen, explained=False)
 
 
 class Forms:

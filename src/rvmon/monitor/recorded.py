@@ -9,8 +9,9 @@ import numpy as np
 
 from rvmon.codegen.c_batch import Told
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS
+from rvmon.monitor.instants import seconds_of
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.attempt_json import Pattern, seconds_texts
+from rvmon.verdict.attempt_json import Pattern, numbers_texts
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -62,13 +63,13 @@ class RecordedAttempts(LazyAttempts):
         for name in ("verdict", "decision"):
             alike = alike << 8 | records[name]
         texts = np.empty(len(records), object)
-        for kind in np.unique(alike).tolist():  # these differ in numbers alone
+        for kind in set(alike.tolist()):  # these differ in numbers alone
             own = np.flatnonzero(alike == kind)
-            columns: dict[str, Any] = {
-                name: records[name][own].tolist() for name in ("number", "triggered", "decided")
-            }
-            columns["triggered_s"] = seconds_texts(columns["triggered"], origin)
-            columns["decided_s"] = seconds_texts(columns["decided"], origin)
+            columns: dict[str, Any] = {"number": records["number"][own].tolist()}
+            for name in ("triggered", "decided"):
+                instants = records[name][own]
+                columns[name] = instants.tolist()
+                columns[f"{name}_s"] = numbers_texts(seconds_of(instants, origin))
             texts[own] = Pattern(self[own.item(0)], [""]).texts(columns, [])
         return zip(map(self._ids.__getitem__, records["requirement"].tolist()), texts, strict=True)
 

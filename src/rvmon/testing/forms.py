@@ -13,7 +13,7 @@ from rvmon.codegen.python_file import python_file
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.compiled import ENGINES
-from rvmon.monitor.generated import can_generate, plan_alone
+from rvmon.monitor.planned import can_generate, plan_alone
 from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case

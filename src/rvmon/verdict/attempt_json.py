@@ -52,9 +52,9 @@ def encoded(value: object) -> str:
     return msgspec.json.encode(value).decode()
 
 
-def seconds_texts(instants: Iterable[int], origin: int) -> list[str]:
-    """The JSON texts of instants in seconds after the origin; all in ticks."""
-    found = encoded([seconds(instant, origin) for instant in instants])[1:-1]
+def numbers_texts(numbers: list[float]) -> list[str]:
+    """The JSON text of each number."""
+    found = encoded(numbers)[1:-1]
     return found.split(",") if found else []
 
 

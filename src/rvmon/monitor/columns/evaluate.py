@@ -18,9 +18,9 @@ from rvmon.monitor.columns.records import DecidedAttempts, JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.generated import can_generate, plan_requirements
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.planned import can_generate, plan_requirements
 from rvmon.spec.checked import (
     Compare,
     Literal,

@@ -15,8 +15,8 @@ from rvmon.formula.state import Leaf
 from rvmon.monitor.build import build_monitor
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.generated import can_feed, plan_requirements
 from rvmon.monitor.health import HealthLog, by_name
+from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.spec.checked import Compare, Probe, ProbeAtom, SignalAtom, TimeModel
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.report import Report

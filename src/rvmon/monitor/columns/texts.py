@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rvmon.monitor.instants import formatted, seconds_of
 from rvmon.monitor.reasons import Finding, Reasons
 from rvmon.monitor.sentence import LastWith, Place
-from rvmon.trace.time import format_ticks
-from rvmon.verdict.attempt_json import Pattern, attempt_text, seconds_texts
+from rvmon.verdict.attempt_json import Pattern, attempt_text, numbers_texts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,18 +48,30 @@ def _alike(decisions: Decisions, reasons: Reasons) -> Iterator[Numbers]:
         decisions.seen_then,
         decisions.seen,
     ):
-        values, number = np.unique(column, return_inverse=True)
-        if len(values) > 1:
-            kind = np.unique(kind * len(values) + number, return_inverse=True)[1]
+        if (column != column[:1]).any():
+            number = _numbered(column)
+            kind = _numbered(kind * (number.max() + 1) + number)
     order = np.argsort(kind, kind="stable")
     bounds = np.flatnonzero(np.diff(kind[order])) + 1
     return (own for own in np.split(order, bounds) if len(own))
 
 
+def _numbered(column: Numbers) -> Numbers:
+    """A number for each entry, the same for those that are equal; less than there are entries.
+
+    `numpy.unique` would do, but brings arrays with masks into the process.
+    """
+    order = np.argsort(column, kind="stable")
+    numbers = np.empty(len(column), np.int64)
+    numbers[order[:1]] = 0
+    numbers[order[1:]] = np.cumsum(np.diff(column[order]) != 0)
+    return numbers
+
+
 def _regions(decisions: Decisions, reasons: Reasons) -> Numbers:
     """Between which cuts of its location each attempt was when it was decided."""
     regions = np.zeros(len(decisions.number), np.int64)
-    for location in np.unique(decisions.location).tolist():
+    for location in set(decisions.location.tolist()):
         for cuts in reasons.cuts(location):  # one clock at most
             own = decisions.location == location
             ages = decisions.decided[own] - decisions.anchor[own]
@@ -85,14 +97,14 @@ def _passed(attempts: DecidedAttempts, own: Numbers, origin: int) -> list[str]:
         "triggered": triggered.tolist(),
         "decided": decided.tolist(),
     }
-    columns["triggered_s"] = seconds_texts(columns["triggered"], origin)
-    columns["decided_s"] = seconds_texts(columns["decided"], origin)
+    columns["triggered_s"] = numbers_texts(seconds_of(triggered, origin))
+    columns["decided_s"] = numbers_texts(seconds_of(decided, origin))
     if one.deadline is not None:
         columns["deadline"] = (anchor + (one.deadline - anchor.item(0))).tolist()
     start: Any = finding.start((anchor,), decided, triggered)
     parts = [part if isinstance(part, str) else None for part in finding.sentence]
     places = [
-        map(format_ticks, part.ticks(decided, start).tolist())
+        formatted(part.ticks(decided, start))
         for part in finding.sentence
         if isinstance(part, Place)
     ]
