@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rvmon.codegen.plan import Plan
-from rvmon.codegen.python_leaves import comparison, literal
+from rvmon.codegen.python_leaves import known_test
 from rvmon.codegen.python_nodes import NodeWriter, Roles, bits
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
-from rvmon.spec.checked import Compare, Literal, SignalAtom, SignalValue
+from rvmon.spec.checked import SignalAtom
 
 _MOST = 1500
 """So many nodes at most stand in what is written for changes of one leaf."""
@@ -74,8 +74,8 @@ class ConeWriter:
         lines = list(kept)
         for test, value in self._values(places[0]):
             lines += [test, *indented(self._moved(places, value))]
-        lines += self.visit.judged()
-        lines += self.visit.told()
+        timed = self.joins or any(self.nodes.is_timed(place) for place in places)
+        lines += self.visit.followed(timed=timed)
         if "before" in "\n".join(lines):
             yield f"before = {self.visit.preceding()}"
         if self.joins:
@@ -86,26 +86,20 @@ class ConeWriter:
             yield "    self.dirty = 0"
             yield "dirty = 0"
         else:
-            yield f"letters = triggers = dirty = {'fading = ' if self.visit.momentary else ''}0"
+            yield "letters = triggers = dirty = 0"
         yield from at_hand(lines, "before", "dues", "last")
         yield from lines
 
     def _values(self, leaf: int) -> Iterator[tuple[str, str]]:
         """The values that a leaf can take, each behind the test of a known `x`."""
-        match self.plan.graph.nodes[leaf].leaf:
-            case SignalAtom():
-                test = "x"
-            case Compare(op=op, left=SignalValue(), right=Literal(value=value)):
-                test = f"x {op.value} {literal(value)}"
-            case Compare() as compare:
-                yield f"if (n := {comparison(self.plan, compare)}) == 2:", "2"
-                yield "elif n == 0:", "0"
-                yield "else:", "1"
-                return
-            case other:
-                raise AssertionError(f"{other} does not depend on one value alone")
-        yield f"if {test}:", "2"
-        yield "else:", "0"
+        test = known_test(self.plan.graph.nodes[leaf].leaf, "x")
+        if test is None:
+            yield f"if (n := {self.nodes.formula(leaf)}) == 2:", "2"
+            yield "elif n == 0:", "0"
+            yield "else:", "1"
+        else:
+            yield f"if {test}:", "2"
+            yield "else:", "0"
 
     def _moved(self, places: list[int], value: str) -> Iterator[str]:
         """What a sample does that may bring a leaf another value."""

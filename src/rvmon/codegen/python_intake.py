@@ -6,13 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_cones import ConeWriter
-from rvmon.codegen.python_leaves import leaf_expression
-from rvmon.codegen.python_nodes import Roles, bits
+from rvmon.codegen.python_values import ValueWriter
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
-from rvmon.dataflow.numbers import inputs_of
-from rvmon.formula.state import Leaf
-from rvmon.spec.checked import Compare, SignalAtom
-from rvmon.trace.schema import Kind
 
 _WHOLE = 64
 """Up to so many names, samples that hold all of them are taken name by name."""
@@ -20,20 +15,12 @@ _WHOLE = 64
 _PAIRED = 24
 """Up to so many names, a row is searched for a value that alone is another."""
 
-_CLASSES = {
-    Kind.BOOL: "(bool,)",
-    Kind.INT: "(int,)",
-    Kind.REAL: "(float, int)",
-    Kind.LABEL: "(str,)",
-}
-
 
 class IntakeWriter:
     """Writes the methods that take samples.
 
     Args:
         plan: what to judge.
-        roles: of its nodes.
         visit: writes what follows.
         cones: writes what follows if one value alone is another.
         arriving: the names that have a source.
@@ -42,21 +29,21 @@ class IntakeWriter:
     def __init__(
         self,
         plan: Plan,
-        roles: Roles,
         visit: VisitWriter,
         cones: ConeWriter,
         arriving: tuple[str, ...],
     ) -> None:
         self.plan = plan
-        self.roles = roles
         self.visit = visit
         self.cones = cones
+        self.values = ValueWriter(plan)
         self.arriving = arriving
         self.sparse = visit.sparse()
         self.span = visit.span()
         self.whole = 0 < len(arriving) <= _WHOLE
-        self.instant = self._instant_leaves()
-        self.every = [line for n, name in enumerate(arriving) for line in self._every(n, name)]
+        self.every = [
+            line for n, name in enumerate(arriving) for line in self.values.every(f"x{n}", name)
+        ]
         """What updates do though their values are the same."""
         self.single = [(n, name) for n, name in enumerate(arriving) if self._is_single(name)]
         """Names whose updates do nothing but bring a value."""
@@ -65,6 +52,11 @@ class IntakeWriter:
         """What samples do that bring one value."""
         for number, name in self.single:
             yield from self._one(number, name)
+            yield ""
+            yield ""
+        if self.single:
+            listed = ", ".join(f"{name!r}: one{number}" for number, name in self.single)
+            yield f"ONE = {{{listed}}}"
             yield ""
             yield ""
 
@@ -85,17 +77,13 @@ class IntakeWriter:
             yield "        return self.some(t, values)"
             yield from indented(self._whole())
         yield ""
-        if self.single:
-            listed = ", ".join(f"{name!r}: one{number}" for number, name in self.single)
-            yield f"ONE = {{{listed}}}"
-            yield ""
         yield from self._some()
         yield ""
         yield from self._take()
         yield ""
         names = [*self.plan.signals, *self.plan.events]
         for number, name in enumerate(names):
-            lines = ["dirty = 0", *self._taken("x", name), "return dirty"]
+            lines = ["dirty = 0", *self.values.taken("x", name), "return dirty"]
             yield f"def take{number}(self, t, x):"
             yield f"    # {name!a}"
             yield from indented([*at_hand(lines), *lines])
@@ -104,7 +92,7 @@ class IntakeWriter:
         yield "TAKERS = {"
         for number, name in enumerate(names):
             if name in self.arriving:
-                takes = f"{self._classes(name)}, {self._labels(name)!r}, take{number}"
+                takes = f"{self.values.classes(name)}, {self.values.labels(name)!r}, take{number}"
                 yield f"    {name!r}: ({takes}),"
         yield "}"
 
@@ -127,11 +115,12 @@ class IntakeWriter:
                 yield from indented(self._compared(), 2)
         yield f"    {'elif' if self.whole else 'if'} not size:"
         yield from indented([*quiet, *indented([*self.visit.done(), "return ()"])], 2)
-        if len(self.single) > 1 or not self.whole:
+        if self.single and len(self.arriving) > 1:
             yield "    elif size == 1:"
-            yield "        for name, x in values.items():"
-            yield f"            if {in_order.format('t < LIMIT')}:"
-            yield "                one = self.ONE.get(name)"
+            yield "        (name,) = values"
+            yield "        x = values[name]"
+            yield f"        if {in_order.format('t < LIMIT')}:"
+            yield "            one = ONE.get(name)"
         yield "except (AttributeError, LookupError, TypeError, ValueError):"
         yield "    return self.clerk.other(t, values)"
 
@@ -149,7 +138,7 @@ class IntakeWriter:
     def _told_apart(self, names: Sequence[tuple[int, str]]) -> Iterator[str]:
         for number, name in names:
             branch = "elif" if number else "if"
-            yield f"{branch} x{number} is not {self._before(name)}:"
+            yield f"{branch} x{number} is not {self.values.before(name)}:"
             lines = [f"one, x = one{number}, x{number}"]
             rest = names[number + 1 :]
             yield from indented([f"if {self._same(rest)}:", *indented(lines)] if rest else lines)
@@ -157,11 +146,7 @@ class IntakeWriter:
         yield from indented([*self.visit.done(), "return ()"])
 
     def _same(self, names: Sequence[tuple[int, str]]) -> str:
-        return " and ".join(f"x{number} is {self._before(name)}" for number, name in names)
-
-    def _before(self, name: str) -> str:
-        """What a value is compared with: the one before."""
-        return "False" if name in self.plan.events else f"last[{self.plan.signals.index(name)}]"
+        return " and ".join(f"x{number} is {self.values.before(name)}" for number, name in names)
 
     def _whole(self) -> Iterator[str]:
         yield "changed = 0"
@@ -176,7 +161,7 @@ class IntakeWriter:
         lines = list(self.every)
         for number, name in enumerate(self.arriving):
             lines.append(f"if changed & {1 << number}:")
-            lines += indented(self._new(f"x{number}", name))
+            lines += indented(self.values.new(f"x{number}", name))
         yield from at_hand(lines, "last")
         yield from lines
         yield from self._after()
@@ -192,64 +177,29 @@ class IntakeWriter:
     def _noticed(self, number: int, name: str) -> Iterator[str]:
         """See whether a value is another; refuse what needs a closer look."""
         x = f"x{number}"
-        yield f"if {x} is not {self._before(name)}:"
-        yield f"    if {self._is_odd(x, name)}:"
+        yield f"if {x} is not {self.values.before(name)}:"
+        yield f"    if {self.values.is_odd(x, name)}:"
         yield "        return self.clerk.other(t, values)"
         yield f"    changed |= {1 << number}"
-
-    def _is_odd(self, variable: str, name: str) -> str:
-        """Whether a value needs a closer look: of another class, unknown, or a payload."""
-        if name in self.plan.events:
-            return f"{variable} is not True"
-        type_ = self.plan.spec.signals[name].type
-        match type_.kind:
-            case Kind.BOOL:
-                return f"{variable} is not True and {variable} is not False"
-            case Kind.INT:
-                return f"{variable}.__class__ is not int"
-            case Kind.REAL:
-                return (
-                    f"({variable}.__class__ is not float or {variable} != {variable}) "
-                    f"and {variable}.__class__ is not int"
-                )
-            case Kind.LABEL:
-                return f"{variable}.__class__ is not str or {variable} not in {type_.labels!r}"
-
-    def _every(self, number: int, name: str) -> Iterator[str]:
-        """What an update does though the value is the same."""
-        uses = self.plan.uses.get(name)
-        x = f"x{number}"
-        if name in self.plan.events:
-            if uses is not None and uses.marked:
-                yield from self._marked_event(name)
-            return
-        yield from self._on_every_update(x, name)
-
-    def _new(self, variable: str, name: str) -> Iterator[str]:
-        """Take a valid value that is not the one before."""
-        if name in self.plan.events:
-            yield from self._occurs(variable, name)
-        else:
-            yield from self._changed(variable, name, given=True)
 
     # A sample of one name.
 
     def _is_single(self, name: str) -> bool:
         """Whether an update does nothing but bring a value."""
-        return not list(self._every(0, name))
+        return not list(self.values.every("x", name))
 
     def _one(self, number: int, name: str) -> Iterator[str]:
         yield f"def one{number}(self, t, x, values):"
         yield f"    # {name!a}"
-        head = [f"if x is {self._before(name)}:", f"    if {self._quiet()}:"]
+        head = [f"if x is {self.values.before(name)}:", f"    if {self._quiet()}:"]
         head += indented([*self.visit.done(), "return ()"], 2)
-        head += [f"elif {self._is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
+        head += [f"elif {self.values.is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
         lines = []
-        if name in self.plan.signals and self.cones.can_follow(name, self.instant):
+        if name in self.plan.signals and self.cones.can_follow(name, self.values.instant):
             lines.append(f"elif {self.cones.apart(name, self._quiet())}:")
-            lines += indented(self.cones.followed(name, self._kept("x", name, given=True)))
-        general = [*self._time(), "dirty = 0", f"if x is not {self._before(name)}:"]
-        general += indented(self._new("x", name))
+            lines += indented(self.cones.followed(name, self.values.kept("x", name, given=True)))
+        general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
+        general += indented(self.values.new("x", name))
         general += self._after()
         yield from indented([*at_hand(head), *head, *lines, *at_hand(general, "last"), *general])
 
@@ -280,72 +230,6 @@ class IntakeWriter:
         yield f"    self.{self._go_on}(t)"
         yield from indented(self.visit.done())
 
-    def _taken(self, variable: str, name: str) -> Iterator[str]:
-        """Take one value, which may be any that is valid."""
-        if name in self.plan.events:
-            uses = self.plan.uses.get(name)
-            if uses is not None and uses.marked:
-                yield from self._marked_event(name)
-            yield f"if {variable} is not False:"
-            yield from indented(self._occurs(variable, name))
-            return
-        signal = self.plan.signals.index(name)
-        yield f"if {variable} != {variable}:"
-        yield f"    {variable} = None"
-        yield from self._on_every_update(variable, name)
-        yield f"if self.first[{signal}] is None:"
-        yield f"    self.first[{signal}] = t"
-        yield f"if {variable} is not s[{signal}]:"
-        yield from indented(self._changed(variable, name, given=False))
-
-    # One value.
-
-    def _changed(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
-        """Take another value; `given`: it is not `None`."""
-        yield from self._kept(variable, name, given=given)
-        others = bits(self.plan.graph.by_name.get(name, ()))
-        for place in self.plan.graph.by_name.get(name, ()):
-            leaf = self.plan.graph.nodes[place].leaf
-            if place in self.instant and leaf is not None and not isinstance(leaf, SignalAtom):
-                others &= ~(1 << place)
-                yield f"if ({leaf_expression(self.plan, place, leaf)}) != v[{place}]:"
-                yield f"    dirty |= {1 << place}"
-        if others:
-            yield f"dirty |= {others}"
-
-    def _kept(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
-        """Keep another value of a signal."""
-        signal = self.plan.signals.index(name)
-        yield f"if s[{signal}] is None and self.first[{signal}] is None:"
-        yield f"    self.first[{signal}] = t"
-        known = variable if given else f"MISSING if {variable} is None else {variable}"
-        yield f"last[{signal}] = {known}"
-        yield f"s[{signal}] = {variable}"
-
-    def _occurs(self, variable: str, name: str) -> Iterator[str]:
-        yield f"self.occur({self.plan.events.index(name)}, {variable})"
-        readers = bits(self.plan.graph.by_name.get(name, ()))
-        if readers:
-            yield f"dirty |= {readers}"
-
-    def _marked_event(self, name: str) -> Iterator[str]:
-        yield f"self.u.add({name!r})"
-        yield "self.gathered = True"
-        yield f"dirty |= {bits(self.plan.graph.by_name[name])}"
-
-    def _on_every_update(self, variable: str, name: str) -> Iterator[str]:
-        signal = self.plan.signals.index(name)
-        uses = self.plan.uses.get(name)
-        if uses is not None and (uses.history or uses.marked):
-            yield f"self.mark(t, {signal}, {variable})"
-            yield f"dirty |= {bits(self.plan.graph.by_name[name])}"
-        stale_after = self.plan.spec.signals[name].stale_after
-        if stale_after is not None:
-            yield f"if self.stale_at[{signal}] < NEVER:"
-            yield f"    self.stale_at[{signal}] = t + {stale_after + 1}"
-            yield "else:"
-            yield f"    self.set_stale({signal}, t + {stale_after + 1})"
-
     # What all ways share.
 
     def _quiet(self) -> str:
@@ -375,35 +259,3 @@ class IntakeWriter:
     @property
     def _go_on(self) -> str:
         return "visit" if self.plan.gap in (None, 1) else "sampled"
-
-    def _classes(self, name: str) -> str:
-        if name in self.plan.events:
-            return "(bool,)"
-        return _CLASSES[self.plan.spec.signals[name].type.kind]
-
-    def _labels(self, name: str) -> tuple[str, ...]:
-        signal = self.plan.spec.signals.get(name)
-        if signal is None or signal.type.kind is not Kind.LABEL:
-            return ()
-        return tuple(signal.type.labels)
-
-    def _instant_leaves(self) -> frozenset[int]:
-        """The leaves that depend on the present value of one signal and nothing else."""
-        graph = self.plan.graph
-        return frozenset(
-            place
-            for place, state in enumerate(graph.nodes)
-            if state.leaf is not None and self._is_instant(state.leaf)
-        )
-
-    def _is_instant(self, leaf: Leaf) -> bool:
-        match leaf:
-            case SignalAtom():
-                return True
-            case Compare(left=left, right=right):
-                names = inputs_of(left, right)
-                if len(names) != 1:
-                    return False
-                return not self.plan.uses[next(iter(names))].history
-            case _:
-                return False

@@ -72,6 +72,22 @@ def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
             assert_never(leaf)
 
 
+def known_test(leaf: Leaf | None, variable: str) -> str | None:
+    """The test of a leaf, given the value of the one signal that it reads; `None`: there is none.
+
+    Args:
+        leaf: depends on the present value of one signal and nothing else.
+        variable: holds that value, which is known.
+    """
+    match leaf:
+        case SignalAtom():
+            return variable
+        case Compare(op=op, left=SignalValue(), right=Literal(value=value)):
+            return f"{variable} {op.value} {_literal(value)}"
+        case _:
+            return None
+
+
 def _probe(plan: Plan, probe: Probe, name: str) -> str:
     match probe:
         case Probe.KNOWN:
@@ -91,7 +107,9 @@ def comparison(plan: Plan, leaf: Compare) -> str:
     left, right = leaf.left, leaf.right
     if isinstance(left, SignalValue) and isinstance(right, Literal):
         held = f"s[{plan.signals.index(left.name)}]"
-        return f"1 if {held} is None else 2 if {held} {leaf.op.value} {literal(right.value)} else 0"
+        return (
+            f"1 if {held} is None else 2 if {held} {leaf.op.value} {_literal(right.value)} else 0"
+        )
     both = f"compared({_COMPARE[leaf.op]}, {_number(plan, left)}, {_number(plan, right)})"
     events = events_of(left, right)
     if not events:
@@ -103,7 +121,7 @@ def comparison(plan: Plan, leaf: Compare) -> str:
 def _number(plan: Plan, expression: Numeric) -> str:
     match expression:
         case Literal(value=value):
-            return literal(value)
+            return _literal(value)
         case SignalValue(name=name):
             return f"s[{plan.signals.index(name)}]"
         case FieldValue(event=event, field=field):
@@ -120,8 +138,7 @@ def _number(plan: Plan, expression: Numeric) -> str:
             assert_never(expression)
 
 
-def literal(value: float | int | str) -> str:
-    """A value of a specification as Python writes it."""
+def _literal(value: float | int | str) -> str:
     if isinstance(value, float) and not math.isfinite(value):
         raise ValueError(f"{value} is no number of a specification")
     return repr(value)

@@ -109,7 +109,7 @@ class NodeWriter:
         timed = tuple(
             place
             for place in range(len(plan.graph.nodes))
-            if roles.kept >> place & 1 and self._is_timed(place)
+            if roles.kept >> place & 1 and self.is_timed(place)
         )
         stale = any(signal.stale_after is not None for signal in plan.spec.signals.values())
         self.watched = None if stale or len(timed) > _WATCHED else timed
@@ -122,7 +122,7 @@ class NodeWriter:
         state = self.plan.graph.nodes[place]
         match state.op:
             case StateOp.LEAF | StateOp.NOT | StateOp.AND | StateOp.OR:
-                yield f"n = {self._formula(place)}"
+                yield f"n = {self.formula(place)}"
             case StateOp.PREVIOUS:
                 (operand,) = self.plan.graph.operands[place]
                 yield f"n = w[{place}]"
@@ -145,7 +145,7 @@ class NodeWriter:
             return leaf_expression(self.plan, place, state.leaf)
         if self.roles.kept >> place & 1:
             return f"v[{place}]"
-        made = self._formula(place)
+        made = self.formula(place)
         return made if made in _TRUTHS else f"({made})"
 
     def settling(self, place: int, value: str) -> bool:
@@ -154,7 +154,8 @@ class NodeWriter:
             self.settled[place] = value
         return value in _TRUTHS
 
-    def _formula(self, place: int) -> str:
+    def formula(self, place: int) -> str:
+        """The value of a node that combines others, or reads the input, as an expression."""
         state = self.plan.graph.nodes[place]
         if state.leaf is not None:
             return leaf_expression(self.plan, place, state.leaf)
@@ -267,7 +268,7 @@ class NodeWriter:
         yield f"{indent}    queued[{place}] = m"
         yield f"{indent}    heappush(timers, (m, {place}))"
 
-    def _is_timed(self, place: int) -> bool:
+    def is_timed(self, place: int) -> bool:
         """Whether a node can change by time alone."""
         state = self.plan.graph.nodes[place]
         if state.op is StateOp.SINCE:

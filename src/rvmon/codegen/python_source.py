@@ -50,7 +50,7 @@ class _Writer:
         nodes = NodeWriter(plan, self.roles)
         self.visit = VisitWriter(plan, self.roles, nodes, calm=calm)
         self.cones = ConeWriter(plan, self.roles, nodes, self.visit)
-        self.intake = IntakeWriter(plan, self.roles, self.visit, self.cones, present)
+        self.intake = IntakeWriter(plan, self.visit, self.cones, present)
 
     def lines(self) -> Iterator[str]:
         yield from self._leaves()

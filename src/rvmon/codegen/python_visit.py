@@ -124,10 +124,31 @@ class VisitWriter:
             return
         if not self.calm:
             yield "dues = self.dues"
-        yield f"if {' or '.join(self._concerns())}:"
+        yield from self._concluded([*self._concerns(), *self._timely()])
+        yield from self._alarm()
+
+    def followed(self, *, timed: bool) -> Iterator[str]:
+        """As `judged` and `told`, where before the sample nothing was awaited at its instant.
+
+        Args:
+            timed: whether something may be awaited from now on, though no requirement is concerned.
+        """
+        yield "self.position = self.after = t"
+        if not self.calm:
+            yield "dues = self.dues"
+        yield from self._concluded([*self._concerns()])
+        yield from indented(self._alarm())
+        yield "    if self.news:"
+        yield "        return self.clerk.told()"
+        if timed:
+            yield "else:"
+            yield from indented(self._alarm())
+        yield "return ()"
+
+    def _concluded(self, concerns: list[str]) -> Iterator[str]:
+        yield f"if {' or '.join(concerns)}:"
         how = "conclude_calmly" if self.calm else "conclude"
         yield f"    self.{how}(t, letters, triggers)"
-        yield from self._alarm()
 
     def done(self) -> Iterator[str]:
         """Note that a sample was taken."""
@@ -145,14 +166,19 @@ class VisitWriter:
     def _concerns(self) -> Iterator[str]:
         """If none of these holds, a position is not to be judged."""
         yield "letters and letters & self.active or triggers"
+        if self.repeats:
+            yield "self.repeating"
+        if not self.calm:
+            yield "self.restless"
+
+    def _timely(self) -> Iterator[str]:
+        """Nor if one of these does, which speak of an instant."""
         if self.momentary:
             yield "fading"
         if self.gathers:
             yield "self.gathered"
-        if self.repeats:
-            yield "self.repeating"
         if not self.calm:
-            yield "self.restless or (dues and dues[0][0] <= t)"
+            yield "(dues and dues[0][0] <= t)"
 
     def _rung(self) -> Iterator[str]:
         """See what time alone has changed."""
