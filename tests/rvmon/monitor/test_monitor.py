@@ -7,6 +7,8 @@ import pytest
 import rvmon
 from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
 from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.generated import GeneratedMonitor
 from rvmon.verdict.verdict import Verdict
 
 SPEC = """spec handover "Handover"
@@ -47,6 +49,13 @@ def brief(attempts):
 @pytest.fixture(name="monitor", params=["auto", "automaton", "progression"])
 def _monitor(request):
     return rvmon.loads(SPEC).monitor(engine=request.param)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_generated_code_runs_only_where_it_is_asked_for(engine):
+    """It does so where the engine is left open, too; another engine judges by itself."""
+    monitor = rvmon.loads(SPEC).monitor(engine=engine)
+    assert isinstance(monitor, GeneratedMonitor) is (engine in ("auto", "python"))
 
 
 def test_a_decision_is_returned_by_the_call_that_brings_it(monitor):

@@ -83,6 +83,18 @@ CASES = {
         [(1, {}), (10, {"g": ({"k": 1}, {"k": 0})})],
         12,
     ),
+    "what was met at the near end of a window need not have been led up to there": (
+        "held",
+        "upon e\n  then q since[2 ns, 3 ns] (F[0 ns, 1 ns] p)",
+        [(0, {"p": True, "q": False}), (1, {"p": False, "q": True}), (2, {"e": True}), (5, {})],
+        9,
+    ),
+    "what has held for less than its duration since the start is not held, ahead neither": (
+        "held",
+        "upon e\n  then held(F[0 ns, 1 ns] p, 3 ns)",
+        [(0, {"p": True}), (2, {"e": True}), (5, {})],
+        9,
+    ),
 }
 
 
@@ -120,6 +132,18 @@ def test_a_window_opens_between_samples_that_change_nothing(form):
     told = [Sample(0, {"p": True, "q": False}), Sample(4, {"r": True}), 7, Sample(8, {"r": False})]
     case = Case(spec.checked, (*told, Sample(12, {})), 20)
     assert not disagreements(case, Maker(form))
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+@pytest.mark.parametrize("steps", [(3, 8), (3, 6, 8), (6, 8)])
+def test_time_comes_to_a_tick_of_the_clock_and_passes_it(form, steps):
+    """What a tick decides, to which time had come before, is told when time has passed it."""
+    spec = rvmon.loads(
+        "spec s\ntime sampled every 3 ns\nsignal p : bool\nevent e\n"
+        "requirement R1\n  upon e\n  then next next p\n"
+    )
+    case = Case(spec.checked, (Sample(0, {"p": True, "e": True}), *steps), 10)
+    assert not disagreements(case, Maker(form), online=True)
 
 
 @pytest.mark.parametrize("form", FORMS)
