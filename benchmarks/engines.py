@@ -53,6 +53,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
         "dataflow/alone.py",
         "dataflow/at_end.py",
         "dataflow/evaluate.py",
+        "dataflow/knowledge.py",
         "dataflow/network.py",
         "dataflow/nodes.py",
         "dataflow/pieces.py",

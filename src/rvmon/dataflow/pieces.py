@@ -57,7 +57,7 @@ def append(pieces: list[Piece], left: int, right: int, at: int, slope: int) -> N
 
 def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
     """What lies between two positions, both included."""
-    start, end = _span(pieces, left, right)
+    start, end = span(pieces, left, right)
     found = list(pieces[start:end])
     if found:
         first, last, at, slope = found[0]
@@ -67,7 +67,7 @@ def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
     return found
 
 
-def _span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
+def span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
     """The indices of the pieces between two positions: the first, and that behind the last."""
     start = max(bisect_right(pieces, left, key=_left) - 1, 0)
     if start < len(pieces) and pieces[start][1] < left:
@@ -75,7 +75,7 @@ def _span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
     return start, max(bisect_right(pieces, right, key=_left), start)
 
 
-def without(pieces: Pieces, known: Pieces) -> Pieces:
+def without(pieces: Pieces, known: Pieces) -> list[Piece]:
     """What is not known already."""
     made: list[Piece] = []
     for left, right, at, slope in pieces:
@@ -85,12 +85,6 @@ def without(pieces: Pieces, known: Pieces) -> Pieces:
             start = last + 1
         append(made, start, right, at, slope)
     return made
-
-
-def insert(pieces: list[Piece], fresh: Pieces) -> None:
-    """Add pieces in place that lie where there are none."""
-    for piece in fresh:
-        pieces.insert(bisect_right(pieces, piece[0], key=_left), piece)
 
 
 def shift(pieces: Pieces, offset: int) -> Pieces:

@@ -12,8 +12,9 @@ from typing import assert_never
 
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Sweep
-from rvmon.dataflow.pieces import FAR
+from rvmon.dataflow.pieces import FAR, up_to
 from rvmon.dataflow.ranges import stretch
+from rvmon.dataflow.sweep import Known
 from rvmon.formula.core import (
     And,
     Constant,
@@ -54,6 +55,7 @@ class Remaining:
         self.gap = positions.gap
         known = positions.last if positions.sparse else (network.grown - 1) // positions.slope
         self.now = min(known, positions.last)
+        self._known: dict[Core, Known] = {}
         self._looked = 0
 
     def of(self, core: Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
@@ -188,7 +190,15 @@ class Remaining:
         """The last integer up to which what is known of a formula stays as it is at a position."""
         if isinstance(core, Constant):
             return FAR
-        return stretch(self.network.known_of(core), position)[1]
+        return stretch(self._known_of(core), position)[1]
+
+    def _known_of(self, core: Core) -> Known:
+        """What is known of a part by now."""
+        known = self._known.get(core)
+        if known is None:
+            true, false = (up_to(side, self.network.grown) for side in self.network.known_of(core))
+            known = self._known[core] = true, false
+        return known
 
     def _is_in_window(self, core: Until | Release, position: int, k: int) -> bool:
         age = (k - position) * self.gap

@@ -39,10 +39,15 @@ def _value(judge: Judge, token: Token) -> bool | None:
     return forecaster.of(judge.machine.residual(location), ages, judge.flow.gap)
 
 
-def forecast_by_network(judge: NetworkJudge, attempt: Open) -> Verdict | None:
+def forecast_by_network(judge: NetworkJudge, attempt: Open, now: int) -> Verdict | None:
     """The same of an attempt that a network judges; `None`, too, where too much is undecided.
 
     Each attempt costs a search of its own, so there is none with more than `MOST_ATTEMPTS` open.
+
+    Args:
+        judge: of the attempt.
+        attempt: undecided.
+        now: the stamp that time has come to.
 
     Source: as for `forecast_of`.
     """
@@ -50,19 +55,22 @@ def forecast_by_network(judge: NetworkJudge, attempt: Open) -> Verdict | None:
         return None
     token = attempt.token
     better = token if attempt.better is None else attempt.better
-    if token[0] > PASSED and not _may_become(judge, judge.worse, token, False):
+    if token[0] > PASSED and not _may_become(judge, judge.worse, token, now, False):
         return Verdict.PASS
-    if better[0] > PASSED and not _may_become(judge, judge.better or judge.worse, better, True):
+    network = judge.better or judge.worse
+    if better[0] > PASSED and not _may_become(judge, network, better, now, True):
         return Verdict.FAIL
     return None
 
 
-def _may_become(judge: NetworkJudge, network: Network | None, token: Token, value: bool) -> bool:
+def _may_become(
+    judge: NetworkJudge, network: Network | None, token: Token, now: int, value: bool
+) -> bool:
     """Whether continuations may give an attempt a value in a network."""
     if network is None:
         return True
     compiled, gap = judge.compiled, judge.flow.gap
-    remaining = Remaining(network, compiled.forecaster.duals)
+    remaining = Remaining(judge.moment(network, now).network, compiled.forecaster.duals)
     position = token[1][0] // network.positions.gap
     try:
         residual, ages = remaining.of(compiled.obligation.owed, position, value)

@@ -76,7 +76,16 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Starter: ("trigger",),
     Trigger: ("before", "known", "running"),
     Judge: (*_BENCH, "letters"),
-    NetworkJudge: (*_BENCH, "worse", "better", "now", "_letters", "_held", "_stayed"),
+    NetworkJudge: (
+        *_BENCH,
+        "worse",
+        "better",
+        "now",
+        "_letters",
+        "_held",
+        "_news",
+        "_next_decision",
+    ),
     Flow: (
         *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
         *("_dirty", "_fading", "_wakes", "_left"),
@@ -92,7 +101,7 @@ _MADE: Mapping[str, type] = {
     one.__name__: one
     for one in (
         *(Attempt, Blame, Open, Network, Positions, Run),
-        *(generated.History, generated.Since, flowing._Run),
+        *(generated.History, generated.Since, generated.Stretches, flowing._Run),
     )
 }
 
@@ -112,8 +121,8 @@ def _fields_of(class_: type) -> tuple[str, ...]:
         return tuple(one.name for one in fields(class_))
     if class_ is Network:
         return (
-            *("plan", "positions", "known", "grown", "fresh", "pending", "swept", "carried"),
-            *("_letter", "_position", "_tidy"),
+            *("plan", "positions", "known", "grown", "ahead", "pending", "swept", "carried"),
+            *("_letter", "_tidy"),
         )
     if class_ is Positions:
         return ("gap", "slope", "first", "last", "_stamps")

@@ -27,8 +27,6 @@ class Ledger:
 
     Attributes:
         attempts: all records given out.
-        told: decisions whose records are made: the instant, the place of the requirement in the
-            file, the number of the attempt, the record.
     """
 
     def __init__(self) -> None:
@@ -36,7 +34,7 @@ class Ledger:
         self._counts: dict[str, int] = {}
         self._started: list[tuple[int, int, Bench, Open]] = []
         self._decided: list[tuple[Bench, Open, Attempt]] = []
-        self.told: list[tuple[int, int, int, Attempt]] = []
+        self._told: list[tuple[int, int, int, Attempt]] = []
 
     def started(self, instance: int, judge: Bench, attempt: Open) -> None:
         """Take a new attempt, to be numbered by its trigger and the rank of its instance."""
@@ -56,6 +54,10 @@ class Ledger:
         )
         self._decided.append((judge, attempt, record))
 
+    def told(self, rank: int, record: Attempt) -> None:
+        """Take a decision with its record, of a requirement by its place in the file."""
+        self._told.append((record.decided or 0, rank, record.number, record))
+
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
         requirement = judge.compiled.requirement
@@ -65,21 +67,22 @@ class Ledger:
             cannot_pass=attempt.token[0] == FAILED,
             cannot_fail=attempt.better is not None and attempt.better[0] == PASSED,
         )
-        why = why_open(judge, attempt, max(2 * reached, 2 * end + 1), end)
+        now = max(2 * reached, 2 * end + 1)
+        why = why_open(judge, attempt, now, end)
         if decision is not Decision.OPEN:
             reason = _SETTLED[decision].format(policy=requirement.at_end)
             why = replace(why, reason=reason)
         decided = None if decision is Decision.OPEN else end
         record = _record(judge, attempt, decided, verdict, decision, why)
         if decided is None:
-            record = replace(record, forecast=outlook(judge, attempt))
+            record = replace(record, forecast=outlook(judge, attempt, now))
         self._decided.append((judge, attempt, record))
 
     def open_record(self, judge: Bench, attempt: Open, now: int) -> Attempt:
         """The record of an attempt that is still running; `now` as in `why_open`."""
         why = why_open(judge, attempt, now)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
-        return replace(record, forecast=outlook(judge, attempt))
+        return replace(record, forecast=outlook(judge, attempt, now))
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
@@ -90,14 +93,13 @@ class Ledger:
                 attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
             self._started.clear()
         if not self._decided:
-            if not self.told:
+            if not self._told:
                 return ()
-            if len(self.told) > 1:
-                # No two are of one instant, requirement and number: no records are compared.
-                self.told.sort()
-            records = [entry[3] for entry in self.told]
+            # No two are of one instant, requirement and number: no records are compared.
+            self._told.sort()
+            records = [record for *_, record in self._told]
         else:
-            made = [(rank, record) for _, rank, _, record in self.told]
+            made = [(rank, record) for _, rank, _, record in self._told]
             made += [
                 (judge.compiled.rank, replace(record, number=attempt.number))
                 for judge, attempt, record in self._decided
@@ -105,7 +107,7 @@ class Ledger:
             self._decided.clear()
             made.sort(key=lambda entry: _order(*entry))
             records = [record for _, record in made]
-        self.told.clear()
+        self._told.clear()
         self.attempts += records
         return records
 
@@ -137,13 +139,8 @@ def _record(
 
 def values_shown(judge: Bench, seen: tuple[int, ...]) -> dict[str, Scalar]:
     """The propositions concerned by their text; `None` is unknown."""
-    return truths_shown([text for _, text in judge.leaves], seen)
-
-
-def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
-    """Truth values by the text of what has them; `None` is unknown."""
-    pairs = zip(texts, seen, strict=True)
-    return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
+    pairs = zip(judge.leaves, seen, strict=True)
+    return {text: None if truth == UNKNOWN else truth == TRUE for (_, text), truth in pairs}
 
 
 def _order(rank: int, record: Attempt) -> tuple[bool, int, int, int]:

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from itertools import chain
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import INFINITY, Token
 from rvmon.dataflow.alone import Moment
 from rvmon.dataflow.at_end import held_at_end
+from rvmon.dataflow.evaluate import Range
 from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.network import Network
+from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import Plan
-from rvmon.dataflow.pieces import Pieces, stamp
+from rvmon.dataflow.pieces import Pieces, clip, stamp
+from rvmon.dataflow.ranges import merged
+from rvmon.dataflow.sweep import Carried
 from rvmon.formula.core import Constant, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.bench import Bench, Clerk, Open
@@ -24,6 +28,9 @@ WAITING = PASSED + 1
 
 The token of an attempt is how it stands in a network, and the position whose value it is.
 """
+
+_PATIENCE = 16
+"""A letter that has stayed for a while is looked ahead for so many times that."""
 
 
 class NetworkJudge(Bench):
@@ -50,8 +57,13 @@ class NetworkJudge(Bench):
         self.worse: Network | None = None
         self.better: Network | None = None
         self._letters: tuple[list[bool], list[bool]] | None = None
-        self._stayed = plan.settles
-        """How long the letter had stayed before it changed last, ticks."""
+        self._news = FOREVER
+        """The stamp at which a value that is waited for is known next, if the letter stays."""
+        self._next_decision = INFINITY
+        self._changed = self.position
+        """When the letter changed last."""
+        self._span = _PATIENCE * plan.settles
+        """How far it is worth while to look ahead when it does, ticks."""
         self._held: Pieces | None = None
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
         """Those that were asked for last, of each network one."""
@@ -92,7 +104,7 @@ class NetworkJudge(Bench):
         if open_still and self.worse and self._judge(attempt, self.worse, self.better):
             self.attempts.pop()
         self._rest()
-        self._foresee(self._stayed)
+        self._foresee()
         self.restless = self.flow.gap is None and self.worse is not None
         return attempt
 
@@ -109,26 +121,28 @@ class NetworkJudge(Bench):
         self.restless = False
         if self._letters is not None:
             self._look(2 * t)
-        before, self.position = self.position, t
-        if self.worse is None:
-            return
-        letters = self.read()
-        if letters != self._letters or self.flow.gap is None:
-            self._step(t, self.worse, letters)
-        self._look(2 * t + 1)
-        if t > before:
-            self._stayed = t - before
-        self._foresee(self._stayed)
+        self.position = t
+        if self.worse is not None:
+            letters = self.read()
+            if letters != self._letters or self.flow.gap is None:
+                self._step(t, self.worse, letters)
+            self._look(2 * t + 1)
+        self._foresee()
         self.restless = self.flow.gap is None and self.worse is not None
 
     def _step(self, t: int, worse: Network, letters: tuple[list[bool], list[bool]]) -> None:
         self._letters = letters
+        self._news = -FOREVER
+        stayed = min(t - self._changed, self.plan.settles)
+        self._span = max(_PATIENCE * stayed, self._span * 3 // 4)
+        self._changed = t
         if self.better is None and letters[0] != letters[1]:
             self.better = worse.copy()
         self._note_doubt()
-        worse.visit(t, letters[0], self._first_waiting(better=False))
+        ahead = self._far(t, self._span)
+        worse.visit(t, letters[0], self._first_waiting(better=False), ahead)
         if self.better is not None:
-            self.better.visit(t, letters[1], self._first_waiting(better=True))
+            self.better.visit(t, letters[1], self._first_waiting(better=True), ahead)
 
     def _note_doubt(self) -> None:
         """Note in each attempt what was unknown first while it was open."""
@@ -146,20 +160,31 @@ class NetworkJudge(Bench):
 
     def _look(self, limit: int) -> None:
         """Let time come to a stamp, and hear of the decisions that this brings."""
+        if self.worse is None or limit <= self.now:
+            return
+        before, self.now = self.now, limit
+        networks = self._networks
+        unforeseen = any(network.ahead < limit for network in networks)
+        for network in networks:
+            network.grow(limit)
+        if unforeseen or self._news <= limit:
+            self._hear(before)
+
+    @property
+    def _networks(self) -> list[Network]:
+        return [network for network in (self.worse, self.better) if network is not None]
+
+    def _hear(self, before: int) -> None:
+        """Judge what became known after a stamp."""
         worse, better = self.worse, self.better
         if worse is None:
             return
-        self.now = max(self.now, limit)
-        worse.grow(limit)
-        asked = self._asked_in(worse)
-        if better is not None:
-            better.grow(limit)
-            asked = sorted({*asked, *self._asked_in(better)})
-        decided = {index for index in asked if self._judge(self.attempts[index], worse, better)}
-        if decided:
-            kept = enumerate(self.attempts)
-            self.attempts = [attempt for index, attempt in kept if index not in decided]
-        if asked:
+        found = [span for network in self._networks for span in self._learnt(network, before)]
+        for start, end in reversed(merged(found)):
+            asked = self.attempts[start : end + 1]
+            kept = [attempt for attempt in asked if not self._judge(attempt, worse, better)]
+            self.attempts[start : end + 1] = kept
+        if found:
             self._rest()
 
     def _rest(self) -> None:
@@ -173,21 +198,25 @@ class NetworkJudge(Bench):
             WAITING in (attempt.token[0], (attempt.better or _NONE)[0]) for attempt in self.attempts
         )
 
-    def _asked_in(self, network: Network) -> list[int]:
-        """The attempts, by index, whose value became known since the last time."""
+    def _learnt(self, network: Network, before: int) -> Iterator[Range]:
+        """The attempts, by first and last index, whose value became known after a stamp."""
         gap = network.positions.gap
-        fresh, network.fresh = network.fresh, []
-        found: set[int] = set()
-        for first, last in fresh:
+        for left, right, at, slope in chain(*network.whole):
+            first, last = left, right
+            if slope:
+                first = max(left, (before - at) // slope + 1)
+                last = min(right, (self.now - at) // slope)
+            elif not before < at <= self.now:
+                continue
             start = bisect_left(self.attempts, first * gap, key=_position)
             end = bisect_right(self.attempts, last * gap, key=_position)
-            found.update(range(start, end))
-        return sorted(found)
+            if start < end:
+                yield start, end - 1
 
     def _judge(self, attempt: Open, worse: Network, better: Network | None) -> bool:
         """Look at one attempt; returns whether it was decided."""
         t = _position(attempt)
-        if attempt.token[0] == WAITING and (found := worse.truth(t)) is not None:
+        if attempt.token[0] == WAITING and (found := self._known(worse, t)):
             value, at = found
             if value or better is None:
                 self.clerk.decided(self, attempt, value, at // 2, attempt.token)
@@ -195,8 +224,8 @@ class NetworkJudge(Bench):
             attempt.better = attempt.better or attempt.token
             attempt.token = (FAILED, (t,))
         token = attempt.better or attempt.token
-        found = None if better is None or token[0] != WAITING else better.truth(t)
-        if found is not None:
+        found = None if better is None or token[0] != WAITING else self._known(better, t)
+        if found:
             value, at = found
             if not value:
                 self.clerk.decided(self, attempt, False, at // 2, token)
@@ -204,41 +233,45 @@ class NetworkJudge(Bench):
             attempt.better = (PASSED, (t,))
         return False
 
-    def _foresee(self, span: int) -> None:
-        """Set when the next decision is due, or when to look again.
+    def _known(self, network: Network, t: int) -> Carried:
+        """What is known by now of the position at `t`, and since which stamp."""
+        found = network.truth(t)
+        return found if found is not None and found[1] <= self.now else None
 
-        Args:
-            span: ticks for which the letter has stayed: to look much further may be in vain.
-        """
-        if self.flow.gap is None:
-            self.due = max(self._next_over(), self.now // 2 + 1)
+    def _foresee(self) -> None:
+        """Set when what is waited for is known next, and when that decides something."""
+        self.due, self._next_decision, self._news = INFINITY, INFINITY, FOREVER
+        for network in self._networks if self.attempts else ():
+            for value, at in self._coming(network):
+                self._news = min(self._news, at)
+                if self._decides(network, value):
+                    self._next_decision = min(self._next_decision, at // 2)
+        self.due = min(self.due, self._news // 2)
+        if self.due == INFINITY:
+            # As far as can be seen there is nothing: look again then.
+            self.due = min([INFINITY, *(network.ahead // 2 for network in self._networks)])
+
+    def _coming(self, network: Network) -> Iterator[tuple[bool, int]]:
+        """The values that attempts will have by a network, if the letter stays, and the stamps."""
+        attempts, gap = self.attempts, network.positions.gap
+        oldest, youngest = _position(attempts[0]) // gap, _position(attempts[-1]) // gap
+        sides = [clip(pieces, oldest, youngest) for pieces in network.whole]
+        if len(attempts) <= sum(map(len, sides)):
+            for attempt in attempts:
+                found = network.truth(_position(attempt))
+                if found is not None and found[1] > self.now:
+                    yield found
             return
-        span = min(2 * span, self.plan.settles)
-        self.due = self._foreseen(span)
-        if self.due == INFINITY and self.worse is not None and span < self.plan.settles:
-            self.due = self.now // 2 + span
-
-    def _next_over(self) -> int:
-        """Before which instant time alone decides nothing, where only samples are positions."""
-        if not self._is_waited_for:
-            return INFINITY
-        known = [network.next_over for network in (self.worse, self.better) if network is not None]
-        return min((one for one in known if one is not None), default=INFINITY)
-
-    def _foreseen(self, span: int) -> int:
-        """The instant of the next decision within a span, the letter staying."""
-        found = INFINITY
-        for network in (self.worse, self.better):
-            if network is None or not self._is_waited_for:
-                continue
-            ahead = network.copy()
-            ahead.fresh = []
-            ahead.grow(self.now + 2 * span)
-            for index in self._asked_in(ahead):
-                known = ahead.truth(_position(self.attempts[index]))
-                if known is not None and self._decides(network, known[0]):
-                    found = min(found, known[1] // 2)
-        return found
+        for value, pieces in zip((True, False), sides, strict=True):
+            for left, right, at, slope in pieces:
+                # The first one of a piece is the soonest.
+                first = max(left, (self.now - at) // slope + 1) if slope else left
+                index = bisect_left(attempts, first * gap, key=_position)
+                if index == len(attempts):
+                    break
+                position = _position(attempts[index]) // gap
+                if position <= right and at + slope * position > self.now:
+                    yield value, at + slope * position
 
     def _decides(self, network: Network, value: bool) -> bool:
         """Whether a value in a network decides an attempt."""
@@ -247,17 +280,32 @@ class NetworkJudge(Bench):
     def pass_to(self, t: int) -> None:
         """Let time come to `t` with the letters as they are."""
         self._look(2 * t + 1)
-        self._foresee(t - self.position)
+        self._look_ahead(_PATIENCE * (t - self._changed))
+        self._foresee()
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, of which the letter is not known, from the instant before."""
         self._look(2 * t)
-        self._foresee(t - self.position)
+        self._look_ahead(_PATIENCE * (t - self._changed))
+        self._foresee()
+
+    def _look_ahead(self, span: int) -> None:
+        """Have worked out what so many ticks bring, the letter staying, unless more is already."""
+        for network in self._networks:
+            if network.ahead <= self.now + 1:
+                network.foresee(self._far(self.now // 2 + 1, span))
+
+    def _far(self, t: int, span: int) -> int:
+        """The stamp so many ticks behind an instant; if nothing more comes then, behind all."""
+        return 2 * (t + span) if span < self.plan.settles else FOREVER
 
     @property
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt, as far as is known now."""
-        return self._foreseen(self.plan.settles)
+        for network in self._networks:
+            network.foresee(FOREVER)
+        self._foresee()
+        return self._next_decision
 
     def moment(self, network: Network, now: int) -> Moment:
         """How one of the networks stands at a stamp, worked out once for all attempts."""

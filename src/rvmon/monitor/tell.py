@@ -41,11 +41,17 @@ def why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> E
             raise TypeError(f"no explanation for {type(judge).__name__}")
 
 
-def outlook(judge: Bench, attempt: Open) -> Verdict | None:
-    """What every continuation brings an open attempt to, where that can be said."""
+def outlook(judge: Bench, attempt: Open, now: int) -> Verdict | None:
+    """What every continuation brings an open attempt to, where that can be said.
+
+    Args:
+        judge: of the attempt.
+        attempt: undecided.
+        now: as in `why_open`.
+    """
     match judge:
         case NetworkJudge():
-            return forecast_by_network(judge, attempt)
+            return forecast_by_network(judge, attempt, now)
         case Judge():
             return forecast_of(judge, attempt)
         case _:

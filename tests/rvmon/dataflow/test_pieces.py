@@ -11,7 +11,6 @@ from rvmon.dataflow.pieces import (
     append,
     as_past,
     clip,
-    insert,
     latest,
     shift,
     some_of_window,
@@ -20,6 +19,7 @@ from rvmon.dataflow.pieces import (
     up_to,
     without,
 )
+from rvmon.dataflow.ranges import end_of, gaps, holds, insert, retract, settle
 from rvmon.dataflow.sweep import since, until
 
 NEVER = 1 << 100
@@ -62,9 +62,34 @@ def test_points(seed):
         assert at(as_past(one), i) == (PAST if at(one, i) < NEVER else NEVER)
         fresh = without(one, other)
         assert at(fresh, i) == (at(one, i) if at(other, i) == NEVER else NEVER)
-        whole = list(other)
-        insert(whole, fresh)
-        assert at(whole, i) == (at(one, i) if at(other, i) == NEVER else at(other, i))
+
+
+@pytest.mark.parametrize("seed", CASES)
+def test_what_is_known_stays_and_the_rest_is_taken_out(seed):
+    """Of a stretch what is not known at a stamp goes, and can be put back; the rest is settled."""
+    dice = random.Random(seed)
+    known = random_known(dice)
+    first, last, limit = dice.randint(-2, 10), dice.randint(10, LAST + 2), dice.randint(-5, 40)
+    left = [list(side) for side in known]
+    gone = [retract(side, (first, last), limit) for side in left]
+    free = gaps(left, (first, last))
+    for side, own, out in zip(left, known, gone, strict=True):
+        back = list(side)
+        insert(back, out)
+        settled = list(own)
+        settle(settled, limit)
+        for i in range(-8, LAST + 9):
+            before = at(own, i)
+            inside = first <= i <= last
+            after = PAST if inside and before <= limit else before
+            assert at(side, i) == (NEVER if inside and before > limit else after)
+            assert at(back, i) == after
+            assert at(settled, i) == (PAST if before <= limit else before)
+            end = end_of(own, i, limit)
+            assert (end >= i) is (before <= limit)
+            assert all(at(own, k) <= limit for k in range(i, end + 1))
+    for i in range(first, last + 1):
+        assert holds(free, i) is all(at(side, i) == NEVER for side in left)
 
 
 @pytest.mark.parametrize("seed", CASES)
