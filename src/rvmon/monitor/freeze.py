@@ -77,14 +77,8 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Trigger: ("before", "known", "running"),
     Judge: (*_BENCH, "letters"),
     NetworkJudge: (
-        *_BENCH,
-        "worse",
-        "better",
-        "now",
-        "_letters",
-        "_held",
-        "_news",
-        "_next_decision",
+        *(*_BENCH, "worse", "better", "now", "_letters", "_held"),
+        *("_news", "_next_decision", "_changed", "_span"),
     ),
     Flow: (
         *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
@@ -101,7 +95,7 @@ _MADE: Mapping[str, type] = {
     one.__name__: one
     for one in (
         *(Attempt, Blame, Open, Network, Positions, Run),
-        *(generated.History, generated.Since, generated.Stretches, flowing._Run),
+        *(generated.History, generated.Since, flowing._Run),
     )
 }
 

@@ -27,6 +27,8 @@ class Ledger:
 
     Attributes:
         attempts: all records given out.
+        told: decisions whose records are made: the instant, the place of the requirement in the
+            file, the number of the attempt, the record.
     """
 
     def __init__(self) -> None:
@@ -34,7 +36,7 @@ class Ledger:
         self._counts: dict[str, int] = {}
         self._started: list[tuple[int, int, Bench, Open]] = []
         self._decided: list[tuple[Bench, Open, Attempt]] = []
-        self._told: list[tuple[int, int, int, Attempt]] = []
+        self.told: list[tuple[int, int, int, Attempt]] = []
 
     def started(self, instance: int, judge: Bench, attempt: Open) -> None:
         """Take a new attempt, to be numbered by its trigger and the rank of its instance."""
@@ -53,10 +55,6 @@ class Ledger:
             why,
         )
         self._decided.append((judge, attempt, record))
-
-    def told(self, rank: int, record: Attempt) -> None:
-        """Take a decision with its record, of a requirement by its place in the file."""
-        self._told.append((record.decided or 0, rank, record.number, record))
 
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
@@ -93,13 +91,14 @@ class Ledger:
                 attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
             self._started.clear()
         if not self._decided:
-            if not self._told:
+            if not self.told:
                 return ()
-            # No two are of one instant, requirement and number: no records are compared.
-            self._told.sort()
-            records = [record for *_, record in self._told]
+            if len(self.told) > 1:
+                # No two are of one instant, requirement and number: no records are compared.
+                self.told.sort()
+            records = [entry[3] for entry in self.told]
         else:
-            made = [(rank, record) for _, rank, _, record in self._told]
+            made = [(rank, record) for _, rank, _, record in self.told]
             made += [
                 (judge.compiled.rank, replace(record, number=attempt.number))
                 for judge, attempt, record in self._decided
@@ -107,7 +106,7 @@ class Ledger:
             self._decided.clear()
             made.sort(key=lambda entry: _order(*entry))
             records = [record for _, record in made]
-        self._told.clear()
+        self.told.clear()
         self.attempts += records
         return records
 
@@ -139,8 +138,13 @@ def _record(
 
 def values_shown(judge: Bench, seen: tuple[int, ...]) -> dict[str, Scalar]:
     """The propositions concerned by their text; `None` is unknown."""
-    pairs = zip(judge.leaves, seen, strict=True)
-    return {text: None if truth == UNKNOWN else truth == TRUE for (_, text), truth in pairs}
+    return truths_shown([text for _, text in judge.leaves], seen)
+
+
+def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
+    """Truth values by the text of what has them; `None` is unknown."""
+    pairs = zip(texts, seen, strict=True)
+    return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
 
 
 def _order(rank: int, record: Attempt) -> tuple[bool, int, int, int]:
