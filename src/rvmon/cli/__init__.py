@@ -6,16 +6,19 @@ Exit codes: 0 fine, 1 a requirement failed, 2 wrong input or spec, 3 internal er
 
 from __future__ import annotations
 
-import argparse
 import gc
 import io
 import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.errors import RvmonError
+
+if TYPE_CHECKING:
+    import argparse
 
 COMMANDS = {
     "check": "find what is wrong in specifications",
@@ -41,7 +44,14 @@ def program() -> int:
     # NumPy's algebra, of which nothing is used, would start a thread per core.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(_MANY)
-    code = main()
+    try:
+        from rvmon.cli.at_once import judged_at_once
+
+        code = judged_at_once(sys.argv[1:])
+    except KeyboardInterrupt:
+        return _interrupted()
+    if code is None:
+        code = main()
     gc.freeze()  # what is left goes with the process: it is not searched once more
     return code
 
@@ -77,8 +87,7 @@ def guarded(namespace: argparse.Namespace) -> int:
         print(text if rendered else f"error: {text}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return 130
+        return _interrupted()
     except BrokenPipeError:  # the reader of our output left, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
@@ -94,8 +103,15 @@ def guarded(namespace: argparse.Namespace) -> int:
     return int(code)
 
 
+def _interrupted() -> int:
+    print("interrupted", file=sys.stderr)
+    return 130
+
+
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """The parser with the named subcommand only, or with all for help and for errors."""
+    import argparse
+
     parser = argparse.ArgumentParser(
         prog="rvmon",
         description="Temporal requirements in, verdicts about robots out.",

@@ -29,20 +29,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Generate, compile and copy, and return the exit code."""
     from rvmon.cli.constants import constants_of
-    from rvmon.codegen.c_build import built
-    from rvmon.codegen.c_program import program_source
-    from rvmon.codegen.c_source import c_files
+    from rvmon.codegen.c_program import built_program
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = None
     if arguments.only is not None:
         ids = [name.strip() for name in arguments.only.split(",") if name.strip()]
-    plan = spec.plan(only=ids)
-    made = c_files(plan)
-    name = f"{made.prefix}_program.c"
-    texts = {**made.texts, name: program_source(plan)}
-    path = built(texts, [f"{made.prefix}.c", name], ".program", ["-O3"])
+    path = built_program(spec.plan(only=ids))
     try:
         shutil.copyfile(path, arguments.output)
         shutil.copymode(path, arguments.output)

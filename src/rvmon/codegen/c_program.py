@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
+from rvmon.codegen.c_build import built
+from rvmon.codegen.c_exact import EXACT, whole_limits
 from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_text import comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.spec.checked import Type
@@ -28,6 +32,18 @@ _KINDS = {
     Kind.REAL: "KIND_REAL",
     Kind.LABEL: "KIND_LABEL",
 }
+
+
+def built_program(plan: Plan) -> Path:
+    """The program of a plan, in the cache; it is compiled if it is not there.
+
+    Raises:
+        RvmonError: there is no compiler, it failed, or the cache takes no files.
+    """
+    made = c_files(plan)
+    name = f"{made.prefix}_program.c"
+    texts = {**made.texts, name: program_source(plan)}
+    return built(texts, [f"{made.prefix}.c", name], ".program", ["-O3"])
 
 
 def program_source(plan: Plan) -> str:
@@ -56,6 +72,7 @@ def _is_steady(plan: Plan) -> bool:
 
 def _entries(plan: Plan, names: Names) -> Iterator[str]:
     spec = plan.spec
+    limits = whole_limits(plan)
     things: list[tuple[str, int, int, Type | None]] = [
         (name, names.signal(name), -1, signal.type) for name, signal in spec.signals.items()
     ]
@@ -73,10 +90,12 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
         kind = _KINDS[Kind.BOOL if type_ is None else type_.kind]
         labels = type_.labels if type_ is not None else ()
         tables = f"labels{place}, label_numbers{place}" if labels else "NULL, NULL"
+        # What is larger than all that doubles tell apart may have been rounded to that.
+        most = f"{min(limits.get(name, EXACT), EXACT - 1)}.0"
         is_event = "true" if type_ is None else "false"
-        yield f"    {{{c_string(name)}, {number}, {event}, {kind}, {is_event}, {tables}}},"
+        yield f"    {{{c_string(name)}, {number}, {event}, {kind}, {is_event}, {tables}, {most}}},"
     if not things:
-        yield '    {"", 0, -1, KIND_BOOL, false, NULL, NULL},'
+        yield '    {"", 0, -1, KIND_BOOL, false, NULL, NULL, 0.0},'
     yield "};"
     yield f"#define N_ENTRIES {max(len(things), 1)}"
     yield ""

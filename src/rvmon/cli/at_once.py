@@ -1,0 +1,146 @@
+"""`rvmon run SPEC TRACE.csv --engine c --format json` by a program that was compiled before.
+
+The program is that of `rvmon build`, asked for exactly what `rvmon run` prints. What it leaves, and
+every other command line, goes the ordinary way: this one only saves the imports. Nothing heavy is
+imported here.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import stat
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from rvmon import __version__
+from rvmon.cache import cache_folder, is_ours, keep, read_kept
+
+_VALUED = ("--only", "--const", "--engine", "--format")
+_JUDGED = (0, 1)
+"""Exit codes of the program if it has printed a report."""
+
+
+def judged_at_once(words: Sequence[str]) -> int | None:
+    """Run the command line, if this way leads to the end.
+
+    Returns:
+        The exit code; `None` if nothing has been done.
+    """
+    options = _options(words)
+    if options is None or not hasattr(os, "posix_spawn"):
+        return None
+    spec, trace = options.pop("")
+    folder = cache_folder()
+    if folder is None or not _is_plain_file(trace):
+        return None
+    try:
+        text = Path(spec).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+    if "import" in text:  # of what is imported, too, it would depend
+        return None
+    said = [__version__, *_sources(), spec, text, options, os.environ.get("CC", "")]
+    key = hashlib.sha256(json.dumps(said).encode()).hexdigest()
+    found = _known(folder / f"run-{key}.json") or _made(folder / f"run-{key}.json", spec, options)
+    return None if found is None else _judged(*found, trace)
+
+
+def _options(words: Sequence[str]) -> dict[str, list[str]] | None:
+    """The values by option, and without one by the empty text; `None` if there are others."""
+    if words[:1] != ["run"]:
+        return None
+    found: dict[str, list[str]] = {"": []}
+    rest = iter(words[1:])
+    for word in rest:
+        name, is_joined, value = word.partition("=")
+        if not word.startswith("-"):
+            found[""].append(word)
+        elif name in _VALUED:
+            following = value if is_joined else next(rest, None)
+            if following is None or (not is_joined and following.startswith("-")):
+                return None
+            found.setdefault(name, []).append(following)
+        else:
+            return None
+    wanted = (found.pop("--engine", []), found.pop("--format", []), len(found[""]))
+    return found if wanted == (["c"], ["json"], 2) and len(found.get("--only", [])) < 2 else None
+
+
+def _is_plain_file(trace: str) -> bool:
+    """Whether it is a CSV file that can be read twice, and its name reads the same in JSON."""
+    if not (trace.endswith(".csv") and trace.isascii() and trace.isprintable()):
+        return False
+    try:
+        return stat.S_ISREG(os.stat(trace).st_mode)
+    except OSError:
+        return False
+
+
+def _sources() -> Iterator[tuple[str, int, int]]:
+    """What tells this rvmon from another: its files, by size and time."""
+    folders = [os.path.dirname(os.path.dirname(__file__))]
+    for folder in folders:  # grows
+        with os.scandir(folder) as entries:
+            for entry in sorted(entries, key=lambda one: one.name):
+                if entry.is_dir():
+                    folders += [entry.path] if entry.name != "__pycache__" else []
+                else:
+                    found = entry.stat()
+                    yield entry.path, found.st_size, found.st_mtime_ns
+
+
+def _known(path: Path) -> tuple[Path, str] | None:
+    """The program that was compiled before, and what there is to warn of."""
+    body = read_kept(path)
+    if body is None:
+        return None
+    try:
+        name, warnings = json.loads(body)
+        program = path.parent / name
+        return (program, warnings) if is_ours(program) else None
+    except (ValueError, TypeError, OSError):
+        return None
+
+
+def _made(path: Path, spec: str, options: dict[str, list[str]]) -> tuple[Path, str] | None:
+    """The same, compiled now; `None` if there is something to say against it."""
+    from rvmon.cli.constants import constants_of
+    from rvmon.codegen.c_program import built_program
+    from rvmon.errors import RvmonError
+    from rvmon.loading import load
+
+    only = options.get("--only")
+    try:
+        loaded = load(spec, const=constants_of(options.get("--const", [])))
+        if loaded.checked.covers:  # the samples are asked once more whether they show the goals
+            return None
+        ids = None if only is None else [name.strip() for name in only[0].split(",")]
+        program = built_program(loaded.plan(only=ids))
+    except RvmonError:
+        return None
+    warnings = ""
+    if loaded.warnings:
+        from rvmon.diagnostics.render import render_full
+
+        warnings = render_full(loaded.warnings)
+    keep(path, json.dumps([program.name, warnings]).encode())
+    return program, warnings
+
+
+def _judged(program: Path, warnings: str, trace: str) -> int | None:
+    """Have the program judge."""
+    quiet = [(os.POSIX_SPAWN_OPEN, 2, os.devnull, os.O_WRONLY, 0)]
+    words = [str(program), "--exactly", trace]
+    try:
+        child = os.posix_spawn(program, words, os.environ, file_actions=quiet)
+    except OSError:  # it is gone, or of another machine that shares the folder
+        return None
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    if code not in _JUDGED:
+        return None
+    if warnings:
+        print(warnings, file=sys.stderr)
+    return code
