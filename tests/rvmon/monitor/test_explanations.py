@@ -134,6 +134,19 @@ def test_an_undecided_attempt_says_what_is_owed_and_till_when(engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+def test_what_time_has_ruled_out_is_owed_no_more(engine):
+    """An I leaves out what time alone has settled, also where no position came with it."""
+    monitor = rvmon.loads(
+        "spec s\ntime sampled\nsignal p, q : bool\nevent go\n"
+        "requirement R1\n  upon go\n  then (within 3 ns p) or (within 9 ns q)\n"
+    ).monitor(engine=engine)
+    monitor.step_ns(0, {"p": False, "q": False, "go": True})
+    monitor.advance_ns(6)
+    [left] = monitor.finish_ns().attempts
+    assert left.owed == "`within 9 ns q` by 9 ns"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
 def test_an_attempt_that_the_input_left_open_says_which_input(engine):
     """An I that is due to unknown input names it and the instant."""
     samples = [(0, {"distance": 1.0}), (2, {"go": True})]
