@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache, partial
 from pathlib import Path
@@ -234,8 +235,9 @@ class Spec:
         only: Iterable[str] | None = None,
         until: float | None = None,
         cut: bool = False,
+        ignored: Counter[str] | None = None,
     ) -> Report | None:
-        """Judge a CSV or Parquet file by its columns, a block at a time; see `evaluate`.
+        """Judge a file by its columns, a block at a time; see `evaluate`.
 
         Args:
             path: as `evaluate` takes it; so are the others.
@@ -243,6 +245,7 @@ class Spec:
             only: ids of the requirements.
             until: the end of the trace in seconds.
             cut: whether rows behind that end are left out, too.
+            ignored: names of JSON lines that are not declared are counted here.
 
         Returns:
             `None` where rows have to be read and judged one by one.
@@ -258,6 +261,7 @@ class Spec:
             engine=engine,
             until=None if until is None else ticks_of_seconds(until),
             cut=cut,
+            ignored=Counter() if ignored is None else ignored,
         )
 
     def _evaluate_arrays(

@@ -120,7 +120,12 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         meter = None
         if not options.robustness:
             report = spec.evaluate_file(
-                trace, engine=options.engine, only=options.only, until=options.until, cut=True
+                trace,
+                engine=options.engine,
+                only=options.only,
+                until=options.until,
+                cut=True,
+                ignored=recording.ignored,
             )
         if report is None:
             samples = _up_to(end, shown_while_reading(recording), ordered=ordered)

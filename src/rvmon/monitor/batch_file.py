@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,8 +25,13 @@ if TYPE_CHECKING:
     Reader = Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]
 
 
-def _reader_of(path: str | Path) -> Reader | None:
-    """What reads blocks of a file, by the ending of its name."""
+def _reader_of(path: str | Path, ignored: Counter[str]) -> Reader | None:
+    """What reads blocks of a file, by the ending of its name.
+
+    Args:
+        path: of the file.
+        ignored: counts undeclared names, where each line has its own.
+    """
     match Path(path).suffix.lower():
         case ".csv":
             from rvmon.readers.csv_blocks import csv_blocks
@@ -34,6 +41,10 @@ def _reader_of(path: str | Path) -> Reader | None:
             from rvmon.readers.parquet import parquet_blocks
 
             return parquet_blocks
+        case ".jsonl" | ".ndjson":
+            from rvmon.readers.jsonl_blocks import jsonl_blocks
+
+            return partial(jsonl_blocks, ignored=ignored)
     return None
 
 
@@ -58,6 +69,7 @@ def evaluate_file(
     engine: str,
     until: int | None = None,
     cut: bool = False,
+    ignored: Counter[str],
 ) -> Report | None:
     """Judge a recording by its columns; memory does not grow with its length.
 
@@ -69,12 +81,14 @@ def evaluate_file(
         engine: `auto`, `c` or the name of one that judges samples.
         until: the end of the trace in ticks, if after its last row.
         cut: whether rows behind that end are left out.
+        ignored: names that are not declared are counted here, where each line has its own.
 
     Returns:
         `None` where rows have to be read and judged one by one: the file is not plain, or each row
         may matter.
     """
-    reader = _reader_of(path)
+    seen = Counter[str]()
+    reader = _reader_of(path, seen)
     if reader is None:
         return None
     fillable = _fillable(compiled, only)
@@ -95,10 +109,18 @@ def evaluate_file(
         if engine == "c":
             from rvmon.monitor.batch_c import evaluate_c_blocks
 
-            return evaluate_c_blocks(compiled, names, blocks(), only=only, until=until)
-        return evaluate_plain(compiled, names, blocks, only=only, engine=engine, until=until)
+            report = evaluate_c_blocks(compiled, names, blocks(), only=only, until=until)
+        else:
+            found = evaluate_plain(compiled, names, blocks, only=only, engine=engine, until=until)
+            if found is None:
+                return None
+            report = found
     except (NotPlainError, StopIteration):
         return None
+    if seen and cut and until is not None:  # those behind the end were counted, too
+        return None
+    ignored.update(seen)
+    return report
 
 
 def _up_to(end: int, blocks: Iterator[_Block]) -> Iterator[_Block]:

@@ -12,15 +12,14 @@ from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, decimals, nanoseconds, truth_values, whole_numbers
+from rvmon.readers.held import held_values
+from rvmon.readers.pieces import BLOCK, whole_lines
 from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-BLOCK = 1 << 20
-"""Bytes of a block."""
-
-_ODD = (b'"', b" ", b"\t", b"\0", b"\r")
+_ODD = (b'"', b" ", b"\t", b"\0")
 
 
 def csv_blocks(
@@ -43,7 +42,9 @@ def csv_blocks(
     last = None
     layout = None
     held: dict[str, Any] = {}
-    for text in _pieces(path):
+    for text in whole_lines(path, BLOCK):
+        if any(odd in text for odd in _ODD):
+            raise NotPlainError
         body = text
         if layout is None:
             header, _, body = text.partition(b"\n")
@@ -57,34 +58,6 @@ def csv_blocks(
             yield block
     if last is None:
         raise NotPlainError
-
-
-def _pieces(path: str | Path) -> Iterator[bytes]:
-    """The file in pieces of whole lines."""
-    rest = b""
-    try:
-        with open(path, "rb") as file:
-            while piece := file.read(BLOCK):
-                whole, newline, tail = piece.rpartition(b"\n")
-                if newline:
-                    yield _without_returns(rest + whole + newline)
-                    rest = tail
-                else:
-                    rest += piece
-                    if len(rest) > 4 * BLOCK:
-                        raise NotPlainError
-    except OSError:
-        raise NotPlainError from None
-    if rest:
-        yield _without_returns(rest + b"\n")
-
-
-def _without_returns(text: bytes) -> bytes:
-    if b"\r" in text:
-        text = text.replace(b"\r\n", b"\n")
-    if not text.isascii() or any(odd in text for odd in _ODD):
-        raise NotPlainError
-    return text
 
 
 def _plain_layout(header: bytes, schema: Schema) -> Layout:
@@ -138,16 +111,14 @@ def _values(
     given = cells.ends > cells.starts
     if given.all():
         return _plain(read(cells))
-    before = [held[column.name]] if column.name in held else []
-    if column.name not in fillable or not (given[0] or before):
+    before = held.get(column.name)
+    if column.name not in fillable or not (given[0] or before is not None):
         raise NotPlainError
     rows = np.flatnonzero(given)
-    if not len(rows):
-        return np.array(before * len(given))
-    some = _plain(read(Cells(cells.text, cells.starts[rows], cells.ends[rows])))
-    place = np.cumsum(given) - (0 if before else 1)
-    filled: NDArray[Any] = np.concatenate((np.array(before, some.dtype), some))[place]
-    return filled
+    some = np.array([], np.dtype(type(before)))
+    if len(rows):
+        some = _plain(read(Cells(cells.text, cells.starts[rows], cells.ends[rows])))
+    return held_values(some, given, before)
 
 
 def _occurrences(cells: Cells, name: str, fillable: frozenset[str]) -> NDArray[np.bool_]:

@@ -141,17 +141,15 @@ def _values_held(
     """
     import numpy as np
 
+    from rvmon.readers.held import held_values
+
     cells, kinds = batch.column(column.name), _FITTING[column.kind]
     if not cells.null_count:
         return _array_of(cells, kinds)
-    given = np.asarray(cells.is_valid())
-    before = [held[column.name]] if column.name in held else []
-    if not gaps or not (before or given[0]):
+    if not gaps:
         raise NotPlainError
     some = _array_of(cells.drop_null(), kinds)
-    values = np.concatenate((np.array(before, some.dtype), some))
-    filled: NDArray[Any] = values[np.cumsum(given) - 1 + len(before)]
-    return filled
+    return held_values(some, np.asarray(cells.is_valid()), held.get(column.name))
 
 
 def parquet_samples(

@@ -28,6 +28,7 @@ class FileRecording:
         path: the file, `-` for standard input.
         names: declared names that have a column; `None` for JSON lines, where any may come.
         end: `None`: these formats end with their last sample.
+        ignored: the names that are not declared, counted as they are read.
     """
 
     end: int | None = None
@@ -47,7 +48,7 @@ class FileRecording:
         self._schema = schema
         self._ordered = ordered
         self._conflicts = Conflicts()
-        self._ignored: Counter[str] = Counter()
+        self.ignored: Counter[str] = Counter()
         self._format = _format_of(self.path)
         self._open_text: TextIO | None = None
         self.names: frozenset[str] | None = None
@@ -63,7 +64,7 @@ class FileRecording:
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
-        self._ignored.update(dict.fromkeys(layout.ignored, 1))
+        self.ignored.update(dict.fromkeys(layout.ignored, 1))
 
     def __iter__(self) -> Iterator[Sample]:
         """Samples in order of the file, equal stamps merged.
@@ -85,7 +86,7 @@ class FileRecording:
             else:
                 from rvmon.readers.jsonl_rows import jsonl_samples
 
-                yield from self._merged(jsonl_samples(text, self._schema, self._ignored))
+                yield from self._merged(jsonl_samples(text, self._schema, self.ignored))
 
     def _merged(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
         return coalesce(self._in_order(lines), self._schema.events, self._conflicts)
@@ -101,7 +102,7 @@ class FileRecording:
         """What was noticed while reading: undeclared names and conflicting values."""
         ignored = [
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
-            for name, count in self._ignored.items()
+            for name, count in self.ignored.items()
         ]
         return ignored + self._conflicts.health()
 

@@ -1,0 +1,228 @@
+"""Plain JSON lines as columns, a block of the file at a time: memory does not grow with the file.
+
+The first line says what the others look like; where one does not, all is read line by line.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from operator import attrgetter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+
+from rvmon.errors import TraceError
+from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.held import held_values
+from rvmon.readers.pieces import BLOCK, whole_lines
+from rvmon.readers.ticks import ticks_in_range, ticks_of_column
+from rvmon.trace.schema import Kind, Schema
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_Given = msgspec.UnsetType
+_TYPES: Mapping[Kind, Any] = {
+    Kind.BOOL: bool | int | _Given,
+    Kind.INT: int | float | _Given,
+    Kind.REAL: int | float | _Given,
+}
+_ANYTHING: Any = bool | int | float | str | list[Any] | None | _Given
+"""What an undeclared name may hold; objects may hold declared names."""
+
+_FITTING = {Kind.INT: "i", Kind.REAL: "fi"}
+
+
+@dataclass(slots=True)
+class _Shape:
+    """What the lines of a file look like.
+
+    Attributes:
+        stamp: `t` or `t_ns`.
+        places: by declared name, where its value is in a decoded line.
+        ignored: the same of names that are not declared, in the order of the line.
+    """
+
+    stamp: str
+    places: dict[str, str] = field(default_factory=dict)
+    ignored: dict[str, str] = field(default_factory=dict)
+
+
+def jsonl_blocks(
+    path: str | Path, schema: Schema, fillable: frozenset[str], ignored: Counter[str]
+) -> Iterator[Block]:
+    """Read a plain file of JSON lines.
+
+    Plain is: objects of numbers and truth values with the names of the first line, be they nested;
+    no null, labels, payloads or lists of events; instants that increase.
+
+    Args:
+        path: of the file.
+        schema: the declared names; there is a column for each.
+        fillable: the names of which "no update" may be read as what was there before: of signals
+            the value, of events that they do not occur.
+        ignored: names that are not declared are counted here, from 0.
+
+    Raises:
+        NotPlainError: it is not; the blocks before were right.
+    """
+    ignored.clear()
+    decoder = shape = None
+    last = None
+    held: dict[str, Any] = {}
+    for text in whole_lines(path, BLOCK):
+        if shape is None:
+            decoder, shape = _shape_of(text.partition(b"\n")[0], schema)
+        rows = _decoded(text, decoder)
+        times = _instants([row.stamp for row in rows], shape)
+        if not (times[1:] > times[:-1]).all() or (last is not None and times[0] <= last):
+            raise NotPlainError
+        last = times[-1]
+        columns: dict[str, NDArray[Any]] = {}
+        for name, kind in schema.signals.items():
+            cells = _cells(rows, shape.places.get(name))
+            columns[name] = _values(cells, kind, held.get(name), gaps=name in fillable)
+            held[name] = columns[name][-1]
+        for name in schema.events:
+            cells = _cells(rows, shape.places.get(name))
+            columns[name] = _occurrences(cells, len(rows), gaps=name in fillable)
+        for name, place in shape.ignored.items():
+            ignored[name] += sum(cell is not msgspec.UNSET for cell in _cells(rows, place) or ())
+        yield Block(times, columns)
+    if last is None:
+        raise NotPlainError
+
+
+def _decoded(text: bytes, decoder: Any) -> list[Any]:
+    """The lines of a text, each of which holds one object."""
+    lines = text.count(b"\n")
+    if text.count(b"\n{") + 1 != lines or text.count(b"}\n") != lines or text[:1] != b"{":
+        raise NotPlainError
+    try:
+        rows: list[Any] = decoder.decode_lines(text)
+    except (msgspec.DecodeError, RecursionError):
+        raise NotPlainError from None
+    if len(rows) != lines:
+        raise NotPlainError
+    return rows
+
+
+def _shape_of(line: bytes, schema: Schema) -> tuple[Any, _Shape]:
+    """What decodes lines that look like this one."""
+    try:
+        first = msgspec.json.decode(line)
+    except (msgspec.DecodeError, RecursionError):
+        raise NotPlainError from None
+    stamps = [name for name in ("t", "t_ns") if isinstance(first, dict) and name in first]
+    if len(stamps) != 1 or ("events" in first and "events" not in schema.signals):
+        raise NotPlainError
+    shape = _Shape(stamps[0])
+    del first[stamps[0]]
+    fields, names = _fields(first, "", "", schema, shape)
+    fields.insert(0, ("stamp", int | float))
+    names["stamp"] = stamps[0]
+    return msgspec.json.Decoder(_struct(fields, names)), shape
+
+
+def _struct(fields: Sequence[Any], names: Mapping[str, str]) -> Any:
+    return msgspec.defstruct(
+        "Line", fields, rename=dict(names), forbid_unknown_fields=True, gc=False
+    )
+
+
+def _fields(
+    found: Mapping[str, Any], prefix: str, place: str, schema: Schema, shape: _Shape
+) -> tuple[list[Any], dict[str, str]]:
+    """The fields of an object: name, type, default; and the keys that they stand for.
+
+    Args:
+        found: the object.
+        prefix: of its names.
+        place: where it is in the line.
+        schema: the declared names.
+        shape: is told of what is found.
+    """
+    fields: list[Any] = []
+    names = {}
+    for number, (key, value) in enumerate(found.items()):
+        own, name = f"f{number}", prefix + key
+        names[own] = key
+        type_: Any = _ANYTHING
+        if name in schema.signals:
+            kind = schema.signals[name]
+            if kind not in _TYPES:
+                raise NotPlainError
+            type_ = _TYPES[kind]
+            shape.places[name] = place + own
+        elif name in schema.events:
+            type_ = bool | _Given
+            shape.places[name] = place + own
+        elif isinstance(value, dict):
+            inside = _fields(value, f"{name}.", f"{place}{own}.", schema, shape)
+            object_ = _struct(*inside)
+            fields.append((own, object_, msgspec.field(default_factory=object_)))
+            continue
+        else:
+            shape.ignored[name] = place + own
+        fields.append((own, type_, msgspec.UNSET))
+    return fields, names
+
+
+def _cells(rows: Sequence[Any], place: str | None) -> list[Any] | None:
+    return None if place is None else list(map(attrgetter(place), rows))
+
+
+def _instants(stamps: list[Any], shape: _Shape) -> NDArray[np.int64]:
+    found = np.array(stamps)
+    if found.dtype.kind not in ("i" if shape.stamp == "t_ns" else "fi"):
+        raise NotPlainError
+    try:
+        return ticks_in_range(found) if shape.stamp == "t_ns" else ticks_of_column(found)
+    except TraceError:  # whoever reads lines says in which it is
+        raise NotPlainError from None
+
+
+def _values(cells: list[Any] | None, kind: Kind, before: Any, *, gaps: bool) -> NDArray[Any]:
+    """The values of a signal; gaps are filled with what it holds."""
+    if cells is None:
+        raise NotPlainError
+    some = [cell for cell in cells if cell is not msgspec.UNSET]
+    values = _truths(some) if kind is Kind.BOOL else _numbers(some, kind)
+    if len(some) == len(cells):
+        return values
+    if not gaps:
+        raise NotPlainError
+    given = np.array([cell is not msgspec.UNSET for cell in cells])
+    return held_values(values, given, before)
+
+
+def _truths(cells: list[Any]) -> NDArray[np.bool_]:
+    try:
+        found = np.frombuffer(bytes(cells), np.uint8)
+    except ValueError:  # a number that is no byte
+        raise NotPlainError from None
+    if len(found) and found.max() > 1:
+        raise NotPlainError
+    return found.view(np.bool_)
+
+
+def _numbers(cells: list[Any], kind: Kind) -> NDArray[Any]:
+    if not cells:
+        return np.empty(0, np.int64 if kind is Kind.INT else np.float64)
+    found = np.array(cells)
+    if found.dtype.kind not in _FITTING[kind]:
+        raise NotPlainError
+    return found if kind is Kind.INT else found.astype(np.float64, copy=False)
+
+
+def _occurrences(cells: list[Any] | None, count: int, *, gaps: bool) -> NDArray[np.bool_]:
+    """Where an event occurs; where nothing is said of it, it does not."""
+    if cells is None:
+        cells = [msgspec.UNSET] * count
+    if msgspec.UNSET in cells and not gaps:
+        raise NotPlainError
+    return np.array([cell is True for cell in cells], bool)

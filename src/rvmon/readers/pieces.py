@@ -1,0 +1,47 @@
+"""Files of lines in pieces of a bounded size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from rvmon.readers.blocks import NotPlainError
+
+BLOCK = 1 << 20
+"""Bytes of a piece."""
+
+
+def whole_lines(path: str | Path, size: int) -> Iterator[bytes]:
+    r"""A file in pieces of whole ASCII lines, each of which ends with `\n`; `\r\n` counts as that.
+
+    Args:
+        path: of the file.
+        size: bytes of a piece, about.
+
+    Raises:
+        NotPlainError: it cannot be read, has very long lines, or other characters or ends of lines.
+    """
+    rest = b""
+    try:
+        with open(path, "rb") as file:
+            while piece := file.read(size):
+                whole, newline, tail = piece.rpartition(b"\n")
+                if newline:
+                    yield _plain(rest + whole + newline)
+                    rest = tail
+                else:
+                    rest += piece
+                    if len(rest) > 4 * size:
+                        raise NotPlainError
+    except OSError:
+        raise NotPlainError from None
+    if rest:
+        yield _plain(rest + b"\n")
+
+
+def _plain(text: bytes) -> bytes:
+    if b"\r" in text:
+        text = text.replace(b"\r\n", b"\n")
+    if not text.isascii() or b"\r" in text:
+        raise NotPlainError
+    return text
