@@ -1,10 +1,13 @@
-"""Forecasts of open attempts against an independent emptiness check, on random untimed formulas.
+"""Forecasts of open attempts against an independent emptiness check, on random formulas.
 
     python -m benchmarks.cross_ltl3 --formulas 1000 --words 20
+    python -m benchmarks.cross_ltl3 --formulas 1000 --words 20 --timed
 
 After every position of random words, the verdict or the forecast of the engine is compared with
-what the tableau of `rvmon.testing.ltl3` says that infinite continuations leave possible. Prints the
-counts and every disagreement; exits 1 if there is one.
+what the tableau of `rvmon.testing.ltl3` says that infinite continuations leave possible. With
+`--timed`, formulas have windows of a few ticks and are judged in held time; the tableau is given
+them with the windows unrolled, and a forecast that the engine does not give is counted as missed.
+Prints the counts and every disagreement; exits 1 if there is one.
 """
 
 from __future__ import annotations
@@ -30,8 +33,8 @@ from rvmon.spec.checked import (
     Type,
 )
 from rvmon.testing.dice import Dice, chance
-from rvmon.testing.generate_ltl import random_ltl
-from rvmon.testing.ltl3 import Letter, Tableau
+from rvmon.testing.generate_ltl import random_ltl, random_mtl
+from rvmon.testing.ltl3 import Letter, Tableau, unrolled
 from rvmon.testing.show import show
 from rvmon.testing.vocabulary import BOOLS
 from rvmon.trace.schema import Kind
@@ -48,15 +51,16 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--words", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--engine", default="auto")
+    parser.add_argument("--timed", action="store_true", help="windows of a few ticks, held time")
     options = parser.parse_args(argv)
     began = time.perf_counter()
     tally: Counter[str] = Counter()
     found: list[str] = []
-    for number, dice, formula, tableau in _questions(options.seed, tally):
+    for number, dice, formula, tableau in _questions(options.seed, options.timed, tally):
         if tally["formulas"] == options.formulas:
             break
         tally["formulas"] += 1
-        spec = _spec(formula)
+        spec = _spec(formula, TimeModel.HELD if options.timed else TimeModel.SAMPLED)
         tally[f"judged by {_judged_by(spec, options.engine)}"] += 1
         for _ in range(options.words):
             word = _word(dice)
@@ -66,7 +70,9 @@ def main(argv: Sequence[str]) -> int:
                 wanted = next(iter(possible)) if len(possible) == 1 else None
                 decided, value = ours
                 tally[f"{'decided' if decided else 'forecast'} {_word_of(value)}"] += 1
-                if value is not wanted:
+                if options.timed and value is None and wanted is not None:
+                    tally["missed"] += 1
+                elif value is not wanted:
                     letters = " ".join("".join(sorted(x)) or "-" for x in word[:length])
                     found.append(
                         f"formula {number}: {show(formula)} on {letters}: "
@@ -82,24 +88,24 @@ def main(argv: Sequence[str]) -> int:
 
 
 def _questions(
-    seed: int, tally: Counter[str]
+    seed: int, timed: bool, tally: Counter[str]
 ) -> Iterator[tuple[int, random.Random, Formula, Tableau]]:
     number = 0
     while True:
         dice = random.Random(f"{seed}/{number}")
         number += 1
-        formula = random_ltl(dice, dice.randint(1, 4))
-        tableau = Tableau.of(formula, MOST_TEMPORAL)
+        formula = (random_mtl if timed else random_ltl)(dice, dice.randint(1, 4))
+        tableau = Tableau.of(unrolled(formula), MOST_TEMPORAL)
         if tableau is None:
             tally[f"passed over, more than {MOST_TEMPORAL} temporal operators"] += 1
         else:
             yield number, dice, formula, tableau
 
 
-def _spec(formula: Formula) -> Spec:
+def _spec(formula: Formula, time_model: TimeModel) -> Spec:
     signals = {name: Signal(name, Type(Kind.BOOL)) for name in BOOLS}
     requirement = Requirement("R", Mode.UPON, BoundAtom(Bound.START), formula)
-    return Spec(CheckedSpec("ltl", "", TimeModel.SAMPLED, signals, {}, {"R": requirement}))
+    return Spec(CheckedSpec("ltl", "", time_model, signals, {}, {"R": requirement}))
 
 
 def _judged_by(spec: Spec, engine: str) -> str:

@@ -2,7 +2,7 @@
 
 A clause of a residual is a state of a nondeterministic automaton: a step takes it to any clause of
 what it becomes, under letters that the clause's literals allow. A path is accepting if no unbounded
-`U` is put off for ever. Ages are kept as regions between the cuts of a location.
+`U` is put off for ever.
 
 Source: generalised Büchi acceptance after Gerth, Peled, Vardi and Wolper 1995; strongly connected
 components for emptiness, after Couvreur 1999.
@@ -15,6 +15,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from rvmon.automaton.ages import (
+    NEVER,
+    Ages,
+    Cuts,
+    after,
+    bounds,
+    chosen,
+    exactly,
+    joined,
+    region_bounds,
+    widened,
+    within,
+)
 from rvmon.automaton.location import location_of, normalise
 from rvmon.formula.core import Literal, Sense, Until
 from rvmon.formula.progress import step
@@ -24,10 +37,11 @@ from rvmon.formula.state import State
 MOST_TRIED = 200
 """Steps of states, and combinations of regions in which they might be made."""
 
+_MOST_APART = 100
+"""The same, where clocks are known by their differences: that tells more states apart."""
+
 MOST_CLAUSES = 100
 """Of one step of a clause."""
-
-_NEVER = 1 << 62
 
 
 class TooLargeError(Exception):
@@ -36,10 +50,13 @@ class TooLargeError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """A clause as a residual of its own, and the region of each of its clocks."""
+    """A clause as a residual of its own, and what is known of the ages of its clocks.
+
+    Ages are counted in the ticks between two positions where these are always as many.
+    """
 
     residual: Residual
-    regions: tuple[int, ...]
+    ages: Ages
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,35 +68,57 @@ class _Move:
     fair: bool
 
 
-def is_satisfiable(residual: Residual, ages: Sequence[int], gap: int | None) -> bool:
-    """Whether some infinite continuation satisfies a residual.
+Start = tuple[_State, ...]
+"""The clauses of a residual, of which one is to be satisfied."""
 
-    Ages are followed clock by clock, so a bounded residual may be called satisfiable though the
-    differences of its clocks forbid it; one that is called unsatisfiable is.
+
+def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start | None:
+    """Where a search begins, equal for residuals of equal future; `None` if nothing is owed.
 
     Args:
         residual: of literals of two senses, as `rvmon.formula.dual` makes them.
-        ages: of its clocks at the last position.
+        ages: of its clocks at the last position, ticks.
         gap: ticks between two positions; `None` if any number of them.
+    """
+    if any(not clause for clause in residual):
+        return None
+    search = _Search(gap, differences=True)
+    known = exactly([age // search.unit for age in ages])
+    return tuple(search.state(clause, known) for clause in residual)
+
+
+def is_satisfiable(start: Start, gap: int | None) -> bool:
+    """Whether some infinite continuation satisfies one of these.
+
+    In wide regions clocks are known by their differences only: so what is bounded may be called
+    satisfiable though it is not; what is called unsatisfiable is.
+
+    Args:
+        start: as `start_of` gives it.
+        gap: as for that.
 
     Raises:
         TooLargeError: the search takes too many steps.
     """
-    return _Search(gap).run(residual, ages)
+    try:
+        return _Search(gap, differences=True).run(start)
+    except TooLargeError:
+        return _Search(gap, differences=False).run(start)
 
 
 class _Search:
-    def __init__(self, gap: int | None) -> None:
-        self.delays = (1, _NEVER) if gap is None else (gap, gap)
+    def __init__(self, gap: int | None, *, differences: bool) -> None:
+        self.unit = gap or 1
+        self.longest = NEVER if gap is None else 1
+        self.differences = differences
+        self.most = _MOST_APART if differences else MOST_TRIED
         self.index: dict[_State, int] = {}
         self.states: list[_State] = []
         self.tried = 0
 
-    def run(self, residual: Residual, ages: Sequence[int]) -> bool:
-        for clause in residual:
-            if not clause:
-                return True
-            self.enter(clause, ages)
+    def run(self, start: Start) -> bool:
+        for state in start:
+            self.enter(state)
         moves: list[_Move] = []
         current = 0
         while current < len(self.states):
@@ -90,28 +129,35 @@ class _Search:
             current += 1
         return self.has_accepting_cycle(moves)
 
-    def enter(self, clause: Clause, ages: Sequence[int]) -> int:
-        """The state of a clause, whose clocks have these ages or others in the same regions."""
-        # The last age is that of the clock that `normalise` calls NOW; -1 is its place as well.
-        made, sources = normalise(frozenset([clause]), len(ages) - 1)
-        own = [ages[source] for source in sources]
-        state = _State(made, tuple(map(bisect_right, location_of(made).cuts, own)))
+    def state(self, clause: Clause, ages: Ages) -> _State:
+        """The state of a clause, the last clock being the one that `normalise` calls NOW."""
+        made, sources = normalise(frozenset([clause]), len(ages) - 2)
+        own = chosen(ages, sources)
+        return _State(made, widened(own, self.cuts(made), differences=self.differences))
+
+    def enter(self, state: _State) -> int:
+        """The number of a state."""
         found = self.index.get(state)
         if found is None:
             found = self.index[state] = len(self.states)
             self.states.append(state)
         return found
 
+    def cuts(self, residual: Residual) -> list[list[int]]:
+        """The ages at which clocks enter another region, in units."""
+        return [[-(-cut // self.unit) for cut in own] for own in location_of(residual).cuts]
+
     def successors(self, state: _State) -> Iterator[tuple[int | None, bool]]:
         """The states after one position, `None` for what is satisfied; and whether it is fair."""
-        cuts = location_of(state.residual).cuts
-        for regions in self.regions_after(cuts, state.regions):
-            ages = [_ages_in(own, at)[0] for own, at in zip(cuts, regions, strict=True)]
+        cuts = self.cuts(state.residual)
+        for ages in self.ages_after(cuts, state.ages):
+            shown = [bounds(ages, clock)[0] for clock in range(len(cuts))]
             try:
-                reached = step(state.residual, ages, _left_open, MOST_CLAUSES)
+                in_ticks = [age * self.unit for age in shown]
+                reached = step(state.residual, in_ticks, _left_open, MOST_CLAUSES)
             except TooManyClausesError:
                 raise TooLargeError from None
-            waits = bool(regions) and regions[0] < len(cuts[0])
+            waits = bool(cuts) and bisect_right(cuts[0], shown[0]) < len(cuts[0])
             for clause in reached:
                 pending = _without_literals(clause)
                 if pending is None:
@@ -119,27 +165,25 @@ class _Search:
                 if not pending:
                     yield None, True
                     return
-                target = self.enter(pending, (*ages, 0))
+                target = self.enter(self.state(pending, joined(ages)))
                 oldest_stays = waits and any(clock == 0 for _, clock in pending)
                 yield target, not oldest_stays
 
-    def regions_after(
-        self, cuts: tuple[tuple[int, ...], ...], regions: tuple[int, ...]
-    ) -> Iterator[tuple[int, ...]]:
-        """The regions in which the clocks may be at the next position."""
-        spans = [range(region, len(own) + 1) for own, region in zip(cuts, regions, strict=True)]
-        for later in product(*spans):
+    def ages_after(self, cuts: Cuts, ages: Ages) -> Iterator[Ages]:
+        """The ages at the next position, apart by their regions."""
+        later = after(ages, self.longest)
+        spans = []
+        for clock, own in enumerate(cuts):
+            low, high = bounds(later, clock)
+            spans.append(range(bisect_right(own, low), bisect_right(own, high) + 1))
+        for regions in product(*spans):
             self.tried += 1
-            if self.tried > MOST_TRIED:
+            if self.tried > self.most:
                 raise TooLargeError
-            least, most = self.delays
-            for own, before, after in zip(cuts, regions, later, strict=True):
-                low, high = _ages_in(own, before)
-                later_low, later_high = _ages_in(own, after)
-                least = max(least, later_low - high)
-                most = min(most, later_high - low)
-            if least <= most:
-                yield later
+            places = [region_bounds(own, at) for own, at in zip(cuts, regions, strict=True)]
+            found = within(later, places)
+            if found is not None:
+                yield found
 
     def has_accepting_cycle(self, moves: Sequence[_Move]) -> bool:
         """Whether a cycle puts nothing off for ever."""
@@ -192,9 +236,3 @@ def _promises(state: _State) -> frozenset[Until]:
         for node, clock in clause
         if isinstance(node, Until) and clock == NO_CLOCK
     )
-
-
-def _ages_in(cuts: tuple[int, ...], region: int) -> tuple[int, int]:
-    """The least and the greatest age in a region."""
-    low = cuts[region - 1] if region else 0
-    return low, cuts[region] - 1 if region < len(cuts) else _NEVER

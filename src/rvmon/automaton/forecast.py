@@ -5,11 +5,9 @@ Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, AC
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Sequence
 
-from rvmon.automaton.emptiness import TooLargeError, is_satisfiable
-from rvmon.automaton.location import location_of
+from rvmon.automaton.emptiness import Start, TooLargeError, is_satisfiable, start_of
 from rvmon.formula.dual import Duals
 from rvmon.formula.residual import FAILS, HOLDS, Residual, TooManyClausesError
 
@@ -24,7 +22,7 @@ class Forecaster:
     """Tells of residuals whether every, or no, continuation satisfies them.
 
     A continuation is an infinite word in which every proposition is known, independently of the
-    others; bounded windows are judged by the ages of their clocks, each for itself. So a forecast
+    others; bounded windows are judged by what is known of the ages of their clocks. So a forecast
     that is given is right, and for formulas without bounds none is missed within the limits of
     the search.
 
@@ -34,7 +32,7 @@ class Forecaster:
 
     def __init__(self) -> None:
         self.duals = Duals()
-        self._known: dict[tuple[Residual, tuple[int, ...], int | None], bool] = {}
+        self._known: dict[tuple[Start, int | None], bool] = {}
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
         """The value that all continuations give a residual; `None` if they differ.
@@ -69,13 +67,15 @@ class Forecaster:
         """
         if len(residual) > MOST_CLAUSES:
             return True
-        regions = tuple(map(bisect_right, location_of(residual).cuts, ages))
-        key = (residual, regions, gap)
+        start = start_of(residual, ages, gap)
+        if start is None:
+            return True
+        key = (start, gap)
         if key not in self._known:
             if len(self._known) > _MOST_KNOWN:
                 self._known.clear()
             try:
-                self._known[key] = is_satisfiable(residual, ages, gap)
+                self._known[key] = is_satisfiable(start, gap)
             except TooLargeError:
                 self._known[key] = True
         return self._known[key]

@@ -16,27 +16,34 @@ MOST_ATTEMPTS = 32
 """With more of a requirement open at once in a network, none is forecast."""
 
 
-def forecast_of(judge: Judge, attempt: Open) -> Verdict | None:
+def forecast_of(judge: Judge, attempt: Open, known: int) -> Verdict | None:
     """`P` or `F` if every continuation brings an attempt to it; never folded into its verdict.
+
+    Args:
+        judge: of the attempt.
+        attempt: undecided.
+        known: the last instant of which the letter is known, ticks.
 
     What was unknown stays so: `P` if the run that takes it for the worse passes anyway, `F` if the
     one that takes it for the better fails.
 
     Source: SEMANTICS 2, Truth after a prefix.
     """
-    if _value(judge, attempt.token) is True:
+    if _value(judge, attempt.token, known) is True:
         return Verdict.PASS
     better = attempt.token if attempt.better is None else attempt.better
-    return Verdict.FAIL if _value(judge, better) is False else None
+    return Verdict.FAIL if _value(judge, better, known) is False else None
 
 
-def _value(judge: Judge, token: Token) -> bool | None:
+def _value(judge: Judge, token: Token, known: int) -> bool | None:
     location, anchors = token
     if location <= PASSED:
         return location != FAILED
-    ages = [judge.position - anchor for anchor in anchors]
-    forecaster = judge.compiled.forecaster
-    return forecaster.of(judge.machine.residual(location), ages, judge.flow.gap)
+    # Positions that change nothing are not visited.
+    gap = judge.flow.gap
+    ahead = max(known - judge.position, 0) // (gap or 1) * (gap or 1)
+    ages = [judge.position + ahead - anchor for anchor in anchors]
+    return judge.compiled.forecaster.of(judge.machine.residual(location), ages, gap)
 
 
 def forecast_by_network(judge: NetworkJudge, attempt: Open, now: int) -> Verdict | None:

@@ -53,6 +53,6 @@ def outlook(judge: Bench, attempt: Open, now: int) -> Verdict | None:
         case NetworkJudge():
             return forecast_by_network(judge, attempt, now)
         case Judge():
-            return forecast_of(judge, attempt)
+            return forecast_of(judge, attempt, (now - 1) // 2)
         case _:
             raise TypeError(f"no forecast for {type(judge).__name__}")

@@ -8,13 +8,13 @@ Source: Vardi and Wolper 1994 for the tableau; Bauer, Leucker and Schallhart 201
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 from rvmon.spec.checked import Binary, BinaryOp, Constant, Formula, Interval, SignalAtom, Unary
 from rvmon.spec.checked import UnaryOp as Op
-from rvmon.testing.peers.core import to_core
+from rvmon.testing.peers.core import both, either, to_core
 from rvmon.testing.walk import subformulas
 
 Letter = frozenset[str]
@@ -168,3 +168,58 @@ def _is_temporal(part: Formula) -> bool:
             return True
         case _:
             raise ValueError("not an untimed formula of future operators over Boolean signals")
+
+
+def unrolled(formula: Formula) -> Formula:
+    """The same formula without bounds, where every tick is a position: windows as nests of `X`.
+
+    >>> from rvmon.testing.build import eventually, p
+    >>> from rvmon.testing.show import show
+    >>> show(unrolled(eventually(p, 1, 2)))
+    '(X (p or (X p)))'
+    """
+    return _unrolled(to_core(formula))
+
+
+def _unrolled(formula: Formula) -> Formula:
+    match formula:
+        case Unary(op=Op.EVENTUALLY | Op.ALWAYS, operand=operand, interval=interval):
+            join = either if formula.op is Op.EVENTUALLY else both
+            return _windowed(formula.op, join, _unrolled(operand), interval or Interval(0, None))
+        case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
+            return _until(_unrolled(left), _unrolled(right), interval or Interval(0, None))
+        case Unary(op=op, operand=operand):
+            return Unary(op, _unrolled(operand))
+        case Binary(op=op, left=left, right=right):
+            return Binary(op, _unrolled(left), _unrolled(right))
+        case _:
+            return formula
+
+
+def _windowed(
+    op: Op, join: Callable[[Formula, Formula], Formula], operand: Formula, window: Interval
+) -> Formula:
+    later = _earlier(window)
+    if window.low:
+        return Unary(Op.NEXT, _windowed(op, join, operand, later))
+    if window.high is None:
+        return Unary(op, operand)
+    if window.high == 0:
+        return operand
+    return join(operand, Unary(Op.NEXT, _windowed(op, join, operand, later)))
+
+
+def _until(left: Formula, right: Formula, window: Interval) -> Formula:
+    later = _earlier(window)
+    if window.low:
+        return both(left, Unary(Op.NEXT, _until(left, right, later)))
+    if window.high is None:
+        return Binary(BinaryOp.UNTIL, left, right)
+    if window.high == 0:
+        return right
+    return either(right, both(left, Unary(Op.NEXT, _until(left, right, later))))
+
+
+def _earlier(window: Interval) -> Interval:
+    """The window as it is at the next tick."""
+    return Interval(max(window.low - 1, 0), None if window.high is None else window.high - 1)

@@ -1,5 +1,7 @@
 """Forecasts of open attempts: what no continuation, or every one, can bring."""
 
+import random
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -8,10 +10,10 @@ from rvmon import loads
 from rvmon.session import Spec
 from rvmon.spec.checked import TimeModel
 from rvmon.testing.build import requirement, spec_of, start
-from rvmon.testing.generate_ltl import random_ltl
+from rvmon.testing.generate_ltl import random_ltl, random_mtl
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.ltl3 import Tableau
+from rvmon.testing.ltl3 import Tableau, unrolled
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision
@@ -125,6 +127,32 @@ def test_untimed_forecasts_are_those_of_the_tableau(data, engine):
         possible = tableau.possible(word[: t + 1])
         wanted = None if len(possible) == 2 else Verdict("P" if True in possible else "F")
         assert said == wanted
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton"])
+def test_forecasts_with_windows_are_those_of_the_tableau(engine):
+    """Where every tick is a position, windows are nests of `X`; hardly a forecast is missed."""
+    given = missed = 0
+    for seed in range(60):
+        dice = random.Random(f"windows/{seed}")
+        formula = random_mtl(dice, dice.randint(1, 3))
+        tableau = Tableau.of(unrolled(formula), 7)
+        spec = Spec(spec_of(requirement(formula, upon=start), time=TimeModel.HELD))
+        if tableau is None:
+            continue
+        for _ in range(6):
+            word = [frozenset(n for n in "pqr" if dice.random() < 0.5) for _ in range(6)]
+            monitor = spec.monitor(engine=engine)
+            for t, letter in enumerate(word):
+                if monitor.step_ns(t, {name: name in letter for name in "pqr"}):
+                    break
+                said = monitor.open[0].forecast
+                possible = tableau.possible(word[: t + 1])
+                wanted = None if len(possible) == 2 else Verdict("P" if True in possible else "F")
+                assert said in (wanted, None), (formula, word[: t + 1])
+                given += said is not None
+                missed += said is not wanted
+    assert given > 100 * missed
 
 
 @settings(max_examples=80, deadline=None)

@@ -1,0 +1,133 @@
+"""What is known of the ages of clocks: bounds of each, and of their differences.
+
+Source: difference bounds after Dill 1989; widening by the bounds that matter after Behrmann et al.
+2006. Ages are whole numbers, so all bounds are closed.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+
+NEVER = 1 << 62
+"""No bound."""
+
+_NARROW = 8
+"""In regions of so many ages, ages are kept as they are; in wider ones only differences are."""
+
+Ages = tuple[tuple[int, ...], ...]
+"""Per pair of clocks the most by which the first is older than the second; 0 is no clock: its age
+is 0, the clocks count from 1. Each bound is implied by no others that are less."""
+
+Cuts = Sequence[Sequence[int]]
+"""Per clock the ages, ascending, from which on it is in another region."""
+
+
+def exactly(ages: Sequence[int]) -> Ages:
+    """Clocks of known ages.
+
+    >>> exactly([5, 2])
+    ((0, -5, -2), (5, 0, 3), (2, -3, 0))
+    """
+    known = (0, *ages)
+    return tuple(tuple(one - other for other in known) for one in known)
+
+
+def bounds(ages: Ages, clock: int) -> tuple[int, int]:
+    """The least and the greatest age of a clock; they count from 0 here."""
+    return -ages[0][clock + 1], ages[clock + 1][0]
+
+
+def region_bounds(cuts: Sequence[int], region: int) -> tuple[int, int]:
+    """The least and the greatest age in a region."""
+    low = cuts[region - 1] if region else 0
+    return low, cuts[region] - 1 if region < len(cuts) else NEVER
+
+
+def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
+    """The ages of which each is in its interval; `None` if there are none.
+
+    >>> within(exactly([5, 2]), [(0, 9), (3, 9)]) is None
+    True
+    """
+    found = [[*row] for row in ages]
+    for clock, (low, high) in enumerate(intervals, 1):
+        for one, other, bound in ((clock, 0, high), (0, clock, -low)):
+            if bound >= found[one][other]:
+                continue
+            if bound + found[other][one] < 0:
+                return None
+            _bind(found, one, other, bound)
+    return tuple(map(tuple, found))
+
+
+def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
+    """Take a lesser bound, and all that it implies."""
+    behind = [(place, most) for place, most in enumerate(found[other]) if most < NEVER]
+    for row in found:
+        if row[one] < NEVER:
+            through = row[one] + bound
+            for place, most in behind:
+                if through + most < row[place]:
+                    row[place] = through + most
+
+
+def after(ages: Ages, longest: int) -> Ages:
+    """The ages at least 1 later, and at most `longest`, which is 1 or `NEVER`.
+
+    >>> after(exactly([5, 2]), 1) == exactly([6, 3])
+    True
+    """
+    none, *rest = ages
+    return (
+        (0, *(bound - 1 for bound in none[1:])),
+        *((min(row[0] + longest, NEVER), *row[1:]) for row in rest),
+    )
+
+
+def joined(ages: Ages) -> Ages:
+    """The same with one more clock, which is started now."""
+    rows = [(*row, row[0]) for row in ages]
+    return (*rows, rows[0])
+
+
+def chosen(ages: Ages, clocks: Sequence[int]) -> Ages:
+    """Some clocks only, in this order; they count from 0 here, −1 is the last."""
+    places = [0, *(range(1, len(ages))[clock] for clock in clocks)]
+    return tuple(tuple(ages[one][other] for other in places) for one in places)
+
+
+def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
+    """What is kept of ages, so that few are told apart: more ages, of the same regions.
+
+    Args:
+        ages: each clock is within one region.
+        cuts: of the clocks.
+        differences: whether they are kept.
+    """
+    found = [[*row] for row in ages]
+    apart = []
+    for clock, own in enumerate(cuts):
+        low, high = bounds(ages, clock)
+        least, greatest = region_bounds(own, bisect_right(own, low))
+        place = clock + 1
+        if not differences or greatest == NEVER:
+            apart.append(place)
+        # From the last age of a region, the next position is in another one.
+        wide = greatest - least >= _NARROW and low < greatest
+        if wide or (low < high and not differences):
+            found[0][place], found[place][0] = -least, greatest
+    together = [place for place in range(1, len(ages)) if place not in apart]
+    for place in together:
+        found[0][place] = min(found[0][other] + ages[other][place] for other in together)
+        found[place][0] = min(ages[place][other] + found[other][0] for other in together)
+    for place in apart:
+        for other in range(1, len(ages)):
+            if other != place:
+                found[place][other] = _plus(found[place][0], found[0][other])
+                found[other][place] = _plus(found[other][0], found[0][place])
+    return tuple(map(tuple, found))
+
+
+def _plus(one: int, other: int) -> int:
+    return NEVER if one == NEVER else one + other
