@@ -49,6 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = None if arguments.only is None else [name.strip() for name in arguments.only.split(",")]
     if arguments.to in _AUTOMATA:
+        if not spec.requirements:
+            raise RvmonError(f"error: {arguments.spec} has no requirement: it has no automaton")
         _write_or_print(_automata(spec, ids, arguments.to), arguments.output)
         return 0
     plan = spec.plan(only=ids)

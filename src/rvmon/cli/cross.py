@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rvmon.spec.checked import CheckedSpec
     from rvmon.testing.cross import Crossing
     from rvmon.testing.peers.client import Peer
+    from rvmon.trace.health import Health
     from rvmon.trace.sample import Recording, Sample
 
 SHOWN = 5
@@ -54,6 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     from rvmon.cli.constants import constants_of
     from rvmon.loading import load
+    from rvmon.readers.recording import FileRecording
+    from rvmon.report.run_text import health_lines
     from rvmon.testing.case import Case
     from rvmon.testing.cross import crossings
 
@@ -61,6 +64,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise RvmonError("error: standard input can be read once only: save the recording first")
     spec = load(arguments.spec, const=constants_of(arguments.const))
     checked = spec.checked
+    if not checked.requirements:
+        raise RvmonError(f"error: {arguments.spec} has no requirement: there is nothing to compare")
     if arguments.only is not None:
         names = [name.strip() for name in arguments.only.split(",")]
         unknown = [name for name in names if name not in checked.requirements]
@@ -69,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise RvmonError(f"error: no requirement `{unknown[0]}`: there are {known}")
         chosen = {name: checked.requirements[name] for name in names}
         checked = replace(checked, requirements=chosen)
-    recording = spec.recording(arguments.trace)
+    recording = FileRecording(arguments.trace, spec.schema, ordered=spec.checked.max_delay is None)
     samples, late = _as_run_takes_them(recording, checked)
     if not samples:
         raise RvmonError(f"error: {arguments.trace} has no sample: nothing to compare")
@@ -78,9 +83,11 @@ def run(arguments: argparse.Namespace) -> int:
         peers = {name: stack.enter_context(peer) for name, peer in _peers(arguments.peers)}
         found = list(crossings(case, peers))
     if arguments.format == "json":
-        print(_json(arguments, found, 0 if late is None else late[0]))
+        print(_json(arguments, found, 0 if late is None else late[0], recording.health()))
     else:
         _print(arguments, found)
+        for line in health_lines(recording.health()):
+            print(line)
         if late is not None:
             print(f"  left out as `rvmon run` does, later than `max delay`: {_late_text(*late)}")
     judged = all(crossing.report is not None for crossing in found)
@@ -125,7 +132,9 @@ def _peers(python: str) -> Iterator[tuple[str, Peer]]:
             yield name, Peer(Path(python), name)
 
 
-def _json(arguments: argparse.Namespace, found: Sequence[Crossing], late: int) -> str:
+def _json(
+    arguments: argparse.Namespace, found: Sequence[Crossing], late: int, health: Sequence[Health]
+) -> str:
     import msgspec
 
     document = {
@@ -146,6 +155,7 @@ def _json(arguments: argparse.Namespace, found: Sequence[Crossing], late: int) -
             }
             for crossing in found
         },
+        "health": health,
     }
     return msgspec.json.encode(document).decode()
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rvmon.monitor.compiled import CompiledSpec
     from rvmon.session import Spec
 
-_CODE = re.compile(r"RV\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)
+_CODE = re.compile(r"(RV|TA)\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)
 """A diagnostic's code, in words, or the word for all."""
 
 
@@ -46,9 +46,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Explain, and return the exit code."""
     if not Path(arguments.subject).exists() and _CODE.fullmatch(arguments.subject):
         from rvmon.explain.codes import code_list, page_of
+        from rvmon.explain.model_codes import model_page
 
-        listed = arguments.subject == "codes"
-        print(code_list() if listed else page_of(arguments.subject), end="")
+        code = arguments.subject
+        print(code_list() if code == "codes" else model_page(code) or page_of(code), end="")
         return 0
     from rvmon.cli.constants import constants_of
     from rvmon.loading import load

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from rvmon.analysis.rules import analysis_rules
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.errors import SpecError, UnknownNameError
+from rvmon.explain.model_codes import model_codes
 from rvmon.spec.compile import compile_text
 from rvmon.spec.pages import rule_page
 from rvmon.spec.rules.registry import all_rules
@@ -56,12 +57,16 @@ def page_of(code: str) -> str:
 
 
 def code_list() -> str:
-    """All codes with their names, a line each."""
-    return "\n".join(f"{rule.code}  {rule.name}" for rule in every_rule().values()) + "\n"
+    """All codes with their names, a line each; those of models follow."""
+    own = {rule.code: rule.name for rule in every_rule().values()}
+    return "".join(f"{code}  {name}\n" for code, name in {**own, **model_codes()}.items())
 
 
 def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
-    shown = [f"  {rule.code}  {rule.name}" for rule in _alike(code, rules)]
+    if code.upper().startswith("TA"):
+        shown = [f"  {known}  {name}" for known, name in model_codes().items()]
+    else:
+        shown = [f"  {rule.code}  {rule.name}" for rule in _alike(code, rules)]
     return "\n".join(
         (f"error: no diagnostic `{code}`; alike are", *shown, "`rvmon explain codes` lists all")
     )

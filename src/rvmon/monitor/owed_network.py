@@ -17,7 +17,7 @@ from rvmon.formula.core import (
     Since,
     Until,
 )
-from rvmon.monitor.wording import Words
+from rvmon.monitor.wording import Words, all_of
 from rvmon.trace.time import format_ticks
 
 
@@ -48,9 +48,10 @@ class _Owing:
             case Constant() | Literal():
                 return ""
             case And(args=args):
-                return _joined(" and ", [self.at(arg, position) for arg in args])
+                return all_of([self.at(arg, position) for arg in args])
             case Or(args=args):
-                return _joined(", or ", [self.at(arg, position) for arg in args])
+                found = dict.fromkeys(self.at(arg, position) for arg in args)
+                return ", or ".join(part for part in found if part)
             case Next() | Previous() | Since():
                 return f"`{self.words.text(core)}`"
             case Until(high=high):
@@ -58,7 +59,7 @@ class _Owing:
             case Release(right=right, low=low, high=high):
                 spawned = self._spawned(right, position - (-low // self.gap))
                 own = self._own(core, "to", position, high)
-                return _joined(" and ", [spawned, own])
+                return all_of([spawned, own])
             case _:
                 assert_never(core)
 
@@ -74,7 +75,3 @@ class _Owing:
             return ""
         position = self.network.first_unknown(core, first, self.limit)
         return "" if position is None else self.at(core, position)
-
-
-def _joined(word: str, parts: list[str]) -> str:
-    return word.join(dict.fromkeys(part for part in parts if part))

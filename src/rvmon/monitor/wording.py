@@ -142,7 +142,7 @@ class Words:
                 self._with_deadline(node, anchors, clock)
                 for node, clock in sorted(clause, key=lambda atom: (atom[1], atom[0].id))
             ]
-            clauses.append(" and ".join(dict.fromkeys(parts)))
+            clauses.append(all_of(parts))
         return ", or ".join(dict.fromkeys(clauses))
 
     def told(self, residual: Residual) -> tuple[str, int | None]:
@@ -157,6 +157,17 @@ class Words:
             return text
         last = anchors[clock] + node.high
         return f"{text} {'by' if isinstance(node, Until) else 'to'} {format_ticks(last)}"
+
+
+def all_of(parts: Sequence[str]) -> str:
+    """Parts that are all owed: none twice, nor without its deadline where it stands with one.
+
+    >>> all_of(["`p`", "`q` by 7 s", "`q`"])
+    '`p` and `q` by 7 s'
+    """
+    kept = dict.fromkeys(part for part in parts if part)
+    dated = tuple(part.rpartition(word)[0] for part in kept for word in (" by ", " to "))
+    return " and ".join(part for part in kept if part not in dated)
 
 
 def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool] | None:

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.report.forecast import forecast_sentence
-from rvmon.trace.health import HealthKind
+from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.lazy import LazyAttempts
@@ -61,7 +61,7 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")
     if report.goals:
         console.print(_goals_text(report.goals))
-    for line in _health_lines(report):
+    for line in health_lines(report.health):
         console.print(line)
 
 
@@ -160,11 +160,12 @@ def _runs_table(reports: Sequence[Report]) -> Table:
     return table
 
 
-def _health_lines(report: Report) -> Iterator[str]:
-    if report.health:
+def health_lines(found: Sequence[Health]) -> Iterator[str]:
+    """What was not known of the input, or noticed while reading it, a line each."""
+    if found:
         yield "input health:"
-    ignored = [health for health in report.health if health.kind is HealthKind.IGNORED]
-    for health in report.health:
+    ignored = [health for health in found if health.kind is HealthKind.IGNORED]
+    for health in found:
         if health in ignored:
             continue
         first = "" if health.first is None else f", first at {format_ticks(health.first)}"

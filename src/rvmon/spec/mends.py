@@ -8,6 +8,7 @@ import lark
 
 from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Span
+from rvmon.spec.units import unit_table
 from rvmon.spec.words import ITEM_WORDS, RESERVED
 
 _MEND = {
@@ -115,6 +116,10 @@ def _structure_mend(found: str, accepted: set[str], before: str) -> str:
         return 'its name comes first: `requirement R1 "text"`'
     if "COLON" in accepted and re.match(r"signal\b", before):
         return "a signal has a type, as in `signal x : real [m]`"
+    if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
+        return f"a unit stands in brackets: `[{found}]`"
+    if re.match(r"[\d.]+\s*[^\W\d]+$", found) and re.search(r"(?<![\w.])after[ \t]+$", before):
+        return f"for what is to hold then write `eventually[{found}, {found}] (…)`"
     if accepted == {"COLON"} and re.match(r"event\b", before):
         return "a field has a type, as in `event pick(id: int)`"
     return ""

@@ -116,10 +116,17 @@ def _mend(text: str, offset: int) -> str:
     for operator in _PATH.finditer(text):
         if operator.start() <= offset < operator.end():
             return f"inside a formula it takes brackets: ({operator[0]} …)"
+    word = next((one for one in _WORD.finditer(text) if one.start() <= offset < one.end()), None)
+    if word is not None and (text[offset] == "-" or word[0][0].isdigit()):
+        name = re.sub(r"\W", "_", word[0]).lstrip("0123456789_")
+        return f"a name is letters, digits and `_`, first a letter: `{name}`" if name else ""
     return ""
 
 
 _PATH = re.compile(r"[AE](?:<>|\[\])")
+_WORD = re.compile(r"[^\W_][\w-]*")
+"""What was meant for a name."""
+
 _OPERATORS = {
     "AND", "OR", "IMPLY", "EQUALITY", "RELATION", "PLUS", "MINUS", "FACTOR", "LSQB", "DOT",
     "RECEIVE", "__ANON_2", "__ANON_3",

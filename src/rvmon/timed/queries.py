@@ -21,4 +21,9 @@ def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]
             raise model_error("TA020", "the model has no query", None, mend)
         return list(network.queries)
     by_id = {query.id: query for query in network.queries if query.id}
+    for text in asked:
+        parts = [part.strip() for part in text.split(",")]
+        if len(parts) > 1 and all(part in by_id for part in parts):
+            several = " ".join(f"--query {part}" for part in parts)
+            raise model_error("TA020", f"`{text}` is no query", None, f"write {several}")
     return [by_id.get(text) or query_on(network, text) for text in asked]

@@ -78,7 +78,9 @@ def whole_ticks(t: Any) -> int:
 def _plain(seconds: Any) -> float | Fraction:
     """What is no plain number as one, if it is a number."""
     try:
-        if not isinstance(seconds, str):
+        # NumPy's dates and durations would give a number of some unit of theirs.
+        kind = getattr(getattr(seconds, "dtype", None), "kind", "")
+        if not isinstance(seconds, str) and kind not in ("m", "M"):
             plain = seconds.item() if hasattr(seconds, "item") else seconds
             return plain if isinstance(plain, float | int) else Fraction(plain)
     except (TypeError, ValueError, OverflowError):

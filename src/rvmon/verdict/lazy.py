@@ -45,4 +45,5 @@ class LazyAttempts(Sequence[Attempt]):
 
     def __repr__(self) -> str:
         first = ", ".join([*map(repr, self[:_SHOWN]), *["…"][: len(self) - _SHOWN]])
-        return f"<{len(self)} attempts: {first}>"
+        word = "attempt" if len(self) == 1 else "attempts"
+        return f"<{len(self)} {word}: {first}>"

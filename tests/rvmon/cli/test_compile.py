@@ -67,3 +67,13 @@ def test_costs(spec, capsys):
     assert "2 s" in first
     assert "in runs: 20 bytes each" in first
     assert "any time" in second
+
+
+@pytest.mark.parametrize("form", ["dot", "hoa", "costs", "json"])
+def test_a_spec_without_requirements_has_no_automata(tmp_path, capsys, form):
+    """That is said, and nothing is printed."""
+    (tmp_path / "door.rv").write_text(SPEC.partition("requirement")[0])
+    assert main(["compile", str(tmp_path / "door.rv"), "--to", form]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert "no requirement" in shown.err

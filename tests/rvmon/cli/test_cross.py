@@ -127,3 +127,20 @@ def test_what_comes_too_late_is_left_out_as_run_does(tmp_path, capsys):
     assert crossed["left_out"] == 1
     assert main(["cross", *files]) == 0
     assert "later than `max delay`: the sample at 3 s" in capsys.readouterr().out
+
+
+def test_undeclared_columns_are_named(files, capsys, tmp_path):
+    """As by `rvmon run`: in the text and in the JSON."""
+    (tmp_path / "monday.csv").write_text(TRACE.replace("\n", ",7\n").replace(",7", ",extra", 1))
+    assert main(["cross", *files, "--only", "D1"]) == 0
+    assert "ignored, not declared in the spec: extra" in capsys.readouterr().out
+    assert main(["cross", *files, "--only", "D1", "--format", "json"]) == 0
+    [found] = json.loads(capsys.readouterr().out)["health"]
+    assert (found["kind"], found["name"]) == ("ignored", "extra")
+
+
+def test_a_spec_without_requirements_is_an_error(files, capsys, tmp_path):
+    """Nothing to compare: exit 2, with the reason."""
+    (tmp_path / "door.rv").write_text(SPEC.partition("requirement")[0])
+    assert main(["cross", *files]) == 2
+    assert "no requirement" in capsys.readouterr().err

@@ -217,3 +217,9 @@ def test_an_export_says_which_queries_it_leaves_out(tmp_path, capsys):
     assert line == (
         "warning: not a query of UPPAAL, left out: `soon`: robot.docked -->[<=20] charging"
     )
+
+
+def test_several_queries_in_one_word(capsys):
+    """Each has its own option."""
+    assert main(["verify", "examples/models/fischer.ta", "--query", "exclusion,alive"]) == 2
+    assert "write --query exclusion --query alive" in capsys.readouterr().err

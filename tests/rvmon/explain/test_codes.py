@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from rvmon.cli import main
 from rvmon.errors import UnknownNameError
 from rvmon.explain.codes import code_list, every_rule, findings_about, page_of
+from rvmon.explain.model_codes import model_codes, model_page
 from rvmon.spec.pages import index_page, message_about
 
 ROOT = Path(__file__).parents[3]
@@ -81,7 +83,23 @@ def test_message_says_how_to_mend(code):
 def test_codes_in_words_and_all():
     """A page is found by its code in words too, in any case; all codes are listed."""
     assert page_of("Unknown-Signal") == page_of("rv012") == page_of("RV012")
-    assert [line.split()[0] for line in code_list().splitlines()] == list(RULES)
+    codes = [line.split()[0] for line in code_list().splitlines()]
+    assert codes == [*RULES, *model_codes()]
+
+
+@pytest.mark.parametrize("code", list(model_codes()))
+def test_codes_of_models_have_a_page(code, capsys):
+    """Each by its code and in words, also from the command line."""
+    assert main(["explain", code]) == 0
+    shown = capsys.readouterr().out
+    assert shown == model_page(model_codes()[code])
+    assert len(shown.splitlines()[2]) > 20
+
+
+def test_an_unknown_code_of_a_model(capsys):
+    """Those that there are are listed."""
+    assert main(["explain", "TA099"]) == 2
+    assert "TA008  diagonal-constraint" in capsys.readouterr().err
 
 
 def test_unknown_code():

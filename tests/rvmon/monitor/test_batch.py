@@ -6,6 +6,7 @@ import pytest
 from pyarrow import parquet
 
 import rvmon
+from rvmon.errors import TraceError
 
 BOUND = "spec s\nsignal x : real\nrequirement R1\n  always x < 5\n"
 LIMIT = 2**62
@@ -127,6 +128,17 @@ def test_dates_are_no_instants(time, unit, engine, tmp_path):
     table = {"t": [0, 1], "x": np.array([3, 4], f"datetime64[{unit}]")}
     for trace in (table, pyarrow.table(table)):
         assert "`x`: expected a number, found '1970" in told(spec, trace, "t", engine)
+
+
+@pytest.mark.parametrize("kind", ["datetime64", "timedelta64"])
+def test_dates_are_no_instants_of_pairs(kind):
+    """Nor of pairs, or of a step."""
+    spec = rvmon.loads(BOUND)
+    when = np.array([3], f"{kind}[ns]")[0]
+    with pytest.raises(TraceError, match="give seconds as a number"):
+        spec.evaluate([(when, {"x": 1.0})])
+    with pytest.raises(TraceError, match="give seconds as a number"):
+        spec.monitor().step(when, {"x": 1.0})
 
 
 def test_dates_that_are_not_declared_do_not_matter():

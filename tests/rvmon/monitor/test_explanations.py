@@ -161,3 +161,14 @@ def test_captured_values_are_recorded():
         [(0, {"go": True, "distance": 0.5}), (1, {"distance": 0.7})],
     )
     assert (attempt.captured, attempt.verdict.value) == ({"d": 0.5}, "P")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_is_owed_is_told_once(engine):
+    """What is owed at each position, and owed now, stands once, with its deadline."""
+    text = "spec s\nsignal p, q : bool\nrequirement R1\n  whenever p\n  then within 5 s q\n"
+    monitor = rvmon.loads(text).monitor(engine=engine)
+    monitor.step(0, {"p": False, "q": False})
+    monitor.step(2, {"p": True})
+    [owed] = monitor.open
+    assert owed.owed == "`within 5 s q` by 7 s"

@@ -43,6 +43,7 @@ def first_finding(text):
         ("within 3 s relesed", "did you mean `released`?"),
         ("within 3 s xyzzy", "declare it, as `signal xyzzy : bool` or `event xyzzy`"),
         ("within 3 s released asked", "an operator is missing before `asked`"),
+        ("after 2 s released", "write `eventually[2 s, 2 s] (…)`"),
     ],
 )
 def test_what_is_owed(owed, mend):
@@ -128,3 +129,9 @@ def test_never(formula):
     assert first_finding(f"requirement R\n  {formula}\n").help == (
         "for `never` write `always not (…)`"
     )
+
+
+@pytest.mark.parametrize("item", ["signal x : real m\n", "event hit(force: real m)\n"])
+def test_a_unit_without_brackets(item):
+    """The unit of a type is told from its other parts by brackets."""
+    assert "a unit stands in brackets: `[m]`" in first_finding(item).help

@@ -306,3 +306,16 @@ def test_a_division_by_zero_has_its_place(guard):
     (found,) = caught.value.diagnostics
     assert found.code == "TA007"
     assert found.spans[0].span.text == guard.removesuffix(" > 0")
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("automaton my-name { location l start l }", "my_name"),
+        ("automaton a { location l-1 start l }", "l_1"),
+        ("automaton a { location 1st start l }", "st"),
+    ],
+)
+def test_what_is_no_name_is_mended(text, name):
+    """Dashes and digits in front are no part of names; one that would do is given."""
+    assert f"first a letter: `{name}`" in one(text).help

@@ -150,7 +150,7 @@ def test_many_attempts_are_shown_in_short():
     few = rvmon.loads("spec s\nsignal speed : real\nrequirement R1\n  always speed < 2\n")
     columns = recording(3)
     attempts = few.evaluate(columns, time="t_ns").attempts
-    assert repr(attempts) == f"<1 attempts: {attempts[0]!r}>"
+    assert repr(attempts) == f"<1 attempt: {attempts[0]!r}>"
 
 
 UNKNOWN = {
