@@ -165,7 +165,9 @@ class Spec:
         end = None if until is None else ticks_of_seconds(until)
         if chosen == () and engine == "c":
             engine = "auto"  # nothing to compile
-        report = self._evaluate_arrays(trace, time, engine, chosen, end)
+        from rvmon.monitor.batch_table import evaluate_table
+
+        report = evaluate_table(self._compiled, trace, time, only=chosen, engine=engine, until=end)
         if report is not None:
             return report
         if isinstance(trace, str | Path):
@@ -264,36 +266,6 @@ class Spec:
             ignored=Counter() if ignored is None else ignored,
         )
 
-    def _evaluate_arrays(
-        self, trace: Any, time: str, engine: str, only: tuple[str, ...] | None, until: int | None
-    ) -> Report | None:
-        """The fast way for NumPy arrays and Arrow tables; `None` where it does not lead."""
-        if not (hasattr(trace, "column_names") or isinstance(trace, Mapping)):
-            return None
-        from rvmon.monitor.batch import FEW_ROWS, arrays_of, evaluate_plain, in_order
-
-        arrays = arrays_of(trace, self.checked, time)
-        if arrays is None:
-            return None
-        times, columns = arrays
-        if engine == "c":
-            from rvmon.monitor.batch_c import evaluate_c_blocks
-
-            return evaluate_c_blocks(
-                self._compiled, list(columns), [(times, columns)], only=only, until=until
-            )
-        if not in_order(times):
-            return None
-        return evaluate_plain(
-            self._compiled,
-            list(columns),
-            lambda: [(times, columns)],
-            only=only,
-            engine=engine,
-            until=until,
-            short=len(times) < FEW_ROWS,
-        )
-
     def robustness(
         self,
         trace: Any,
@@ -370,20 +342,9 @@ class Spec:
         Raises:
             TraceError: the trace cannot be read.
         """
-        if isinstance(trace, str | Path):
-            from rvmon.readers.recording import FileRecording
+        from rvmon.readers.any_trace import recording_of
 
-            return FileRecording(trace, self.schema, ordered=self.checked.max_delay is None)
-        from rvmon.readers.columns import trace_of_columns
-        from rvmon.readers.pairs import pairs_of
-        from rvmon.trace.sample import Sample, Trace
-
-        if hasattr(trace, "names") and hasattr(trace, "end"):
-            recording: Recording = trace
-            return recording
-        if isinstance(trace, Mapping) or hasattr(trace, "column_names"):
-            return trace_of_columns(trace, self.schema, time)
-        return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in pairs_of(trace)))
+        return recording_of(trace, self.schema, time=time, ordered=self.checked.max_delay is None)
 
 
 def _expect_engine(name: str) -> None:
