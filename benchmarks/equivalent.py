@@ -92,5 +92,30 @@ EQUIVALENT = {
     "judge.py off by one: `t + 1` => `t`": (
         "time is let pass an instant earlier, too, and `next_due` may name an instant too early"
     ),
+    "network_judge.py comparison: `span < self.plan.settles` => `span <= self.plan.settles`": (
+        "what is not worked out ahead is worked out when time comes there"
+    ),
+    "network_judge.py swapped branches: `2 * (t + span) if span < self.plan.settles else FOREVER` "
+    "=> `FOREVER if span < self.plan.settles else 2 * (t + span)`": (
+        "the same; and what is worked out far ahead is worked out again when the letter changes"
+    ),
+    "network.py swapped branches: `FAR if self.ahead >= FOREVER else (self.ahead - due) // slope` "
+    "=> `(self.ahead - due) // slope if self.ahead >= FOREVER else FAR`": (
+        "more is worked out ahead than is asked for"
+    ),
+    "python_visit.py and/or: `name not in given and re.search(f'(?<![\\\\w.]){name}\\\\b', text)` "
+    "=> `name not in given or re.search(f'(?<![\\\\w.]){name}\\\\b', text)`": (
+        "arrays are fetched that are at hand, or that nobody reads"
+    ),
+    "python_values.py and/or: `state.leaf is not None and self._is_instant(state.leaf)` => "
+    "`state.leaf is not None or self._is_instant(state.leaf)`": (
+        "leaves are looked at when a value comes that would be worked out with the others anyway"
+    ),
+    "python_intake.py off by one: `number + 1` => `number`": (
+        "only a short cut to what a sample does that brings several values"
+    ),
+    "python_nodes.py dropped operand: `right == '2' or left == '0'` => `left == '0'`": (
+        "the greater of true and anything is written out"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""

@@ -68,11 +68,14 @@ def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
 
 
 def span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
-    """The indices of the pieces between two positions: the first, and that behind the last."""
+    """The indices of the pieces between two positions: the first, and that behind the last.
+
+    There are none if the positions are the wrong way round, also where one piece holds both.
+    """
     start = max(bisect_right(pieces, left, key=_left) - 1, 0)
     if start < len(pieces) and pieces[start][1] < left:
         start += 1
-    return start, max(bisect_right(pieces, right, key=_left), start)
+    return start, max(bisect_right(pieces, right, key=_left), start) if left <= right else start
 
 
 def without(pieces: Pieces, known: Pieces) -> list[Piece]:

@@ -52,7 +52,8 @@ def test_points(seed):
     """Minima, maxima, shifts and limits are what they are at each position."""
     dice = random.Random(seed)
     one, other = random_known(dice)[0], random_known(dice)[0]
-    offset, first, last = dice.randint(-5, 5), dice.randint(0, 10), dice.randint(8, 20)
+    offset, first, last = dice.randint(-5, 5), dice.randint(0, 10), dice.randint(4, 20)
+    assert all(left <= right for left, right, _, _ in clip(one, first, last))
     for i in range(-8, LAST + 9):
         assert at(soonest(one, other), i) == min(at(one, i), at(other, i))
         assert at(latest(one, other), i) == max(at(one, i), at(other, i))

@@ -89,6 +89,18 @@ CASES = {
         [(0, {"p": True, "q": False}), (1, {"p": False, "q": True}), (2, {"e": True}), (5, {})],
         9,
     ),
+    "samples are farther apart than the shorter of two windows is long": (
+        "sampled",
+        "upon e\n  then immediately once[1 ns, 2 ns] p and once[1 ns, 9 ns] q",
+        [
+            (0, {"p": True, "q": True}),
+            (4, {}),
+            (8, {"e": True}),
+            (9, {"e": True}),
+            (13, {"e": True}),
+        ],
+        20,
+    ),
     "what has held for less than its duration since the start is not held, ahead neither": (
         "held",
         "upon e\n  then held(F[0 ns, 1 ns] p, 3 ns)",
@@ -146,6 +158,32 @@ def test_time_comes_to_a_tick_of_the_clock_and_passes_it(form, steps):
     assert not disagreements(case, Maker(form), online=True)
 
 
+@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+def test_one_deadline_after_the_other_passes_without_a_sample(form):
+    """Each attempt is decided by the `advance` that passes its deadline."""
+    spec = rvmon.loads(
+        "spec s\ntime sampled\nsignal p : bool\nevent e\n"
+        "requirement R1\n  upon e\n  then within 3 ns p\n"
+    )
+    told = (Sample(0, {"p": False, "e": True}), Sample(2, {"e": True}), 4, 6, 8)
+    assert not disagreements(Case(spec.checked, told, 20), Maker(form), online=True)
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+@pytest.mark.parametrize("count", [0, 65])
+def test_no_source_and_many(form, count):
+    """What no source feeds is unknown; samples may hold more names than are looked at in a row."""
+    names = [f"p{index}" for index in range(65)]
+    spec = rvmon.loads(
+        f"spec s\nsignal {', '.join(names)} : bool\n"
+        f"requirement R1\n  upon start\n  then within 3 ns ({' and '.join(names)})\n"
+    )
+    sources = names[:count]
+    told = [Sample(t, dict.fromkeys(sources, t == 2)) for t in (0, 2)]
+    case = Case(spec.checked, (*told, 8), 9, frozenset(sources))
+    assert not disagreements(case, Maker(form), online=True)
+
+
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
 @pytest.mark.parametrize("sources", ["g", "h", "gh", ""])
@@ -175,6 +213,7 @@ def test_two_events_of_which_one_has_no_source(form, time, sources):
         ("sampled every 1 ns", "upon e\n  then F[1 ns, inf) (always[1 ns, 2 ns] start)", [0, 3, 5]),
         ("held", "whenever true\n  then within 3 ns e", [0, 1, 2]),
         ("sampled", "whenever p\n  then always[1 ns, 1 ns] e", [0, 4, 20]),
+        ("sampled every 1 ns", "upon q\n  then F[1 ns, 1 ns] (H[2 ns, 2 ns] (F not q))", [0, 1]),
     ],
 )
 def test_what_is_owed_is_open(form, time, requirement, samples):
