@@ -12,11 +12,11 @@ import json
 import os
 import stat
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from rvmon import __version__
-from rvmon.cache import cache_folder, is_ours, keep, read_kept
+from rvmon.cache import cache_folder, files_told, is_ours, keep, read_kept
 
 _VALUED = ("--only", "--const", "--engine", "--format")
 _JUDGED = (0, 1)
@@ -42,7 +42,8 @@ def judged_at_once(words: Sequence[str]) -> int | None:
         return None
     if "import" in text:  # of what is imported, too, it would depend
         return None
-    said = [__version__, *_sources(), spec, text, options, os.environ.get("CC", "")]
+    rvmon = os.path.dirname(os.path.dirname(__file__))
+    said = [__version__, *files_told(rvmon), spec, text, options, os.environ.get("CC", "")]
     key = hashlib.sha256(json.dumps(said).encode()).hexdigest()
     found = _known(folder / f"run-{key}.json") or _made(folder / f"run-{key}.json", spec, options)
     return None if found is None else _judged(*found, trace)
@@ -77,19 +78,6 @@ def _is_plain_file(trace: str) -> bool:
         return stat.S_ISREG(os.stat(trace).st_mode)
     except OSError:
         return False
-
-
-def _sources() -> Iterator[tuple[str, int, int]]:
-    """What tells this rvmon from another: its files, by size and time."""
-    folders = [os.path.dirname(os.path.dirname(__file__))]
-    for folder in folders:  # grows
-        with os.scandir(folder) as entries:
-            for entry in sorted(entries, key=lambda one: one.name):
-                if entry.is_dir():
-                    folders += [entry.path] if entry.name != "__pycache__" else []
-                else:
-                    found = entry.stat()
-                    yield entry.path, found.st_size, found.st_mtime_ns
 
 
 def _known(path: Path) -> tuple[Path, str] | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
-from rvmon.verdict.attempt_json import seconds
+from rvmon.verdict.attempt_json import encoded, seconds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -15,8 +15,11 @@ if TYPE_CHECKING:
 _EXACT = 1 << 53
 """Integers below this are floats, too."""
 
-_LEAST = 1_000
-"""Ticks from here on are written in seconds."""
+_LEAST = 10_000
+"""Ticks from here on are written in seconds, and by JSON without a power of ten."""
+
+_MOST = TICKS_PER_SECOND << 23
+"""Below this, neighbouring ticks are more apart than neighbouring floats of seconds."""
 
 
 def seconds_of(instants: NDArray[np.int64], origin: int) -> list[float]:
@@ -31,10 +34,20 @@ def seconds_of(instants: NDArray[np.int64], origin: int) -> list[float]:
 
 def formatted(ticks: NDArray[np.int64]) -> list[str]:
     """Instants or durations as `format_ticks` writes them."""
-    if not len(ticks) or ticks.min() < _LEAST:
-        return list(map(format_ticks, ticks.tolist()))
-    whole, rest = np.divmod(ticks, TICKS_PER_SECOND)
-    return [
-        f"{count}.{part:09d}".rstrip("0").rstrip(".") + " s"
-        for count, part in zip(whole.tolist(), rest.tolist(), strict=True)
-    ]
+    plain = (ticks >= _LEAST) & (ticks < _MOST)
+    texts = np.empty(len(ticks), object)
+    texts[plain] = _decimals(ticks[plain])
+    texts[~plain] = list(map(format_ticks, ticks[~plain].tolist()))
+    found: list[str] = texts.tolist()
+    return found
+
+
+def _decimals(ticks: NDArray[np.int64]) -> list[str]:
+    """The same, of ticks of which JSON writes the shortest decimal, without a power of ten.
+
+    That is the one which is nearest to the quotient: here no other is as near as the exact one.
+    """
+    if not len(ticks):
+        return []
+    text = encoded((ticks / TICKS_PER_SECOND).tolist())[1:-1]
+    return f"{text},".replace(".0,", ",").replace(",", " s,")[:-1].split(",")

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cache import cache_folder, keep, read_kept
+from rvmon.cache import cache_folder, files_told, keep, read_kept
 from rvmon.spec.checked import CheckedSpec
 from rvmon.spec.stored import restored, stored
 
@@ -35,7 +35,7 @@ def compile_kept(
     folder = None if "import" in text else cache_folder()
     if folder is None:
         return _compiled(text, name, constants, directory)
-    said = json.dumps([_compiler(), name, text, sorted((constants or {}).items())])
+    said = json.dumps([*files_told(str(_HERE)), name, text, sorted((constants or {}).items())])
     path = folder / f"spec-{hashlib.sha256(said.encode()).hexdigest()}.json"
     found = _read(path)
     if found is None:
@@ -50,12 +50,6 @@ def _compiled(
     from rvmon.spec.compile import compile_text
 
     return compile_text(text, name=name, constants=constants, directory=directory)
-
-
-def _compiler() -> str:
-    """What tells one compiler from another: a hash of its files."""
-    files = sorted([*_HERE.glob("*.py"), *_HERE.glob("*.lark"), *_HERE.glob("rules/*.py")])
-    return hashlib.sha256(b"".join(one.read_bytes() for one in files)).hexdigest()
 
 
 def _read(path: Path) -> Compiled | None:

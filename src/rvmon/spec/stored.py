@@ -14,22 +14,33 @@ from typing import Any
 
 from rvmon.diagnostics import diagnostic, span
 from rvmon.diagnostics.span import Source
-from rvmon.spec import checked, ctl, goals
+from rvmon.spec import checked
 from rvmon.trace import schema
 
-_MODULES = (checked, ctl, goals, span, diagnostic, schema)
+
+def _class_named(name: str) -> type | None:
+    """The class that a specification or its warnings are made of; `None` if there is none."""
+    return _classes().get(name) or _rarer_classes().get(name)
 
 
 @cache
 def _classes() -> Mapping[str, type]:
-    """The classes that a specification and its warnings are made of, by name."""
-    return {one.__name__: one for module in _MODULES for one in _own_classes(module)}
+    return dict(_own_classes(checked, span, diagnostic, schema))
 
 
-def _own_classes(module: ModuleType) -> Iterator[type]:
-    for one in vars(module).values():
-        if isinstance(one, type) and one.__module__ == module.__name__:
-            yield one
+@cache
+def _rarer_classes() -> Mapping[str, type]:
+    """Those of properties and goals, which few specifications have."""
+    from rvmon.spec import ctl, goals
+
+    return dict(_own_classes(ctl, goals))
+
+
+def _own_classes(*modules: ModuleType) -> Iterator[tuple[str, type]]:
+    for module in modules:
+        for name, one in vars(module).items():
+            if isinstance(one, type) and one.__module__ == module.__name__:
+                yield name, one
 
 
 def stored(value: Any) -> Any:
@@ -53,9 +64,9 @@ def _stored(value: Any, sources: dict[int, int]) -> Any:
             return ["same", sources[id(value)]]
         sources[id(value)] = len(sources)
     name = type(value).__name__
-    if isinstance(value, Enum) and _classes().get(name) is type(value):
+    if isinstance(value, Enum) and _class_named(name) is type(value):
         return [name, value.name]
-    if is_dataclass(value) and _classes().get(name) is type(value):
+    if is_dataclass(value) and _class_named(name) is type(value):
         return [name, *(_stored(getattr(value, one.name), sources) for one in fields(value))]
     if isinstance(value, Mapping):
         pairs = ([_stored(key, sources), _stored(own, sources)] for key, own in value.items())
@@ -87,7 +98,9 @@ def _restored(data: Any, sources: list[Source]) -> Any:
             return tuple([_restored(one, sources) for one in rest])
         case "frozenset":
             return frozenset(_restored(one, sources) for one in rest)
-    class_ = _classes()[name]
+    class_ = _class_named(name)
+    if class_ is None:
+        raise LookupError(f"no class `{name}`")
     if issubclass(class_, Enum):
         return class_[rest[0]]
     made = class_(*[_restored(one, sources) for one in rest])

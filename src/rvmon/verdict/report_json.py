@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -37,23 +37,29 @@ def encode(report: Report) -> str:
     attempts: dict[str, list[str]] = {name: [] for name in report.verdicts}
     for name, text in _texts(report):
         attempts[name].append(text)
-    document = {
-        "trace": report.trace,
-        "origin": report.origin,
-        "end": report.end,
-        "requirements": {
-            name: {
-                "verdict": verdict,
-                "attempts": msgspec.Raw(f"[{','.join(attempts[name])}]".encode()),
-                "counts": report.counts[name],
-                **({"nearest_miss": report.misses[name]} if name in report.misses else {}),
-            }
-            for name, verdict in report.verdicts.items()
-        },
-        "health": report.health,
-        **({"goals": report.goals} if report.goals else {}),
-    }
-    return encoded(document)
+    # Not encoded as one document: the attempts may be many megabytes, which are copied once.
+    return "".join(_document(report, attempts))
+
+
+def _document(report: Report, attempts: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    """The parts of a report's text, in order."""
+    head = {"trace": report.trace, "origin": report.origin, "end": report.end}
+    yield f'{encoded(head)[:-1]},"requirements":{{'
+    for number, (name, verdict) in enumerate(report.verdicts.items()):
+        comma = "," if number else ""
+        yield f'{comma}{encoded(name)}:{{"verdict":{encoded(verdict)},"attempts":['
+        for place, text in enumerate(attempts[name]):
+            if place:
+                yield ","
+            yield text
+        rest: dict[str, object] = {"counts": report.counts[name]}
+        if name in report.misses:
+            rest["nearest_miss"] = report.misses[name]
+        yield f"],{encoded(rest)[1:]}"
+    tail: dict[str, object] = {"health": report.health}
+    if report.goals:
+        tail["goals"] = report.goals
+    yield f"}},{encoded(tail)[1:]}"
 
 
 def _texts(report: Report) -> Iterable[tuple[str, str]]:
