@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from rvmon.dataflow.evaluate import evaluated
+from rvmon.dataflow.evaluate import Range, evaluated
 from rvmon.dataflow.network import Network
-from rvmon.dataflow.nodes import Leaf, Sweep, operands_of
+from rvmon.dataflow.nodes import Leaf, Shift, Sweep, Window, operands_of
 from rvmon.dataflow.pieces import FAR, Pieces, clip, soonest, stamp, up_to
+from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.sweep import Carried, Known
 
 
@@ -32,21 +33,66 @@ class Moment:
         return known_alone(self.network, self.network.grown)
 
 
-def known_alone(network: Network, limit: int) -> Known:
+def known_alone(network: Network, limit: int, on: Range = (-FAR, FAR)) -> Known:
     """What comes to be known of the formula if no position comes behind a stamp.
+
+    Args:
+        network: what is known.
+        limit: the stamp.
+        on: the positions that are asked for.
 
     Source: SEMANTICS 2, Truth after a prefix.
     """
-    ahead = network.copy()
-    ahead.positions.end((limit - 1) // ahead.positions.slope)
+    positions = network.positions.copy()
+    positions.end((limit - 1) // positions.slope)
+    asked = _asked(network, positions, limit, on)
     known: list[Known] = []
-    for place, node in enumerate(ahead.plan.nodes):
-        true, false = (up_to(pieces, limit) for pieces in ahead.known[place])
-        if not isinstance(node, Leaf):
-            found = _evaluated(ahead, place, [known[operand] for operand in operands_of(node)])
+    for place, node in enumerate(network.plan.nodes):
+        true, false = (up_to(clip(side, *asked[place]), limit) for side in network.known[place])
+        if not isinstance(node, Leaf) and asked[place][0] <= asked[place][1]:
+            operands = [known[operand] for operand in operands_of(node)]
+            found = _evaluated(network, positions, place, operands, asked[place])
             true, false = soonest(true, found[0]), soonest(false, found[1])
         known.append((true, false))
     return known[-1]
+
+
+def _asked(network: Network, positions: Positions, limit: int, on: Range) -> list[Range]:
+    """Per node, the integers that matter for the formula on a stretch."""
+    nodes = network.plan.nodes
+    asked: list[Range] = [(FAR, -FAR)] * len(nodes)
+    asked[-1] = on
+    for place in range(len(nodes) - 1, -1, -1):
+        node, (first, last) = nodes[place], asked[place]
+        if first > last:
+            continue
+        low = high = 0
+        if isinstance(node, Window):
+            low, high = node.low, node.high
+        elif isinstance(node, Shift):
+            low = high = node.offset
+        elif isinstance(node, Sweep) and node.future:
+            first, last = network.swept[place], max(last, network.swept[place])
+            cut = network.known[node.left][not node.dual]
+            last = _first_of(cut, positions, last, limit)
+        elif isinstance(node, Sweep):
+            first = network.swept[place]
+        first, last = max(first + low, -FAR), min(last + high, FAR)
+        for operand in operands_of(node):
+            its_first, its_last = asked[operand]
+            asked[operand] = min(first, its_first), max(last, its_last)
+        if isinstance(node, Sweep):
+            asked[place] = min(asked[place][0], first), max(asked[place][1], last)
+    return asked
+
+
+def _first_of(pieces: Pieces, positions: Positions, integer: int, limit: int) -> int:
+    """The first position from an integer on at which something is known at a stamp; or `FAR`."""
+    for left, right, at, slope in clip(pieces, integer):
+        position = positions.following(max(left, integer))
+        if position <= min(right, positions.last) and at + slope * position <= limit:
+            return position
+    return FAR
 
 
 def settled(alone: Known, position: int) -> tuple[int, bool] | None:
@@ -65,17 +111,21 @@ def settled(alone: Known, position: int) -> tuple[int, bool] | None:
     return None
 
 
-def _evaluated(network: Network, place: int, operands: list[Known]) -> Known:
-    node, pending = network.plan.nodes[place], network.pending[place]
+def _evaluated(
+    network: Network, positions: Positions, place: int, operands: list[Known], on: Range
+) -> Known:
+    node, first = network.plan.nodes[place], max(network.pending[place], on[0])
+    if first > on[1]:
+        return (), ()
     if not isinstance(node, Sweep):
-        return evaluated(node, operands, network.positions, (pending, FAR), None)
+        return evaluated(node, operands, positions, (first, on[1]), None)
     start = network.swept[place]
     edge: Carried = None if node.future else network.carried[place]
-    true, false = evaluated(node, operands, network.positions, (start, FAR), edge)
-    if node.future and pending < start:
+    true, false = evaluated(node, operands, positions, (start, max(on[1], start)), edge)
+    if node.future and first < start:
         # What lies between only leads on to `start`.
-        true, false = _led_on(true, pending, start), _led_on(false, pending, start)
-    return clip(true, pending), clip(false, pending)
+        true, false = _led_on(true, first, start), _led_on(false, first, start)
+    return clip(true, first), clip(false, first)
 
 
 def _led_on(pieces: Pieces, first: int, start: int) -> Pieces:

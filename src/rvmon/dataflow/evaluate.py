@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import assert_never
 
-from rvmon.dataflow.nodes import Junction, Leaf, Node, Shift, Sweep, Window
+from rvmon.dataflow.nodes import Junction, Node, Shift, Sweep, Window
 from rvmon.dataflow.pieces import (
+    EVER,
     FAR,
+    Pieces,
     all_of_window,
     clip,
     latest,
@@ -35,32 +36,44 @@ def evaluated(
         on: the stretch that is asked for.
         edge: of an `until` what is known of it just behind the stretch; of a `since`, just before.
     """
+    if isinstance(node, Junction):
+        return _junction(node, operands, on)
+    if isinstance(node, Sweep):
+        return _sweep(node, operands, positions, on, edge)
     first, last = on
-    match node:
-        case Leaf():
-            raise ValueError("leaves are read")
-        case Junction(every=every):
-            parts = [_turned(_clipped(operand, first, last), not every) for operand in operands]
-            true, false = parts[0]
-            for its_true, its_false in parts[1:]:
-                true, false = latest(true, its_true), soonest(false, its_false)
-            return _turned((true, false), not every)
-        case Window(every=every):
-            found = _window(node, _turned(operands[0], every), positions, on)
-            return _turned(_clipped(found, first, last), every)
-        case Shift(offset=offset):
-            true, false = _clipped(operands[0], first + offset, last + offset)
-            moved = shift(true, offset), shift(false, offset)
-            return _not_early(moved, positions) if offset < 0 else moved
-        case Sweep(dual=dual):
-            left, right = (_turned(operand, dual) for operand in operands)
-            stays = positions.besides(left[0], first, last), positions.only(left[1], first, last)
-            meets = positions.only(right[0], first, last), positions.besides(right[1], first, last)
-            around = None if edge is None else (edge[0] is not dual, edge[1])
-            sweep = until if node.future else since
-            return _turned(sweep(stays, meets, first, last, around), dual)
-        case _:
-            assert_never(node)
+    if isinstance(node, Window):
+        found = _window(node, _turned(operands[0], node.every), positions, on)
+        return _turned(_clipped(found, first, last), node.every)
+    if isinstance(node, Shift):
+        offset = node.offset
+        true, false = _clipped(operands[0], first + offset, last + offset)
+        moved = shift(true, offset), shift(false, offset)
+        return _not_early(moved, positions) if offset < 0 else moved
+    raise ValueError("leaves are read")
+
+
+def _junction(node: Junction, operands: Sequence[Known], on: Range) -> Known:
+    """All of the operands, or one of them."""
+    every = node.every
+    all_: Pieces = EVER
+    some: Pieces = ()
+    for operand in operands:
+        all_ = latest(all_, clip(operand[not every], *on))
+        some = soonest(some, clip(operand[every], *on))
+    return (all_, some) if every else (some, all_)
+
+
+def _sweep(
+    node: Sweep, operands: Sequence[Known], positions: Positions, on: Range, edge: Carried
+) -> Known:
+    """`until` or `since`."""
+    dual = node.dual
+    left, right = operands
+    stays = positions.besides(left[dual], *on), positions.only(left[not dual], *on)
+    meets = positions.only(right[dual], *on), positions.besides(right[not dual], *on)
+    around = None if edge is None else (edge[0] is not dual, edge[1])
+    sweep = until if node.future else since
+    return _turned(sweep(stays, meets, *on, around), dual)
 
 
 def _window(node: Window, operand: Known, positions: Positions, on: Range) -> Known:

@@ -15,6 +15,9 @@ from rvmon.formula.core import Core
 _FEW = 64
 """So many pieces are never tidied up."""
 
+_SELDOM = 4
+"""After so many positions it is looked what is still wanted."""
+
 
 class Knowledge:
     """What is known of the nodes of a network, and when.
@@ -48,6 +51,7 @@ class Knowledge:
         ]
         self._letter: Sequence[bool] = ()
         self._tidy = _FEW
+        self._visits = _SELDOM
 
     def copy(self) -> Self:
         """The same, independent from now on."""
@@ -61,6 +65,7 @@ class Knowledge:
         made.carried = list(self.carried)
         made._letter = self._letter
         made._tidy = self._tidy
+        made._visits = self._visits
         return made
 
     def truth(self, t: int) -> Carried:
@@ -185,8 +190,17 @@ class Knowledge:
         self.swept[place] = start
         return start
 
-    def _tidy_up(self) -> None:
-        """Join pieces whose stamps are of no account any more, when there are many."""
+    def _tidy_up(self, position: int) -> None:
+        """See now and then what is wanted, and join pieces when there are many.
+
+        Args:
+            position: the first one whose value is wanted.
+        """
+        self._visits += 1
+        if self._visits < _SELDOM:
+            return
+        self._visits = 0
+        self._want(position)
         if sum(len(true) + len(false) for true, false in self.known) > self._tidy:
             for sides in self.known:
                 for pieces in sides:

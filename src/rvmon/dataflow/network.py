@@ -51,8 +51,7 @@ class Network(Knowledge):
             self._take_back()
         first = positions.first == FAR
         behind = positions.visit(position)
-        self._tidy_up()
-        self._want(position if wanted is None else wanted // positions.gap)
+        self._tidy_up(position if wanted is None else wanted // positions.gap)
         if first:
             self._begin()
         before, self.ahead = self.ahead, max(self.ahead, ahead, 2 * t + 1)
@@ -83,8 +82,10 @@ class Network(Knowledge):
         if limit <= self.ahead:
             return
         before, self.ahead = self.ahead, limit
+        if self.positions.first == FAR:
+            return
         changed = {}
-        if not self.positions.sparse and self._letter:
+        if not self.positions.sparse:
             start = self._last_by(before) + 1
             for (place, _), value in zip(self.plan.leaves, self._letter, strict=True):
                 changed[place] = self._stay(place, value, start)
@@ -130,7 +131,9 @@ class Network(Knowledge):
         for place, node in enumerate(self.plan.nodes):
             if isinstance(node, Leaf):
                 continue
-            ranges = merged(self._candidates(node, changed, before, arrived))
+            ranges = self._candidates(node, changed, before, arrived)
+            if len(ranges) > 1:
+                ranges = merged(ranges)
             if not ranges:
                 continue
             if not isinstance(node, Sweep):
@@ -140,31 +143,34 @@ class Network(Knowledge):
             else:
                 fresh = self._extend_on(place, node, ranges)
             if fresh:
-                changed[place] = merged(fresh)
+                changed[place] = merged(fresh) if len(fresh) > 1 else fresh
 
     def _candidates(
         self, node: Node, changed: dict[int, list[Range]], before: int, arrived: Range | None
     ) -> list[Range]:
         """Where something else may become known of a node: its operands changed, or time comes."""
         due: int | None = None
+        low = high = 0
         if isinstance(node, Window):
             low, high = node.low, node.high
             due = 1 if node.over is None else 2 * node.over
         elif isinstance(node, Shift):
             low = high = node.offset
             due = 1 if low < 0 else None
-        else:
-            low = high = 0
         sources = [span for operand in operands_of(node) for span in changed.get(operand, ())]
         if arrived is not None:
             sources.append(arrived)
-        found = [(first - high, last - low if last < FAR else FAR) for first, last in sources]
-        if arrived is not None:
-            found.append(arrived)
-        if due is not None:
+        found = sources
+        if low or high:
+            found = [(first - high, last - low if last < FAR else FAR) for first, last in sources]
+            if arrived is not None:
+                found.append(arrived)
+        if due is not None and before < FOREVER:
             slope = self.positions.slope
+            first = (before - due) // slope + 1
             last = FAR if self.ahead >= FOREVER else (self.ahead - due) // slope
-            found.append(((before - due) // slope + 1, last))
+            if first <= last:
+                found.append((first, last))
         return found
 
     def _extend(self, place: int, node: Node, ranges: Sequence[Range]) -> list[Range]:
@@ -243,13 +249,18 @@ class Network(Knowledge):
             Where that changed anything.
         """
         known = self.known[place]
-        gone = [retract(pieces, on, self.grown) for pieces in known]
+        gone = retract(known[0], on, self.grown), retract(known[1], on, self.grown)
         new: tuple[list[Piece], list[Piece]] = [], []
         for gap in gaps(known, on)[::order]:
             for pieces, made, own in zip(found(gap), new, known, strict=True):
-                pieces = up_to(pieces, self.ahead)
+                if not pieces:
+                    continue
+                if self.ahead < FOREVER:
+                    pieces = up_to(pieces, self.ahead)
                 insert(own, pieces)
                 insert(made, pieces)
+        if gone[0] == new[0] and gone[1] == new[1]:
+            return []
         return [
             (left, right)
             for before, after in zip(gone, new, strict=True)

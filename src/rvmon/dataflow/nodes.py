@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import assert_never
 
 from rvmon.formula.core import Constant, Core, Literal
 
@@ -100,14 +99,8 @@ class Plan:
 
 def operands_of(node: Node) -> tuple[int, ...]:
     """The places of a node's operands."""
-    match node:
-        case Leaf():
-            return ()
-        case Junction(operands=operands):
-            return operands
-        case Window(operand=operand) | Shift(operand=operand):
-            return (operand,)
-        case Sweep(left=left, right=right):
-            return left, right
-        case _:
-            assert_never(node)
+    if isinstance(node, Junction):
+        return node.operands
+    if isinstance(node, Window | Shift):
+        return (node.operand,)
+    return (node.left, node.right) if isinstance(node, Sweep) else ()

@@ -31,6 +31,9 @@ PAST = -(1 << 90)
 EVER: Pieces = ((-FAR, FAR, PAST, 0),)
 """Known everywhere, from the first."""
 
+_SHORT = 4
+"""So few pieces are looked at one by one."""
+
 _left = itemgetter(0)
 
 
@@ -56,26 +59,36 @@ def append(pieces: list[Piece], left: int, right: int, at: int, slope: int) -> N
 
 
 def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
-    """What lies between two positions, both included."""
+    """What lies between two positions, both included; it may be the very same pieces."""
+    if not pieces or (pieces[0][0] >= left and pieces[-1][1] <= right):
+        return pieces
     start, end = span(pieces, left, right)
     found = list(pieces[start:end])
     if found:
         first, last, at, slope = found[0]
-        found[0] = (max(first, left), last, at, slope)
+        if first < left:
+            found[0] = (left, last, at, slope)
         first, last, at, slope = found[-1]
-        found[-1] = (first, min(last, right), at, slope)
+        if last > right:
+            found[-1] = (first, right, at, slope)
     return found
 
 
 def span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
-    """The indices of the pieces between two positions: the first, and that behind the last.
-
-    There are none if the positions are the wrong way round, also where one piece holds both.
-    """
+    """The indices of the pieces between two positions: the first, and that behind the last."""
+    count = len(pieces)
+    if count <= _SHORT:
+        start = 0
+        while start < count and pieces[start][1] < left:
+            start += 1
+        end = start
+        while end < count and pieces[end][0] <= right:
+            end += 1
+        return start, end
     start = max(bisect_right(pieces, left, key=_left) - 1, 0)
     if start < len(pieces) and pieces[start][1] < left:
         start += 1
-    return start, max(bisect_right(pieces, right, key=_left), start) if left <= right else start
+    return start, max(bisect_right(pieces, right, key=_left), start)
 
 
 def without(pieces: Pieces, known: Pieces) -> list[Piece]:
@@ -133,6 +146,10 @@ def soonest(one: Pieces, other: Pieces) -> Pieces:
     """Known if either is, as soon as the first is."""
     if not one or not other:
         return one or other
+    if one[0][0] > other[0][0]:
+        one, other = other, one
+    if one[-1][1] < other[0][0]:
+        return [*one, *other]
     made: list[Piece] = []
     for left, right, first, second in _refined(one, other):
         if first is None or second is None:
@@ -146,9 +163,22 @@ def soonest(one: Pieces, other: Pieces) -> Pieces:
 def latest(one: Pieces, other: Pieces) -> Pieces:
     """Known if both are, as soon as the second is."""
     made: list[Piece] = []
-    for left, right, first, second in _refined(one, other):
-        if first is not None and second is not None:
-            _choose(made, left, right, first, second, least=False)
+    ones, others = iter(one), iter(other)
+    first, second = next(ones, None), next(others, None)
+    while first is not None and second is not None:
+        left, right, at, slope = first
+        its_left, its_right, its_at, its_slope = second
+        start = left if left > its_left else its_left
+        end = right if right < its_right else its_right
+        if start <= end:
+            if slope == its_slope:
+                append(made, start, end, at if at > its_at else its_at, slope)
+            else:
+                _choose(made, start, end, (at, slope), (its_at, its_slope), least=False)
+        if right <= its_right:
+            first = next(ones, None)
+        if its_right <= right:
+            second = next(others, None)
     return made
 
 
@@ -215,9 +245,38 @@ def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
     """
     if low > high or not pieces:
         return ()
+    if _rises(pieces):
+        return _soonest_first(pieces, low, high)
     ends = [(left, at + slope * left if slope else at) for left, _, at, slope in pieces]
     entered = _sliding(ends, low, high, keeps=lambda old, new: old < new)
     return soonest(shift(pieces, low), entered)
+
+
+def _rises(pieces: Pieces) -> bool:
+    """Whether no stamp is before one further left."""
+    if len(pieces) == 1:
+        return True
+    before = PAST
+    for left, right, at, slope in pieces:
+        if at + slope * left < before:
+            return False
+        before = at + slope * right
+    return True
+
+
+def _soonest_first(pieces: Pieces, low: int, high: int) -> Pieces:
+    """`some_of_window` where stamps rise: the first position of a window is the soonest."""
+    made: list[Piece] = []
+    end = -FAR
+    for left, right, at, slope in pieces:
+        if left > -FAR:
+            start = max(end, left - high)
+            append(made, start, left - low - 1, at + slope * left, 0)
+            left -= low
+        right = right - low if right < FAR else FAR
+        append(made, left, right, at + slope * low, slope)
+        end = right + 1
+    return made
 
 
 def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
@@ -225,6 +284,14 @@ def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
     if low > high:
         return EVER
     made: list[Piece] = []
+    if _rises(pieces):
+        # The last position of a window is the latest.
+        moved = shift(pieces, high)
+        for first, last in _runs(pieces):
+            made += clip(
+                moved, first - low if first > -FAR else first, FAR if last >= FAR else last - high
+            )
+        return made
     ends = [
         (right, at + slope * right if slope else at)
         for _, right, at, slope in pieces

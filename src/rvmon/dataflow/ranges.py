@@ -72,6 +72,8 @@ def retract(pieces: list[Piece], on: Range, limit: int) -> list[Piece]:
         What was taken out.
     """
     first, last = on
+    if not pieces or pieces[-1][1] < first or pieces[0][0] > last:
+        return []
     start, end = span(pieces, first, last)
     if start == end:
         return []
@@ -98,6 +100,9 @@ def insert(pieces: list[Piece], fresh: Pieces) -> None:
     """Add pieces in place, in order, that lie where there are none."""
     if not fresh:
         return
+    if not pieces or pieces[-1][0] < fresh[0][0]:
+        pieces.extend(fresh)
+        return
     start = bisect_right(pieces, fresh[0][0], key=_left)
     if start == len(pieces) or fresh[-1][0] < pieces[start][0]:
         pieces[start:start] = fresh
@@ -109,7 +114,14 @@ def gaps(known: Known, on: Range) -> list[Range]:
     """The parts of a stretch of which nothing is known."""
     found: list[Range] = []
     at, last = on
-    held = [piece for pieces in known for piece in pieces[slice(*span(pieces, *on))]]
+    held = [
+        piece
+        for pieces in known
+        if pieces and pieces[-1][1] >= at
+        for piece in pieces[slice(*span(pieces, at, last))]
+    ]
+    if not held:
+        return [on]
     for left, right, _, _ in sorted(held):
         if at < left:
             found.append((at, left - 1))

@@ -29,6 +29,11 @@ def until(left: Known, right: Known, start: int, end: int, beyond: Carried = Non
         end: the last one.
         beyond: the value at the integer behind.
     """
+    one, other = _all_over(left, start, end), _all_over(right, start, end)
+    if one is not None and other is not None:
+        stays, meets = one[0], other[0]
+        if not (stays and stays[1][1]) and not (meets and meets[1][1]):
+            return _level_pieces(start, end, _level(stays, meets, beyond))
     found: list[tuple[Pieces, Pieces]] = []
     carried = beyond
     for first, last, stays, meets in reversed(list(_stretches(left, right, start, end))):
@@ -47,6 +52,19 @@ def until(left: Known, right: Known, start: int, end: int, beyond: Carried = Non
         found.append((true, false))
         carried = _value_at(first, true, false)
     return _joined(reversed(found))
+
+
+def _all_over(known: Known, start: int, end: int) -> tuple[_Side] | None:
+    """What is known of an operand if that is the same from `start` to `end`."""
+    true, false = known
+    if len(true) + len(false) > 1:
+        return None
+    if not true and not false:
+        return (None,)
+    left, right, at, slope = (true or false)[0]
+    if left > start or right < end:
+        return None
+    return ((bool(true), (at, slope)),)
 
 
 def _level(stays: _Side, meets: _Side, beyond: Carried) -> Carried:

@@ -100,10 +100,13 @@ class NetworkCauseFinder:
             low, high = max(left, first), min(right, last)
             if low > high:
                 continue
+            found, rest = low, 0
             if slope:
                 found, rest = divmod(self.at - at, slope)
-                if not rest and low <= found <= high:
-                    return found
-            elif at == self.at:
-                return self.network.positions.following(low) if low > -FAR else None
+            elif at != self.at:
+                continue
+            elif low > -FAR:
+                found = self.network.positions.following(low)
+            if low <= found <= high and not rest:
+                return found if found > -FAR else None
         return None

@@ -28,10 +28,11 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
         return Explanation("nothing was owed" if verdict else "it can never hold")
     words, start = judge.compiled.words, cause.start
     blame: Blame | None = None if verdict else words.blame(cause, t, start, judge.flow)
-    alone = settled(known_alone(network, found[1] - 1), position)
+    alone = settled(known_alone(network, found[1] - 1, (position, position)), position)
     return Explanation(
         told(words.sentence(cause, verdict), t, start, judge.flow),
-        deadline=None if alone is None else alone[0],
+        # What had long been settled when the attempt began was no deadline of it.
+        deadline=None if alone is None or alone[0] < attempt.token[1][0] - 1 else alone[0],
         blame=blame,
     )
 

@@ -116,7 +116,7 @@ def _fields_of(class_: type) -> tuple[str, ...]:
     if class_ is Network:
         return (
             *("plan", "positions", "known", "grown", "ahead", "pending", "swept", "carried"),
-            *("_letter", "_tidy"),
+            *("_letter", "_tidy", "_visits"),
         )
     if class_ is Positions:
         return ("gap", "slope", "first", "last", "_stamps")

@@ -14,7 +14,7 @@ from rvmon.dataflow.evaluate import Range
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import Plan
-from rvmon.dataflow.pieces import Pieces, clip, stamp
+from rvmon.dataflow.pieces import Pieces, stamp
 from rvmon.dataflow.ranges import merged
 from rvmon.dataflow.sweep import Carried
 from rvmon.formula.core import Constant, Sense
@@ -202,12 +202,12 @@ class NetworkJudge(Bench):
         """The attempts, by first and last index, whose value became known after a stamp."""
         gap = network.positions.gap
         for left, right, at, slope in chain(*network.whole):
+            if not slope and not before < at <= self.now:
+                continue
             first, last = left, right
             if slope:
                 first = max(left, (before - at) // slope + 1)
                 last = min(right, (self.now - at) // slope)
-            elif not before < at <= self.now:
-                continue
             start = bisect_left(self.attempts, first * gap, key=_position)
             end = bisect_right(self.attempts, last * gap, key=_position)
             if start < end:
@@ -253,25 +253,27 @@ class NetworkJudge(Bench):
 
     def _coming(self, network: Network) -> Iterator[tuple[bool, int]]:
         """The values that attempts will have by a network, if the letter stays, and the stamps."""
-        attempts, gap = self.attempts, network.positions.gap
+        attempts, now, gap = self.attempts, self.now, network.positions.gap
         oldest, youngest = _position(attempts[0]) // gap, _position(attempts[-1]) // gap
-        sides = [clip(pieces, oldest, youngest) for pieces in network.whole]
-        if len(attempts) <= sum(map(len, sides)):
+        # Most of what is known was so before.
+        coming = [
+            (value, piece)
+            for value, pieces in zip((True, False), network.whole, strict=True)
+            for piece in pieces
+            if (piece[3] or piece[2] > now) and piece[0] <= youngest and piece[1] >= oldest
+        ]
+        if len(attempts) <= len(coming):
             for attempt in attempts:
                 found = network.truth(_position(attempt))
-                if found is not None and found[1] > self.now:
+                if found is not None and found[1] > now:
                     yield found
             return
-        for value, pieces in zip((True, False), sides, strict=True):
-            for left, right, at, slope in pieces:
-                # The first one of a piece is the soonest.
-                first = max(left, (self.now - at) // slope + 1) if slope else left
-                index = bisect_left(attempts, first * gap, key=_position)
-                if index == len(attempts):
-                    break
-                position = _position(attempts[index]) // gap
-                if position <= right and at + slope * position > self.now:
-                    yield value, at + slope * position
+        for value, (left, right, at, slope) in coming:
+            # The first one of a piece is the soonest.
+            first = max(left, (now - at) // slope + 1) if slope else left
+            index = bisect_left(attempts, first * gap, key=_position)
+            if index < len(attempts) and (t := _position(attempts[index]) // gap) <= right:
+                yield value, at + slope * t
 
     def _decides(self, network: Network, value: bool) -> bool:
         """Whether a value in a network decides an attempt."""

@@ -1,5 +1,8 @@
 """The delay network: what only it can judge, how much it remembers, and how often it works."""
 
+import random
+import sys
+
 import pytest
 
 import rvmon
@@ -18,6 +21,7 @@ from rvmon.testing.scale import in_units, scaled
 SECOND = 10**9
 RESPAWNED = "whenever a then F[2 s, 5 s] b"
 PAIRS = 60
+BRIEF, LENGTHY = ("100 ms", "250 ms"), ("1 s", "2.5 s")
 
 
 def spec_of(requirement, time="held"):
@@ -122,3 +126,43 @@ def test_memory_is_bounded_by_the_window():
         monitor.step(k * 0.5, {"b": k % 2 == 0})
         sizes.append(sum(len(true) + len(false) for true, false in judge.worse.known))
     assert max(sizes[200:]) <= max(sizes[:200]) <= 150
+
+
+def calls_per_change(low, high, time):
+    """How many functions are called for a change, once the window is full."""
+    monitor = spec_of(f"whenever a then F[{low}, {high}] b", time).monitor(engine="network")
+    dice = random.Random(1)
+    count, changes = 0, 60
+
+    def hear(frame, event, _):
+        nonlocal count
+        count += event == "call"
+
+    values = {"a": False, "b": False}
+    for k in range(300 + changes):
+        name = dice.choice("ab")
+        values[name] = not values[name]
+        if k == 300:
+            sys.setprofile(hear)
+        monitor.step(k * 0.01, {name: values[name]})
+    sys.setprofile(None)
+    return count / changes
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+def test_a_change_costs_what_it_makes_known(time):
+    """A window ten times as long, with ten times as many changes in it: hardly more is done."""
+    short, long = (calls_per_change(*window, time) for window in (BRIEF, LENGTHY))
+    assert long < 1.5 * short
+
+
+def test_what_time_alone_decides_is_known_beforehand():
+    """However far ahead, and though the letter has changed at every sample."""
+    monitor = spec_of("upon e then F[1 h, 2 h] for 3 s b").monitor(engine="network")
+    for k in range(50):
+        monitor.step(k * 0.01, {"b": k % 2 == 0, "e": True} if k == 7 else {"b": k % 2 == 0})
+    assert monitor.next_due == 7_200_070_000_001
+    monitor.step(3_700, {"b": True})
+    assert monitor.next_due == 3_703_000_000_001
+    monitor.step(3_702, {"b": False})
+    assert monitor.next_due == 7_200_070_000_001
