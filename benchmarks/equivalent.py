@@ -117,5 +117,8 @@ EQUIVALENT = {
     "python_nodes.py dropped operand: `right == '2' or left == '0'` => `left == '0'`": (
         "the greater of true and anything is written out"
     ),
+    "python_visit.py dropped operand: `state.high or 0` => `0`": (
+        "samples are looked at that could have been passed over"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""
