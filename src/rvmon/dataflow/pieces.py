@@ -75,8 +75,13 @@ def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
 
 
 def span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
-    """The indices of the pieces between two positions: the first, and that behind the last."""
+    """The indices of the pieces between two positions: the first, and that behind the last.
+
+    There are none if the positions are the wrong way round, also where one piece holds both.
+    """
     count = len(pieces)
+    if left > right:
+        return count, count
     if count <= _SHORT:
         start = 0
         while start < count and pieces[start][1] < left:
