@@ -9,6 +9,7 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from rvmon.cli.progress import shown_while_reading
+from rvmon.cli.second_look import second_look
 from rvmon.errors import TraceError
 from rvmon.loading import load
 from rvmon.readers.recording import FileRecording
@@ -19,10 +20,8 @@ from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
     from rvmon.monitor.measured import Measured
-    from rvmon.trace.sample import Recording
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
-    from rvmon.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +149,7 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(trace, None, tuple(before), place + message)
-    report = _second_look(spec, trace, report, recording.names, goals=options.only is None)
+    report = second_look(spec, trace, report, recording.names, goals=options.only is None)
     return Judged(trace, _named(report, trace, recording.health()))
 
 
@@ -185,54 +184,6 @@ def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iter
     if ordered:
         return takewhile(lambda sample: sample.t <= end, samples)
     return (sample for sample in samples if sample.t <= end)
-
-
-def in_order(recording: Recording) -> list[Sample]:
-    """The samples in order of time, equal stamps merged (under `max delay` they may come late)."""
-    merged: dict[int, Sample] = {}
-    for sample in recording:
-        known = merged.get(sample.t)
-        values = sample.values if known is None else {**known.values, **sample.values}
-        merged[sample.t] = Sample(sample.t, values)
-    return [merged[t] for t in sorted(merged)]
-
-
-def _second_look(
-    spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
-) -> Report:
-    """What is asked of the samples when the verdicts are known.
-
-    What the triggers lacked that never came true, and whether the cover goals were shown; standard
-    input cannot be read again.
-    """
-    silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
-    wanted = goals and bool(spec.checked.covers)
-    end = report.end
-    if trace == "-" or end is None or not (silent or wanted):
-        return report
-    samples = [sample for sample in in_order(spec.recording(trace)) if sample.t <= end]
-    if wanted:
-        report = replace(report, goals=_goals(spec, samples, end, names))
-    if not silent:
-        return report
-    from rvmon.explain.miss import nearest_miss
-
-    found = {
-        name: nearest_miss(spec.checked, spec.requirements[name], samples, end, names)
-        for name in silent
-    }
-    return replace(report, misses={name: miss for name, miss in found.items() if miss})
-
-
-def _goals(
-    spec: Spec, samples: Sequence[Sample], end: int, names: frozenset[str] | None
-) -> Mapping[str, Verdict]:
-    from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
-
-    monitor = Spec(goals_as_requirements(spec.checked)).monitor(sources=names)
-    for sample in samples:
-        monitor.step_ns(sample.t, sample.values)
-    return goal_verdicts(monitor.finish_ns(end))
 
 
 def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:

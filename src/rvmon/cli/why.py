@@ -48,7 +48,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
     from rvmon.cli.constants import constants_of
-    from rvmon.cli.judging import in_order
+    from rvmon.cli.second_look import in_order
     from rvmon.explain.dissect import dissect
     from rvmon.explain.miss import nearest_miss
     from rvmon.loading import load

@@ -5,22 +5,32 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import assert_never
 
+from rvmon.dataflow.graph import graph_of
+from rvmon.dataflow.numbers import operands
 from rvmon.explain.log import Truth, state_truths
 from rvmon.explain.spans import Spans
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.formula.state import State
+from rvmon.formula.state import Elapsed, Leaf, State
 from rvmon.spec.checked import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
     CheckedSpec,
+    Compare,
     Constant,
     EventAtom,
     Formula,
+    Literal,
+    Probe,
+    ProbeAtom,
     Requirement,
+    SignalAtom,
+    SignalValue,
+    TimeModel,
 )
 from rvmon.spec.printer import format_formula
 from rvmon.trace.sample import Sample
@@ -76,6 +86,40 @@ def nearest_miss(
     misses = [_miss(parts, seen) for parts in options]
     best = min(misses, key=lambda miss: len(miss.missing))
     return _sentence(best, seen, end)
+
+
+def read_as_values(spec: CheckedSpec, requirement: Requirement) -> frozenset[str] | None:
+    """The names that a trigger reads, if their values are all that counts.
+
+    Returns:
+        `None` if updates that repeat a value, payloads or positions may make a difference.
+    """
+    stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
+    if spec.time is TimeModel.SAMPLED or requirement.for_each is not None:
+        return None
+    factory = Factory()
+    graph = graph_of(
+        _state(part, requirement, factory, spec)
+        for option in _flat(requirement.trigger, BinaryOp.OR)
+        for part in _flat(option, BinaryOp.AND)
+        if part != BoundAtom(Bound.END)
+    )
+    leaves = [node.leaf for node in graph.nodes if node.leaf is not None]
+    names = frozenset(graph.by_name)
+    return names if all(map(_is_of_values, leaves)) and not names & stale else None
+
+
+def _is_of_values(leaf: Leaf) -> bool:
+    match leaf:
+        case Compare(left=left, right=right):
+            parts = (part for side in (left, right) for part in operands(side))
+            return all(isinstance(part, SignalValue | Literal) for part in parts)
+        case ProbeAtom(probe=probe):
+            return probe is Probe.KNOWN
+        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed():
+            return True
+        case _:
+            assert_never(leaf)
 
 
 def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:

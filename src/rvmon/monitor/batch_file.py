@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rvmon.monitor.batch import evaluate_plain
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.planned import can_feed, plan_requirements
-from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.block_readers import reader_of
+from rvmon.readers.blocks import NotPlainError
 from rvmon.trace.schema import Schema
 from rvmon.verdict.report import Report
 
@@ -21,31 +21,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     _Block = tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]
-
-    Reader = Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]
-
-
-def _reader_of(path: str | Path, ignored: Counter[str]) -> Reader | None:
-    """What reads blocks of a file, by the ending of its name.
-
-    Args:
-        path: of the file.
-        ignored: counts undeclared names, where each line has its own.
-    """
-    match Path(path).suffix.lower():
-        case ".csv":
-            from rvmon.readers.csv_blocks import csv_blocks
-
-            return csv_blocks
-        case ".parquet":
-            from rvmon.readers.parquet import parquet_blocks
-
-            return parquet_blocks
-        case ".jsonl" | ".ndjson":
-            from rvmon.readers.jsonl_blocks import jsonl_blocks
-
-            return partial(jsonl_blocks, ignored=ignored)
-    return None
 
 
 def _fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[str]:
@@ -88,7 +63,7 @@ def evaluate_file(
         may matter.
     """
     seen = Counter[str]()
-    reader = _reader_of(path, seen)
+    reader = reader_of(path, seen)
     if reader is None:
         return None
     fillable = _fillable(compiled, only)

@@ -1,0 +1,116 @@
+"""What is asked of a recording when its verdicts are known."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING
+
+from rvmon.readers.blocks import NotPlainError
+from rvmon.session import Spec
+from rvmon.trace.sample import Sample
+
+if TYPE_CHECKING:
+    from rvmon.trace.sample import Recording
+    from rvmon.verdict.report import Report
+    from rvmon.verdict.verdict import Verdict
+
+
+def in_order(recording: Recording) -> list[Sample]:
+    """The samples in order of time, equal stamps merged (under `max delay` they may come late)."""
+    merged: dict[int, Sample] = {}
+    for sample in recording:
+        known = merged.get(sample.t)
+        values = sample.values if known is None else {**known.values, **sample.values}
+        merged[sample.t] = Sample(sample.t, values)
+    return [merged[t] for t in sorted(merged)]
+
+
+def second_look(
+    spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
+) -> Report:
+    """The report with what the triggers lacked that never came true, and with the cover goals.
+
+    Standard input cannot be read again.
+
+    Args:
+        spec: the specification.
+        trace: the path of the recording.
+        report: on it.
+        names: the signals and events that have a source; `None`: all.
+        goals: whether the cover goals are asked for.
+    """
+    silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
+    end = report.end
+    if trace == "-" or end is None:
+        return report
+
+    @cache
+    def samples() -> Sequence[Sample]:
+        return [sample for sample in in_order(spec.recording(trace)) if sample.t <= end]
+
+    if goals and spec.checked.covers:
+        report = replace(report, goals=_goals(spec, trace, end, names, samples))
+    if not silent:
+        return report
+    from rvmon.explain.miss import nearest_miss, read_as_values
+
+    found = {}
+    for name in silent:
+        requirement = spec.requirements[name]
+        read = read_as_values(spec.checked, requirement)
+        few = None if read is None else _changes(spec, trace, read, end)
+        found[name] = nearest_miss(
+            spec.checked, requirement, samples() if few is None else few, end, names
+        )
+    return replace(report, misses={name: miss for name, miss in found.items() if miss})
+
+
+def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Sequence[Sample] | None:
+    """The samples at which one of these names changes; `None` if the file is not plain."""
+    from rvmon.readers.block_readers import reader_of
+    from rvmon.readers.changes import changes
+
+    schema = spec.schema
+    reader = reader_of(trace, Counter())
+    if reader is None or spec.checked.max_delay is not None:
+        return None
+    try:
+        blocks = reader(trace, schema, frozenset((*schema.signals, *schema.events)))
+        return changes(blocks, names, schema.events.keys(), end)
+    except NotPlainError:
+        return None
+
+
+def _goals(
+    spec: Spec,
+    trace: str,
+    end: int,
+    names: frozenset[str] | None,
+    samples: Callable[[], Sequence[Sample]],
+) -> Mapping[str, Verdict]:
+    from rvmon.monitor.batch_file import evaluate_file
+    from rvmon.monitor.compiled import compile_spec
+    from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
+
+    goals = Spec(goals_as_requirements(spec.checked))
+    report = None
+    if spec.checked.max_delay is None:
+        report = evaluate_file(
+            compile_spec(goals.checked),
+            goals.schema,
+            trace,
+            only=None,
+            engine="auto",
+            until=end,
+            cut=True,
+            ignored=Counter(),
+        )
+    if report is None:
+        monitor = goals.monitor(sources=names)
+        for sample in samples():
+            monitor.step_ns(sample.t, sample.values)
+        report = monitor.finish_ns(end)
+    return goal_verdicts(report)

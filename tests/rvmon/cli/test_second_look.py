@@ -1,0 +1,130 @@
+"""What triggers lacked, and cover goals, from the columns of a plain file and from all samples."""
+
+import json
+import random
+
+import pytest
+
+import rvmon
+from rvmon.cli.judging import Options, judge
+from rvmon.cli.second_look import in_order
+from rvmon.explain.miss import nearest_miss, read_as_values
+from rvmon.monitor import batch_file
+from rvmon.readers.blocks import Block
+from rvmon.readers.changes import changes
+
+HEAD = """
+spec cell
+time {time}
+signal p, q : bool
+signal x : real
+event go
+"""
+SILENT = {
+    "values": "p and x > 50",
+    "two ways": "(p and q and x > 50) or (go and x < -9)",
+    "past": "once[100 ms, 2 s] (p and go) and x > 50",
+    "held": "held(p, 1 s) and x > 50",
+    "first": "start and x > 50",
+    "unlike": "p and not p",
+    "updates": "p and updated(q) and x > 50",
+    "changes": "changed(x) and x > 50",
+    "age": "age(x) > 20 s and p",
+}
+
+
+def rows(seed: int) -> list[dict]:
+    """A plain recording in which few rows change something."""
+    dice = random.Random(seed)
+    t, row, made = 5_000_000_000, {"p": False, "q": True, "x": 0.5, "go": False}, []
+    for _ in range(400):
+        row = {**row, "go": dice.random() < 0.03}
+        if dice.random() < 0.2:
+            row["p"], row["q"] = dice.random() < 0.5, dice.random() < 0.5
+            row["x"] = dice.choice([0.5, 1.5, -3.0])
+        made.append({"t_ns": t, **row})
+        t += dice.choice([1, 70_000_000, 800_000_000])
+    return made
+
+
+@pytest.fixture(params=[1, 2])
+def traces(request, tmp_path):
+    """The same rows as CSV and as JSON lines."""
+    found = rows(request.param)
+    lines = [",".join(found[0])]
+    lines += [
+        ",".join(str(float(v) if k == "x" else int(v)) for k, v in row.items()) for row in found
+    ]
+    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
+    (tmp_path / "a.jsonl").write_text("".join(json.dumps(row) + "\n" for row in found))
+    return [str(tmp_path / "a.csv"), str(tmp_path / "a.jsonl")]
+
+
+@pytest.mark.parametrize("until", [None, 60.0])
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms"])
+def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
+    """Whichever rows were looked at, the sentence is the same."""
+    text = HEAD.format(time=time) + "".join(
+        f"requirement R{number}\n  upon {trigger}\n  then within 1 s q\n"
+        for number, trigger in enumerate(SILENT.values())
+    )
+    spec = rvmon.loads(text)
+    for trace in traces:
+        report = judge(spec, trace, Options(until=until)).report
+        samples = [one for one in in_order(spec.recording(trace)) if one.t <= report.end]
+        silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
+        assert len(silent) > 5
+        names = spec.recording(trace).names
+        for name in silent:
+            requirement = spec.requirements[name]
+            wanted = nearest_miss(spec.checked, requirement, samples, report.end, names)
+            assert report.misses[name] == wanted
+
+
+def test_updates_that_count_are_seen():
+    """Where more than values matters, all samples are looked at."""
+    spec = rvmon.loads(
+        HEAD.format(time="held")
+        + "".join(
+            f"requirement R{number}\n  upon {trigger}\n  then q\n"
+            for number, trigger in enumerate(SILENT.values())
+        )
+    )
+    found = {
+        name: read_as_values(spec.checked, requirement)
+        for name, requirement in zip(SILENT, spec.requirements.values(), strict=True)
+    }
+    assert {name for name, read in found.items() if read is None} == {"updates", "changes", "age"}
+    assert found["two ways"] == {"p", "q", "x", "go"}
+
+
+@pytest.mark.parametrize("until", [None, 60.0])
+def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
+    """Cover goals by columns and by samples."""
+    text = HEAD.format(time="held") + (
+        "requirement R1\n  always (p or not p)\n"
+        "cover shown = F (p and q and F[1 s, 9 s] go)\n"
+        "cover never = F (x > 50)\n"
+        "cover open = F (q and G[0 s, 500 s] x < 50)\n"
+    )
+    spec = rvmon.loads(text)
+    by_columns = [judge(spec, trace, Options(until=until)).report for trace in traces]
+    monkeypatch.setattr(batch_file, "evaluate_file", lambda *_, **__: None)
+    by_samples = [judge(spec, trace, Options(until=until)).report for trace in traces]
+    assert by_columns == by_samples
+    assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 2
+
+
+def test_rows_that_repeat_are_left_out():
+    """Across blocks, too; an event counts wherever it occurs, and NaN each time."""
+    import numpy as np
+
+    nan = float("nan")
+    blocks = [
+        Block(np.array([1, 2]), {"x": np.array([1.0, 1.0]), "go": np.array([False, True])}),
+        Block(np.array([3, 4, 5]), {"x": np.array([1.0, nan, nan]), "go": np.array([False] * 3)}),
+        Block(np.array([6, 9]), {"x": np.array([2.0, 3.0]), "go": np.array([False, False])}),
+    ]
+    found = changes(blocks, {"x", "go"}, {"go"}, 8)
+    assert [sample.t for sample in found] == [1, 2, 4, 5, 6]
+    assert found[-1].values == {"x": 2.0, "go": False}
