@@ -101,6 +101,23 @@ CASES = {
         ],
         20,
     ),
+    "what was met does not count where it is cut, though it is met there again": (
+        "held",
+        "upon e\n  then immediately q since[1 ns, 3 ns] p",
+        [(0, {"p": False, "q": True}), (2, {"p": True, "q": False, "e": True}), (4, {"e": True})],
+        9,
+    ),
+    "an episode goes on where its trigger is unknown, also if that is a pulse": (
+        "held",
+        "whenever e and q\n  then within 3 ns p",
+        [
+            (0, {"p": False, "q": True, "e": True}),
+            (1, {"q": None, "e": True}),
+            (2, {"q": True, "e": True}),
+            (3, {}),
+        ],
+        12,
+    ),
     "what has held for less than its duration since the start is not held, ahead neither": (
         "held",
         "upon e\n  then held(F[0 ns, 1 ns] p, 3 ns)",
