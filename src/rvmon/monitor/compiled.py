@@ -114,7 +114,7 @@ class CompiledRequirement:
         try:
             return reduce(construct(self._owed, self.alphabet, Budget()), self.words.told)
         except DoesNotCloseError as error:
-            return error
+            return error.with_traceback(None)  # which would keep the frames of whoever asked
 
     @property
     def automaton(self) -> Automaton | None:
