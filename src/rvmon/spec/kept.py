@@ -29,8 +29,8 @@ def compile_kept(
 ) -> Compiled:
     """As `rvmon.spec.compile.compile_text`, which is asked once for each text.
 
-    What is kept is keyed by all that it depends on: text, name, constants, and the compiler. A text
-    that imports others is compiled each time.
+    What is kept is keyed by all that it depends on: text, name, constants, and the compiler's files
+    by size and time. A text that imports others is compiled each time.
     """
     folder = None if "import" in text else cache_folder()
     if folder is None:
