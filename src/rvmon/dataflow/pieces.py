@@ -91,7 +91,7 @@ def span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
             end += 1
         return start, end
     start = max(bisect_right(pieces, left, key=_left) - 1, 0)
-    if start < len(pieces) and pieces[start][1] < left:
+    if pieces[start][1] < left:
         start += 1
     return start, max(bisect_right(pieces, right, key=_left), start)
 

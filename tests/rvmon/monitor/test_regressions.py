@@ -107,6 +107,12 @@ CASES = {
         [(0, {"p": False, "q": True}), (2, {"p": True, "q": False, "e": True}), (4, {"e": True})],
         9,
     ),
+    "a window that has not opened does not count as held to the end": (
+        "held",
+        "upon e\n  then always[5 ns, inf) p",
+        [(0, {"p": True, "e": True}), (3, {})],
+        3,
+    ),
     "an episode goes on where its trigger is unknown, also if that is a pulse": (
         "held",
         "whenever e and q\n  then within 3 ns p",
