@@ -42,6 +42,28 @@ def test_without_a_declared_column_all_is_unknown(form, tmp_path):
         assert spec.evaluate(trace, engine=engine).verdicts == {"R1": "I"}, engine
 
 
+def test_what_was_met_is_carried_on_over_many_rows():
+    """Rows are looked at 64 at once: what an operator of the past knows goes on from there."""
+    spec = spec_of("signal p, q, r : bool", "whenever r then immediately q since p")
+    rows = np.arange(300)
+    trace = {"t": rows * 1e-9, "p": rows % 150 == 50, "q": rows % 150 != 20, "r": rows % 7 == 0}
+    found = [
+        [
+            (one.triggered, one.decided, one.verdict)
+            for one in spec.evaluate(trace, engine=engine).attempts
+        ]
+        for engine in ("automaton", "c")
+    ]
+    assert found[0] == found[1]
+    assert {verdict.value for _, _, verdict in found[0]} == {"P", "F"}
+
+
+def test_a_whole_number_without_a_column_is_unknown():
+    """Nothing is looked at of a column that is not there."""
+    spec = spec_of("signal n : int", "upon start then for 2 s (n + 1 < 3)")
+    assert spec.evaluate({"t": np.array([0.0, 5.0])}, engine="c").verdicts == {"R1": "I"}
+
+
 DECLARED = """signal x : real
 signal n : int
 signal b : bool
