@@ -120,5 +120,16 @@ EQUIVALENT = {
     "python_visit.py dropped operand: `state.high or 0` => `0`": (
         "samples are looked at that could have been passed over"
     ),
+    "c_nodes.py constant: `if len(body) > 1:` => `if len(body) > (2):`": (
+        "what is written for a node is one line, or three and more"
+    ),
+    "c_nodes.py off by one: `mask >> place % GROUP & 1` => `mask >> place % GROUP`": (
+        "more changes are noted than anybody hears of"
+    ),
+    "monitor_tokens.c.in off by one: `due = settle_token(a, k, position - STEP, "
+    "least(position - 1, last));` => `due = settle_token(a, k, position - STEP, "
+    "least(position, last));`": (
+        "time passes up to the position before its letter is read, here or in the step itself"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""
