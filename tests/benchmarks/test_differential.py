@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from benchmarks.differential import main, parse
-from benchmarks.mutants import stages_of
+from benchmarks.engines import PACKAGE
+from benchmarks.mutants import Stage, Tests, stages_of
 
 
 def test_several_engines_share_the_cases(capsys: pytest.CaptureFixture[str]) -> None:
@@ -31,7 +32,11 @@ def test_an_engine_that_does_not_exist(name: str, capsys: pytest.CaptureFixture[
 
 
 def test_stages_of_a_mutant() -> None:
-    """Only engines that a monitor can be asked for are driven in other ways."""
-    ways = [stage.engines for stage in stages_of("network", 100)]
+    """Only engines that a monitor can be asked for are driven in other ways; tests come last."""
+    *stages, tests = stages_of("network", [PACKAGE / "dataflow" / "network.py"], 100)
+    ways = [stage.engines for stage in stages if isinstance(stage, Stage)]
     assert ways == [("network",), ("network+next", "network+interrupt"), ("network",), ("auto",)]
-    assert [stage.engines for stage in stages_of("c", 100)] == [("c",), ("c",)]
+    assert isinstance(tests, Tests)
+    assert "tests/rvmon/dataflow" in tests.folders
+    stages = stages_of("c", [], 100)[:-1]
+    assert [stage.engines for stage in stages if isinstance(stage, Stage)] == [("c",), ("c",)]
