@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 from benchmarks.differential import main, parse
 from benchmarks.engines import PACKAGE
-from benchmarks.mutants import Stage, Tests, stages_of
+from benchmarks.mutants import Stage, stages_of
+
+from benchmarks import mutants
 
 
 def test_several_engines_share_the_cases(capsys: pytest.CaptureFixture[str]) -> None:
@@ -36,7 +38,7 @@ def test_stages_of_a_mutant() -> None:
     *stages, tests = stages_of("network", [PACKAGE / "dataflow" / "network.py"], 100)
     ways = [stage.engines for stage in stages if isinstance(stage, Stage)]
     assert ways == [("network",), ("network+next", "network+interrupt"), ("network",), ("auto",)]
-    assert isinstance(tests, Tests)
+    assert isinstance(tests, mutants.Tests)
     assert "tests/rvmon/dataflow" in tests.folders
     stages = stages_of("c", [], 100)[:-1]
     assert [stage.engines for stage in stages if isinstance(stage, Stage)] == [("c",), ("c",)]
