@@ -105,7 +105,8 @@ class IntakeWriter:
         if self.single:
             yield "one = None"
         yield "try:"
-        yield "    size = len(values)"
+        # Other mappings may answer what they do not hold.
+        yield "    size = len(values) if values.__class__ is dict else -1"
         if self.whole:
             yield f"    if size == {len(self.arriving)}:"
             for number, name in enumerate(self.arriving):

@@ -28,13 +28,14 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
         return Explanation("nothing was owed" if verdict else "it can never hold")
     words, start = judge.compiled.words, cause.start
     blame: Blame | None = None if verdict else words.blame(cause, t, start, judge.flow)
-    alone = settled(known_alone(network, found[1] - 1, (position, position)), position)
-    return Explanation(
-        told(words.sentence(cause, verdict), t, start, judge.flow),
+    deadline = None
+    if t > attempt.token[1][0]:  # else it owed nothing yet
+        alone = settled(known_alone(network, found[1] - 1, (position, position)), position)
         # What had long been settled when the attempt began was no deadline of it.
-        deadline=None if alone is None or alone[0] < attempt.token[1][0] - 1 else alone[0],
-        blame=blame,
-    )
+        if alone is not None and alone[0] >= attempt.token[1][0] - 1:
+            deadline = alone[0]
+    sentence = told(words.sentence(cause, verdict), t, start, judge.flow)
+    return Explanation(sentence, deadline=deadline, blame=blame)
 
 
 def network_open(

@@ -1,6 +1,6 @@
 """Generated Python monitors against the oracle, and as monitors."""
 
-from collections import UserDict
+from collections import UserDict, defaultdict
 
 import pytest
 
@@ -142,3 +142,22 @@ def test_values_are_taken_from_any_mapping():
         found.append(([[one.decided for one in step] for step in decided], monitor.finish()))
     assert found[0] == found[1]
     assert [len(step) for step in found[0][0]] == [0, 0, 0, 1, 1]
+
+
+@pytest.mark.parametrize("values", [[], "", b"", set(), ()])
+def test_what_is_empty_and_no_mapping_is_refused(values):
+    """Nothing is a sample that brings nothing but a mapping that holds nothing."""
+    monitor = rvmon.loads(TEXT).monitor(engine="python")
+    monitor.step(0, {"closed": True, "width": 0.5})
+    with pytest.raises(rvmon.TraceError):
+        monitor.step_ns(10**9, values)
+
+
+def test_a_mapping_that_invents_values_is_asked_for_what_it_holds():
+    """An unknown name is refused, and nothing is added."""
+    values = defaultdict(float, {"closed": True, "widht": 0.5})
+    monitor = rvmon.loads(TEXT).monitor(engine="python", sources=["closed", "width"])
+    monitor.step(0, {"closed": True, "width": 0.5})
+    with pytest.raises(rvmon.TraceError, match="widht"):
+        monitor.step(1, values)
+    assert len(values) == 2

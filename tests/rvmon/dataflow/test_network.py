@@ -2,6 +2,7 @@
 
 import random
 import sys
+from itertools import accumulate
 
 import pytest
 
@@ -11,9 +12,11 @@ from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.session import Spec
 from rvmon.spec.checked import TimeModel
+from rvmon.testing import build
 from rvmon.testing.differential import campaign, case_of
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
+from rvmon.testing.generate_ltl import random_mtl
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.scale import in_units, scaled
@@ -166,3 +169,25 @@ def test_what_time_alone_decides_is_known_beforehand():
     assert monitor.next_due == 3_703_000_000_001
     monitor.step(3_702, {"b": False})
     assert monitor.next_due == 7_200_070_000_001
+
+
+@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
+def test_deadlines_of_records_are_those_of_automata(time):
+    """What is noted of a decision does not depend on who made it."""
+    noted = 0
+    for seed in range(70):
+        dice = random.Random(f"deadlines/{seed}")
+        formula = random_mtl(dice, 2)
+        spec = Spec(build.spec_of(build.requirement(formula, upon=build.start), time=time))
+        stamps = list(accumulate(dice.choice((1, 1, 2, 3, 5)) for _ in range(10)))
+        samples = [(t, {name: dice.random() < 0.5 for name in "pqr"}) for t in stamps]
+        found = []
+        for engine in ("network", "automaton"):
+            monitor = spec.monitor(engine=engine)
+            for t, values in samples:
+                monitor.step_ns(t, values)
+            attempts = monitor.finish_ns(stamps[-1]).attempts
+            found.append([(one.decided, one.verdict, one.deadline) for one in attempts])
+        assert found[0] == found[1], formula
+        noted += sum(deadline is not None for _, _, deadline in found[0])
+    assert noted > 10

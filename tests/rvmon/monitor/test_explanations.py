@@ -172,3 +172,20 @@ def test_what_is_owed_is_told_once(engine):
     monitor.step(2, {"p": True})
     [owed] = monitor.open
     assert owed.owed == "`within 5 s q` by 7 s"
+
+
+@pytest.mark.parametrize("advances", [(), (10**9,), (2 * 10**9,), (2 * 10**9 + 1,)])
+@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
+def test_a_run_that_time_alone_takes_on_and_decides_is_told_as_it_was(engine, advances):
+    """The record names the window that closed, however time was told to pass."""
+    monitor = rvmon.loads(
+        "spec s\nsignal p, r : bool\nrequirement R1\n"
+        "  upon start then eventually[2 s, 2 s] (p until r)\n"
+    ).monitor(engine=engine)
+    monitor.step(0, {"p": False, "r": False})
+    for t in advances:
+        monitor.advance_ns(t)
+    (attempt,) = monitor.finish(5).attempts
+    assert attempt.reason.startswith("window [2 s, 2 s] closed without")
+    assert (attempt.decided, attempt.deadline) == (2 * 10**9 + 1, 2 * 10**9)
+    assert attempt.blame.window == (2 * 10**9, 2 * 10**9)

@@ -1,0 +1,44 @@
+"""What is said of a decision does not depend on how time was told to pass."""
+
+import random
+from dataclasses import replace
+from itertools import accumulate
+
+import pytest
+
+from rvmon.session import Spec
+from rvmon.spec.checked import EventAtom, TimeModel
+from rvmon.testing.build import requirement, spec_of
+from rvmon.testing.generate_ltl import random_mtl
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
+@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
+def test_advance_changes_no_record(time, engine):
+    """Reasons, deadlines and blame are the same, however finely a stretch of time is split."""
+    decided = 0
+    for seed in range(60):
+        dice = random.Random(f"advance/{seed}")
+        formula = random_mtl(dice, dice.randint(1, 3))
+        upon = requirement(formula, upon=EventAtom("e"))
+        spec = Spec(spec_of(upon, time=time, period=1 if time is TimeModel.CLOCKED else None))
+        stamps = list(accumulate(dice.randint(1, 6) for _ in range(8)))
+        samples = [
+            (t, {**{name: dice.random() < 0.5 for name in "pqr"}, "e": dice.random() < 0.5})
+            for t in stamps
+        ]
+        found = []
+        for split in (False, True):
+            monitor = spec.monitor(engine=engine)
+            for t, values in samples:
+                monitor.step_ns(t, values)
+                if split:
+                    for later in sorted({t + dice.randint(1, 5), t + dice.randint(1, 5)}):
+                        if all(later < other or t >= other for other in stamps):
+                            monitor.advance_ns(later)
+            attempts = monitor.finish_ns(stamps[-1] + 9).attempts
+            # Of an instant that time has only come to, the values are not known yet.
+            found.append([repr(replace(attempt, at_decision={})) for attempt in attempts])
+        assert found[0] == found[1], formula
+        decided += len(found[0])
+    assert decided > 60
