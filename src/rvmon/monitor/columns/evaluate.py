@@ -12,9 +12,10 @@ from rvmon.dataflow.inputs import Inputs
 from rvmon.dataflow.numbers import operands
 from rvmon.formula.state import Leaf
 from rvmon.monitor.columns.axis import FAR
+from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.leaves import Columns
 from rvmon.monitor.columns.moves import Moves, moves_of
-from rvmon.monitor.columns.records import DecidedAttempts, JudgedAttempts
+from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec

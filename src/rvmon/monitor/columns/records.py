@@ -1,139 +1,21 @@
-"""Attempts that were judged by columns: an object is made of one when someone looks at it."""
+"""All attempts of a report that were judged by columns, in its order."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rvmon.automaton.machine import Token
-from rvmon.formula.state import UNKNOWN
+from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.texts import texts_of
-from rvmon.monitor.columns.track import UNSEEN
-from rvmon.monitor.reasons import Finding
-from rvmon.monitor.witness import Witness
-from rvmon.verdict.attempt import Attempt, decided_attempt
+from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.attempt_json import attempt_text
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Decisions:
-    """What was noted of decided attempts of one requirement; all arrays have an entry for each.
-
-    Attributes:
-        number: of the attempt.
-        triggered: the instant of its trigger, ticks.
-        decided: the instant of the decision, ticks.
-        passed: the verdict.
-        location: of the automaton before the decision.
-        anchor: of its clock.
-        letter: that decided, or in which time did.
-        seen_then: what was read at the trigger, packed.
-        seen: what was read at the decision, packed.
-        history: for each that failed, in order, and each proposition, its `Track.now`.
-    """
-
-    number: NDArray[np.int64]
-    triggered: NDArray[np.int64]
-    decided: NDArray[np.int64]
-    passed: NDArray[np.bool_]
-    location: NDArray[np.int64]
-    anchor: NDArray[np.int64]
-    letter: NDArray[np.int64]
-    seen_then: NDArray[np.int64]
-    seen: NDArray[np.int64]
-    history: NDArray[np.int64]
-
-
-class DecidedAttempts(Sequence[Attempt]):
-    """The decided attempts of one requirement, by number.
-
-    Args:
-        witness: of the requirement.
-        clocked: per location of the automaton, whether it has a clock.
-        decisions: of the attempts.
-
-    Attributes:
-        decisions: the same.
-        reasons: of the requirement's decisions.
-        id: of the requirement.
-    """
-
-    def __init__(self, witness: Witness, clocked: Sequence[bool], decisions: Decisions) -> None:
-        self.decisions = decisions
-        self._witness = witness
-        self._clocked = clocked
-        self._failed = np.cumsum(~decisions.passed) - 1
-        self.reasons = witness.reasons
-        self.id = witness.compiled.requirement.id
-
-    def __len__(self) -> int:
-        return len(self.decisions.number)
-
-    @overload
-    def __getitem__(self, index: int) -> Attempt: ...
-    @overload
-    def __getitem__(self, index: slice) -> Sequence[Attempt]: ...
-    def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
-        if isinstance(index, slice):
-            return tuple(self[i] for i in range(*index.indices(len(self))))
-        decisions = self.decisions
-        passed = bool(decisions.passed[index])
-        return decided_attempt(
-            self.id,
-            decisions.number.item(index),
-            decisions.triggered.item(index),
-            decisions.decided.item(index),
-            Verdict.PASS if passed else Verdict.FAIL,
-            self._witness.details,
-            self._noted(index, passed=passed),
-        )
-
-    def finding(self, index: int) -> Finding:
-        """What is said of one of them."""
-        decisions = self.decisions
-        return self.reasons.of(
-            self._before(index),
-            decisions.letter.item(index),
-            bool(decisions.passed[index]),
-            decisions.decided.item(index),
-        )
-
-    def _before(self, index: int) -> Token:
-        location = self.decisions.location.item(index)
-        return location, (self.decisions.anchor.item(index),) if self._clocked[location] else ()
-
-    def _noted(self, index: int, *, passed: bool) -> tuple[Any, ...]:
-        """What `Witness.details` reads."""
-        decisions, witness = self.decisions, self._witness
-        t = decisions.decided.item(index)
-        letter = decisions.letter.item(index)
-        count = len(witness.places)
-        values, since, until = [UNKNOWN] * count, [t] * count, [None] * (2 * count)
-        if not passed:
-            rows = decisions.history[self._failed.item(index)].tolist()
-            values = [row[0] for row in rows]
-            since = [row[1] for row in rows]
-            until = [None if t == UNSEEN else t for row in rows for t in row[2:]]
-        return (
-            decisions.seen_then.item(index),
-            t,
-            self._before(index),
-            letter,
-            letter,
-            t - 1,
-            *witness.unpacked(decisions.seen.item(index)),
-            *values,
-            *since,
-            *until,
-        )
 
 
 class JudgedAttempts(LazyAttempts):

@@ -13,6 +13,7 @@ from rvmon.codegen.plan import Plan
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.bench import Open
 from rvmon.monitor.columns.axis import FAR
+from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
 from rvmon.monitor.columns.drive import (
     Driver,
     Outcome,
@@ -22,7 +23,6 @@ from rvmon.monitor.columns.drive import (
 )
 from rvmon.monitor.columns.letters import Letters, letters_along
 from rvmon.monitor.columns.moves import Moves, joint_moves
-from rvmon.monitor.columns.records import DecidedAttempts, Decisions
 from rvmon.monitor.columns.starts import Starts
 from rvmon.monitor.columns.timeline import Piece, Timeline
 from rvmon.monitor.columns.track import UNSEEN, Track

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
 from rvmon.monitor.instants import formatted, seconds_of
 from rvmon.monitor.reasons import Finding, Reasons
 from rvmon.monitor.sentence import LastWith, Place
@@ -14,8 +15,6 @@ from rvmon.verdict.attempt_json import Pattern, attempt_text, numbers_texts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from rvmon.monitor.columns.records import DecidedAttempts, Decisions
 
     Numbers = NDArray[np.int64]
 
