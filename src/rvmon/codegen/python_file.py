@@ -62,6 +62,7 @@ def python_file(plan: Plan) -> str:
     parts.append("    )\n    OUTCOMES = (\n")
     parts += [f"        {_outcomes(rule)!r},\n" for rule in plan.rules]
     parts.append("    )\n")
+    parts.append('\n\nif __name__ == "__main__":\n    print(__doc__)\n')
     return "".join(parts)
 
 

@@ -1,6 +1,8 @@
 """Monitors as one Python file."""
 
 import ast
+import subprocess
+import sys
 from types import ModuleType
 
 import pytest
@@ -96,6 +98,14 @@ def test_the_command_writes_a_file(tmp_path, capsys):
     )
     assert main(["compile", str(spec), "--to", "python"]) == 2
     assert "D4" in capsys.readouterr().err
+
+
+def test_run_as_a_script_it_says_how_it_is_used(tmp_path):
+    """Whoever runs the file sees what to import from it."""
+    path = tmp_path / "door.py"
+    path.write_text(python_file(rvmon.loads(SPEC).plan()), encoding="utf-8")
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True, check=True)
+    assert "monitor = SpecMonitor()" in done.stdout
 
 
 def test_too_many_combinations_for_a_table_are_refused():
