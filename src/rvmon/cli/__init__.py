@@ -6,6 +6,7 @@ Exit codes: 0 fine, 1 a requirement failed, 2 wrong input or spec, 3 internal er
 
 from __future__ import annotations
 
+import errno
 import gc
 import io
 import os
@@ -67,6 +68,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     0
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
+    if sys.stdout is None:  # closed by who called
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a narrow encoding costs signs, not the answer
     try:
@@ -89,9 +92,13 @@ def guarded(namespace: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         return _interrupted()
     except BrokenPipeError:  # the reader of our output left, as `head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 0
     except Exception as error:
+        if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+            print(f"error: the output cannot be written: {error.strerror}", file=sys.stderr)
+            _drop_output()
+            return 2
         if os.environ.get("RVMON_TRACEBACK"):
             raise
         print(
@@ -101,6 +108,11 @@ def guarded(namespace: argparse.Namespace) -> int:
         )
         return 3
     return int(code)
+
+
+def _drop_output() -> None:
+    """Let what is not written yet go nowhere, or the interpreter complains as it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _interrupted() -> int:

@@ -37,6 +37,8 @@ def judged_at_once(words: Sequence[str]) -> int | None:
     if folder is None or not _is_plain_file(trace):
         return None
     try:
+        if not stat.S_ISREG(os.stat(spec).st_mode):
+            return None
         text = Path(spec).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return None
@@ -45,7 +47,8 @@ def judged_at_once(words: Sequence[str]) -> int | None:
     rvmon = os.path.dirname(os.path.dirname(__file__))
     said = [__version__, *files_told(rvmon), spec, text, options, os.environ.get("CC", "")]
     key = hashlib.sha256(json.dumps(said).encode()).hexdigest()
-    found = _known(folder / f"run-{key}.json") or _made(folder / f"run-{key}.json", spec, options)
+    path = folder / f"run-{key}.json"
+    found = _known(path) or _made(path, spec, text, options)
     return None if found is None else _judged(*found, trace)
 
 
@@ -93,16 +96,18 @@ def _known(path: Path) -> tuple[Path, str] | None:
         return None
 
 
-def _made(path: Path, spec: str, options: dict[str, list[str]]) -> tuple[Path, str] | None:
-    """The same, compiled now; `None` if there is something to say against it."""
+def _made(
+    path: Path, spec: str, text: str, options: dict[str, list[str]]
+) -> tuple[Path, str] | None:
+    """The same, compiled now from the text; `None` if there is something to say against it."""
     from rvmon.cli.constants import constants_of
     from rvmon.codegen.c_program import built_program
     from rvmon.errors import RvmonError
-    from rvmon.loading import load
+    from rvmon.loading import loads
 
     only = options.get("--only")
     try:
-        loaded = load(spec, const=constants_of(options.get("--const", [])))
+        loaded = loads(text, name=spec, const=constants_of(options.get("--const", [])))
         if loaded.checked.covers:  # the samples are asked once more whether they show the goals
             return None
         ids = None if only is None else [name.strip() for name in only[0].split(",")]

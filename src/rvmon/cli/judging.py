@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -9,7 +10,7 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from rvmon.cli.progress import shown_while_reading
-from rvmon.cli.second_look import second_look
+from rvmon.cli.second_look import can_be_read_again, second_look
 from rvmon.errors import TraceError
 from rvmon.loading import load
 from rvmon.readers.recording import FileRecording
@@ -110,6 +111,9 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
     """Judge one recording; if it is broken, what was decided before the break stays decided."""
     before: list[Attempt] = []
     try:
+        again = can_be_read_again(trace)
+        if not again and trace.endswith((".csv", ".parquet")):
+            raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
         ordered = spec.checked.max_delay is None
         recording = FileRecording(trace, spec.schema, ordered=ordered)
         if options.strict_columns:
@@ -117,7 +121,7 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         end = None if options.until is None else ticks_of_seconds(options.until)
         report = None
         meter = None
-        if not options.robustness:
+        if again and not options.robustness:
             report = spec.evaluate_file(
                 trace,
                 engine=options.engine,
@@ -148,8 +152,9 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
     except TraceError as error:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
-        return Judged(trace, None, tuple(before), place + message)
+        return Judged(_shown(trace), None, tuple(before), place + message)
     report = second_look(spec, trace, report, recording.names, goals=options.only is None)
+    trace = _shown(trace)
     return Judged(trace, _named(report, trace, recording.health()))
 
 
@@ -184,6 +189,11 @@ def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iter
     if ordered:
         return takewhile(lambda sample: sample.t <= end, samples)
     return (sample for sample in samples if sample.t <= end)
+
+
+def _shown(trace: str) -> str:
+    """The name of a recording as text; file names need not be."""
+    return os.fsencode(trace).decode("utf-8", "replace")
 
 
 def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:

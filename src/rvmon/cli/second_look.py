@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.readers.blocks import NotPlainError
@@ -28,12 +29,17 @@ def in_order(recording: Recording) -> list[Sample]:
     return [merged[t] for t in sorted(merged)]
 
 
+def can_be_read_again(trace: str) -> bool:
+    """Whether a recording is a file, and not a stream that is gone when it was read."""
+    return trace != "-" and not Path(trace).is_fifo()
+
+
 def second_look(
     spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
 ) -> Report:
     """The report with what the triggers lacked that never came true, and with the cover goals.
 
-    Standard input cannot be read again.
+    Streams cannot be read again.
 
     Args:
         spec: the specification.
@@ -44,7 +50,7 @@ def second_look(
     """
     silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
     end = report.end
-    if trace == "-" or end is None:
+    if end is None or not can_be_read_again(trace):
         return report
 
     @cache

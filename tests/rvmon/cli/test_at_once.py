@@ -1,5 +1,7 @@
 """`rvmon run --engine c --format json` by a program that was compiled before."""
 
+import json
+import os
 import shutil
 
 import pytest
@@ -147,3 +149,29 @@ def test_what_is_chosen_and_overridden_counts(folder, capfd):
     assert '"D1"' not in capfd.readouterr().out
     (folder / "cell.rv").write_text(SPEC.replace("< 100", "< 7"))
     assert judged_at_once(command("x.csv")) == 1
+
+
+def test_a_specification_that_comes_through_a_pipe_is_left_as_it_is(folder):
+    """Nobody else could read it again."""
+    os.mkfifo(folder / "pipe.rv")
+    (folder / "plain.csv").write_text(PLAIN)
+    words = ["run", "pipe.rv", "plain.csv", "--engine", "c", "--format", "json"]
+    assert judged_at_once(words) is None
+
+
+def test_what_is_compiled_is_the_text_that_was_read(folder, monkeypatch, capfd):
+    """A file that changes meanwhile changes nothing that is kept."""
+    (folder / "plain.csv").write_text(PLAIN)
+    path = folder / "cell.rv"
+    path.write_text(SPEC.replace("parts < 100", "parts < 101"))
+    read = type(path).read_text
+
+    def read_and_change(self, *given, **options):
+        text = read(self, *given, **options)
+        if self.name == "cell.rv":
+            path.write_text(SPEC.replace("parts < 100", "parts > 101"))
+        return text
+
+    monkeypatch.setattr(type(path), "read_text", read_and_change)
+    judged_at_once(command("plain.csv"))
+    assert json.loads(capfd.readouterr().out)["requirements"]["D2"]["verdict"] == "P"

@@ -1,0 +1,76 @@
+"""Recordings and outputs that are no files."""
+
+import json
+import os
+import subprocess
+import sys
+from threading import Thread
+
+import pytest
+
+SPEC = """
+spec door
+signal closed : bool
+requirement D1
+  always closed
+"""
+LINES = '{"t":0,"closed":true}\n{"t":1,"closed":false}\n'
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A specification, and a recording."""
+    (tmp_path / "door.rv").write_text(SPEC)
+    (tmp_path / "run.jsonl").write_text(LINES)
+    return tmp_path
+
+
+def rvmon(folder, *words, **options):
+    """What the program does."""
+    command = [sys.executable, "-m", "rvmon", *words]
+    return subprocess.run(  # noqa: S603
+        command, cwd=folder, stderr=subprocess.PIPE, timeout=60, check=False, **options
+    )
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+def test_a_pipe_is_read_once(folder):
+    """Lines are judged as they come; what has to be read twice is refused."""
+    pipe = folder / "pipe.jsonl"
+    os.mkfifo(pipe)
+    writer = Thread(target=pipe.write_text, args=(LINES,))
+    writer.start()
+    done = rvmon(folder, "run", "door.rv", "pipe.jsonl", stdout=subprocess.PIPE)
+    writer.join()
+    assert done.returncode == 1, done.stderr
+    os.mkfifo(folder / "pipe.csv")
+    done = rvmon(folder, "run", "door.rv", "pipe.csv", stdout=subprocess.PIPE)
+    assert done.returncode == 2
+    assert b"pipe.csv: is a pipe" in done.stderr
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no full device")
+def test_a_full_disk_is_told(folder):
+    """With its cause, and not as an error of ours."""
+    with open("/dev/full", "w") as full:
+        done = rvmon(folder, "run", "door.rv", "run.jsonl", stdout=full)
+    assert done.returncode == 2
+    assert b"error: the output cannot be written" in done.stderr
+
+
+@pytest.mark.skipif(os.name != "posix", reason="closes a descriptor")
+def test_a_closed_output_costs_nothing_but_the_output(folder):
+    """The exit code still tells."""
+    done = rvmon(folder, "run", "door.rv", "run.jsonl", preexec_fn=lambda: os.close(1))
+    assert (done.returncode, done.stderr) == (1, b"")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="file names are bytes")
+def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(folder):
+    """What cannot be shown is replaced."""
+    name = os.fsencode(folder) + b"/n\xff.jsonl"
+    with open(name, "w") as file:
+        file.write(LINES)
+    words = ["run", "door.rv", os.fsdecode(name), "--format", "json"]
+    done = rvmon(folder, *words, stdout=subprocess.PIPE)
+    assert json.loads(done.stdout)["trace"].endswith("n\ufffd.jsonl")
