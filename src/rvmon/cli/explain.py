@@ -72,6 +72,8 @@ def _ids(named: list[str], spec: Spec) -> list[str]:
             raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
     if len(named) > 2 or (len(named) == 2 and named[0] == named[1]):
         raise RvmonError("error: expected one requirement, or two different ones to tell apart")
+    if not spec.requirements:
+        raise RvmonError("error: there is no requirement: there is nothing to explain")
     return named or list(spec.requirements)
 
 

@@ -131,6 +131,8 @@ def _show_warnings(spec: Spec) -> None:
         from rvmon.diagnostics.render import render_full
 
         print(render_full(spec.warnings), file=sys.stderr)
+    if not spec.requirements and not spec.checked.covers:
+        print(f"{spec.checked.name} has no requirement: nothing is judged", file=sys.stderr)
 
 
 def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
@@ -210,7 +212,7 @@ def _ids(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
         if name not in spec.requirements:
             raise UnknownNameError(
                 f"no requirement `{name}` in {spec.checked.name}: "
-                f"there are {', '.join(spec.requirements)}"
+                f"there are {', '.join(spec.requirements) or 'none'}"
             )
     return ids
 

@@ -296,3 +296,16 @@ def test_cover_goals_are_shown_or_open(tmp_path, capsys):
     text = capsys.readouterr().out
     assert json.loads(text)["goals"] == {"met": "P", "never": "NT"}
     assert Report.from_json(text).goals == {"met": "P", "never": "NT"}
+
+
+def test_a_specification_without_requirements_is_told(tmp_path, capsys):
+    """An empty table does not speak for itself."""
+    (tmp_path / "empty.rv").write_text("spec empty\nsignal b : bool\n")
+    (tmp_path / "one.jsonl").write_text('{"t": 0, "b": true}\n')
+    spec, trace = str(tmp_path / "empty.rv"), str(tmp_path / "one.jsonl")
+    assert main(["run", spec, trace]) == 0
+    assert "empty has no requirement: nothing is judged" in capsys.readouterr().err
+    assert main(["run", spec, trace, "--only", "R1"]) == 2
+    assert "there are none" in capsys.readouterr().err
+    assert main(["explain", spec]) == 2
+    assert "there is nothing to explain" in capsys.readouterr().err
