@@ -1,8 +1,8 @@
 """The user's cache folder: data that can be worked out again, whole or not at all.
 
 It holds specifications as data, and with the engine `c` what a C compiler made of our source, which
-is run: so a folder that anyone else can write to is passed over. Whatever is wrong with it, it can be
-done without; it can be deleted at any time, and used by several processes at once.
+is run: so a folder that anyone else can write to is passed over. Whatever is wrong with it, it can
+be done without; it can be deleted at any time, and used by several processes at once.
 `RVMON_CACHE=off` switches it off.
 """
 
