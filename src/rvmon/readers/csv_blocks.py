@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, decimals, nanoseconds, truth_values, whole_numbers
 from rvmon.readers.held import held_values
 from rvmon.readers.pieces import BLOCK, whole_lines
+from rvmon.readers.ticks import ticks_in_range
 from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:
@@ -61,8 +63,11 @@ def csv_blocks(
 
 
 def _plain_layout(header: bytes, schema: Schema) -> Layout:
+    names = header.decode().split(",")
+    if max(map(len, names)) > csv.field_size_limit():
+        raise NotPlainError
     try:
-        layout = read_layout(header.decode().split(","), schema)
+        layout = read_layout(names, schema)
     except TraceError:
         raise NotPlainError from None
     if any(column.field is not None for column in layout.events):
@@ -83,6 +88,8 @@ def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[
     if not is_end[:, -1].all() or is_end[:, :-1].any():
         raise NotPlainError
     starts = np.concatenate(([0], ends[:-1] + 1)).reshape(rows, layout.width)
+    if (table - starts).max() > csv.field_size_limit():  # whoever reads rows refuses it
+        raise NotPlainError
 
     def cells(index: int) -> Cells:
         return Cells(text, starts[:, index], table[:, index])
@@ -91,6 +98,10 @@ def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[
     times = _plain(read(cells(layout.time)))
     if not (times[1:] > times[:-1]).all():
         raise NotPlainError
+    try:
+        ticks_in_range(times)
+    except TraceError:  # whoever reads rows says in which it is
+        raise NotPlainError from None
     columns: dict[str, NDArray[Any]] = {
         column.name: _values(cells(column.index), column, fillable, held)
         for column in layout.signals

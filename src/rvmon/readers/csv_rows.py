@@ -112,7 +112,7 @@ def split_lines(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
             return
         except csv.Error as error:
             raise TraceError(f"line {reader.line_num}: not a CSV row ({error})") from None
-        if row:
+        if row and not (len(row) == 1 and row[0].isspace()):
             yield reader.line_num, [cell.strip() for cell in row]
 
 
@@ -165,7 +165,8 @@ def _ticks(cell: str, *, in_ticks: bool) -> int:
     if not in_ticks:
         return ticks_of_text(cell)
     try:
-        t = int(cell)
+        # Python reads 1_000 as a number; no recording means it.
+        t = int(cell.replace("_", "?"))
     except ValueError:
         raise TraceError(f"time `{shorten(cell)}` is not a whole number of nanoseconds") from None
     if abs(t) >= TIME_LIMIT:

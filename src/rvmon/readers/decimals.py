@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 _DIGITS = 15
 """So many digits and their power of ten are exact doubles: the quotient is rounded once."""
 
+_MOST = 19
+"""So many digits fit in 64 bits without a sign: what 63 do not hold comes out negative."""
+
 _POINT = np.uint8((ord(".") - ord("0")) % 256)
 
 _POWERS = 10.0 ** np.arange(_DIGITS + 1)
@@ -35,13 +38,13 @@ class Cells:
 
 
 def whole_numbers(cells: Cells) -> NDArray[np.int64] | None:
-    """The cells as integers; `None` if one is none, or has more than 18 digits.
+    """The cells as integers; `None` if one is none, or is beyond 64 bits.
 
     >>> text = np.frombuffer(b"12,-7", np.uint8)
     >>> whole_numbers(Cells(text, np.array([0, 3]), np.array([2, 5]))).tolist()
     [12, -7]
     """
-    read = _mantissas(cells, 18, _without_points)
+    read = _mantissas(cells, _MOST, _without_points)
     return None if read is None else read[0]
 
 
@@ -69,7 +72,7 @@ def nanoseconds(cells: Cells) -> NDArray[np.int64] | None:
     >>> nanoseconds(Cells(text, np.array([0, 4]), np.array([3, 6]))).tolist()
     [500000000, 12000000000]
     """
-    read = _mantissas(cells, 18, _reader(cells))
+    read = _mantissas(cells, _MOST, _reader(cells))
     if read is None:
         return None
     mantissa, behind = read
@@ -106,7 +109,7 @@ def _mantissas(
     if read is None:
         return None
     mantissa, behind, digits = read
-    if digits.max() > most:
+    if digits.max() > most or mantissa.min() < 0:
         return None
     return np.where(first == ord("-"), -mantissa, mantissa), behind
 
@@ -125,6 +128,8 @@ def _reader(cells: Cells) -> _Reader:
 def _without_points(
     cells: Cells, begins: NDArray[np.int64], lengths: NDArray[np.int64]
 ) -> _Read | None:
+    if lengths.max() > _MOST:
+        return None
     mantissa = np.zeros(len(begins), np.int64)
     shortest = int(lengths.min())
     for place in range(int(lengths.max())):

@@ -151,6 +151,8 @@ def _fields(
     for number, (key, value) in enumerate(found.items()):
         own, name = f"f{number}", prefix + key
         names[own] = key
+        if name in shape.places or name in shape.ignored:  # `a.b` beside `b` in `a`
+            raise NotPlainError
         type_: Any = _ANYTHING
         if name in schema.signals:
             kind = schema.signals[name]

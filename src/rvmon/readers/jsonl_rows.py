@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -15,6 +16,9 @@ from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 
 _MISSING = object()
+
+_HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
+"""The first half of an escaped surrogate pair without the second."""
 
 
 def jsonl_samples(
@@ -39,6 +43,10 @@ def jsonl_samples(
         try:
             t, values = read_object(decode(line), schema, ignored)
         except msgspec.DecodeError as error:
+            if "truncated" in str(error) and _HALF_PAIR.search(line):
+                raise TraceError(
+                    f"line {number}: not a JSON object (half of a surrogate pair such as `\\ud800`)"
+                ) from None
             cut = "" if line.endswith("\n") else "; the file ends here: was it cut off?"
             raise TraceError(f"line {number}: not a JSON object ({error}){cut}") from None
         except UnicodeEncodeError:  # standard input may stand in for what it cannot decode
@@ -69,7 +77,7 @@ def read_object(
     if "events" not in schema.signals and isinstance(fields.get("events"), list | str):
         for name in _listed(fields.pop("events")):
             if not isinstance(name, str):
-                raise TraceError(f"`events`: `{shorten(str(name))}` is not the name of an event")
+                raise TraceError(f"`events`: `{_written(name)}` is not the name of an event")
             if name in schema.events:
                 values[name] = True
             else:
@@ -87,17 +95,27 @@ def _listed(events: list[object] | str) -> list[object]:
     return events
 
 
+def _written(value: object) -> str:
+    """A decoded value as it stands in the line, shortened."""
+    return shorten(value if isinstance(value, str) else msgspec.json.encode(value).decode())
+
+
 def _ticks(fields: dict[str, Any]) -> int:
     seconds, ticks = fields.pop("t", _MISSING), fields.pop("t_ns", _MISSING)
     if (seconds is _MISSING) == (ticks is _MISSING):
         raise TraceError("expected one time, `t` (seconds) or `t_ns` (integer nanoseconds)")
     if seconds is not _MISSING:
         if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
-            raise TraceError(f"time `{shorten(str(seconds))}` is not a number of seconds")
+            raise TraceError(f"time `{_written(seconds)}` is not a number of seconds")
         return ticks_of_seconds(seconds)
-    if not isinstance(ticks, int) or isinstance(ticks, bool) or abs(ticks) >= TIME_LIMIT:
-        raise TraceError(f"time `{shorten(str(ticks))}` is not a whole number of nanoseconds")
-    return ticks
+    if isinstance(ticks, (int, float)) and not isinstance(ticks, bool):
+        if abs(ticks) >= TIME_LIMIT:  # beyond 64 bits integers are decoded as floats
+            raise TraceError(
+                f"time `{_written(ticks)}` is out of range: at most 2**62 ns (146 years)"
+            )
+        if isinstance(ticks, int):
+            return ticks
+    raise TraceError(f"time `{_written(ticks)}` is not a whole number of nanoseconds")
 
 
 def _collect(
@@ -128,7 +146,7 @@ def _occurrence(value: object, fields: Mapping[str, Kind], name: str) -> Value:
         return tuple(_payload(item, fields, name) for item in value)
     raise TraceError(
         f"event `{name}`: expected true, false or a payload such as {{...}}, "
-        f"found `{shorten(str(value))}`"
+        f"found `{_written(value)}`"
     )
 
 
@@ -156,4 +174,4 @@ def _scalar(value: object, kind: Kind, name: str) -> Scalar:
             return float(value)
         case Kind.LABEL, str():
             return value
-    raise TraceError(f"field `{name}`: `{shorten(str(value))}` is not {DESCRIPTION[kind]}")
+    raise TraceError(f"field `{name}`: `{_written(value)}` is not {DESCRIPTION[kind]}")

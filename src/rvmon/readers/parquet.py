@@ -5,7 +5,7 @@ Needs pyarrow, the extra `arrow`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.columns import arrow_cells
 from rvmon.readers.csv_rows import Column, Layout, occurrences, read_layout
+from rvmon.readers.values import shorten
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds, whole_ticks
@@ -32,7 +33,7 @@ def _opened(path: str | Path) -> Any:
 
     Raises:
         RvmonError: there is no pyarrow.
-        TraceError: it is no Parquet file.
+        TraceError: it is no Parquet file, or a damaged one.
     """
     try:
         import pyarrow
@@ -43,8 +44,40 @@ def _opened(path: str | Path) -> Any:
         ) from None
     try:
         return pyarrow.parquet.ParquetFile(path)
-    except pyarrow.ArrowInvalid as error:
-        raise TraceError(f"not a Parquet file ({str(error).splitlines()[0]})") from None
+    except pyarrow.ArrowException as error:
+        raise TraceError(f"not a Parquet file ({_first_line(error)})") from None
+    except OSError as error:
+        if error.errno is not None:  # the system says why it cannot be opened
+            raise
+        raise _damage(error) from None
+
+
+def _batches(path: str | Path, names: Sequence[str]) -> Iterator[Any]:
+    """Columns of the file, some rows at a time.
+
+    Raises:
+        TraceError: it cannot be read to its end.
+    """
+    file = _opened(path)
+    import pyarrow
+
+    batches = file.iter_batches(ROWS, columns=names)
+    while True:
+        try:
+            batch = next(batches)
+        except StopIteration:
+            return
+        except (pyarrow.ArrowException, OSError) as error:
+            raise _damage(error) from None
+        yield batch
+
+
+def _damage(error: Exception) -> TraceError:
+    return TraceError(f"damaged Parquet file ({_first_line(error)}): write or copy it again")
+
+
+def _first_line(error: Exception) -> str:
+    return shorten(str(error).partition("\n")[0], 120)
 
 
 def parquet_layout(path: str | Path, schema: Schema) -> Layout:
@@ -70,16 +103,23 @@ def parquet_blocks(
 
     Raises:
         NotPlainError: there are gaps of other names or before the first value, payloads or labels,
-            or the instants do not increase or are out of range.
+            or the instants do not increase or are out of range; or the file is damaged.
     """
-    layout = _layout_or_not_plain(path, schema)
+    try:
+        yield from _plain_blocks(path, schema, fillable)
+    except TraceError:  # whoever reads rows says in which it is
+        raise NotPlainError from None
+
+
+def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) -> Iterator[Block]:
+    layout = parquet_layout(path, schema)
     columns = (*layout.signals, *layout.events)
     if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
         raise NotPlainError
     stamp = "t_ns" if layout.in_ticks else "t"
     last = -TIME_LIMIT
     held: dict[str, Any] = {}
-    for batch in _opened(path).iter_batches(ROWS, columns=[stamp, *(c.name for c in columns)]):
+    for batch in _batches(path, [stamp, *(c.name for c in columns)]):
         times = _instants(batch, stamp, in_ticks=layout.in_ticks)
         if not len(times) or times[0] <= last or not (times[1:] > times[:-1]).all():
             raise NotPlainError
@@ -95,25 +135,15 @@ def parquet_blocks(
         yield Block(times, found)
 
 
-def _layout_or_not_plain(path: str | Path, schema: Schema) -> Layout:
-    try:
-        return parquet_layout(path, schema)
-    except TraceError:
-        raise NotPlainError from None
-
-
 def _instants(batch: Any, stamp: str, *, in_ticks: bool) -> NDArray[np.int64]:
     from rvmon.readers.ticks import ticks_in_range, ticks_of_column
 
     column = batch.column(stamp)
     if column.null_count:
         raise NotPlainError
-    try:
-        if in_ticks:
-            return ticks_in_range(_array_of(column, "i"))
-        return ticks_of_column(_array_of(column, "fi"))
-    except TraceError:  # whoever reads rows says in which it is
-        raise NotPlainError from None
+    if in_ticks:
+        return ticks_in_range(_array_of(column, "i"))
+    return ticks_of_column(_array_of(column, "fi"))
 
 
 def _array_of(column: Any, kinds: str) -> NDArray[Any]:
@@ -125,8 +155,10 @@ def _array_of(column: Any, kinds: str) -> NDArray[Any]:
 
 def _occurrences(batch: Any, name: str, *, gaps: bool) -> NDArray[Any]:
     """Where an event occurs; a null says that it does not."""
+    from pyarrow import types
+
     column = batch.column(name)
-    if not gaps and column.null_count:
+    if not types.is_boolean(column.type) or (column.null_count and not gaps):
         raise NotPlainError
     return _array_of(column.fill_null(False) if column.null_count else column, "b")
 
@@ -165,12 +197,24 @@ def parquet_samples(
     stamp = "t_ns" if layout.in_ticks else "t"
     columns = (*layout.signals, *layout.events)
     names = [stamp, *(_called(column) for column in columns)]
+    truths = [_called(column) for column in columns if column.kind is Kind.BOOL]
     row = 0
-    for batch in _opened(path).iter_batches(ROWS, columns=names):
+    for batch in _batches(path, names):
         for own in zip(*(arrow_cells(batch.column(name)) for name in names), strict=True):
             row += 1
             cells = dict(zip(names, own, strict=True))
+            _refuse_numbers_as_truths(cells, truths, row)
             yield row, _ticks(cells[stamp], row, in_ticks=layout.in_ticks), _values(cells, layout)
+
+
+def _refuse_numbers_as_truths(cells: Mapping[str, Any], names: Sequence[str], row: int) -> None:
+    for name in names:
+        cell = cells[name]
+        if isinstance(cell, int | float) and not isinstance(cell, bool):
+            raise TraceError(
+                f"row {row}: column `{shorten(name)}`: the number `{cell}` is no truth value: "
+                "cast the column to bool"
+            )
 
 
 def _called(column: Column) -> str:
@@ -189,11 +233,13 @@ def _values(cells: Mapping[str, Any], layout: Layout) -> dict[str, Value]:
 
 def _ticks(stamp: Any, row: int, *, in_ticks: bool) -> int:
     try:
-        if in_ticks and isinstance(stamp, int):
+        if isinstance(stamp, bool):
+            pass
+        elif in_ticks and isinstance(stamp, int):
             return whole_ticks(stamp)
-        if not in_ticks and isinstance(stamp, int | float):
+        elif not in_ticks and isinstance(stamp, int | float):
             return ticks_of_seconds(stamp)
     except TraceError as error:
         raise TraceError(f"row {row}: {error}") from None
     wanted = "a whole number of nanoseconds" if in_ticks else "a number of seconds"
-    raise TraceError(f"row {row}: time `{stamp}` is not {wanted}")
+    raise TraceError(f"row {row}: time `{shorten(str(stamp))}` is not {wanted}")

@@ -126,7 +126,6 @@ class FileRecording:
             _, header = next(rows)
         except StopIteration:
             raise TraceError("is empty: expected a header with a time column `t`") from None
-        header[0] = header[0].removeprefix("\ufeff")
         return read_layout(header, self._schema)
 
     @contextmanager
@@ -136,7 +135,8 @@ class FileRecording:
             if self.path == "-":
                 yield sys.stdin
             else:
-                with open(self.path, encoding="utf-8", newline="") as text:
+                # The mark that some editors begin a text with would make its first cell odd.
+                with open(self.path, encoding="utf-8-sig", newline="") as text:
                     yield text
 
     @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import islice
 
+from rvmon.errors import RvmonError
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -26,7 +27,13 @@ def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
 
 
 def opening(report: Report) -> tuple[str, Attempt | None]:
-    """The requirement and attempt that a page opens on: the first F, else I, else any."""
+    """The requirement and attempt that a page opens on: the first F, else I, else any.
+
+    Raises:
+        RvmonError: there is no requirement.
+    """
+    if not report.verdicts:
+        raise RvmonError("a page shows requirements, and the specification has none: add one")
     for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
         for attempt in report.attempts:
             if attempt.verdict is verdict:

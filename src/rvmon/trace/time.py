@@ -46,9 +46,8 @@ def ticks_of_seconds(seconds: float | Fraction) -> int:
     # The float product is within half a tick of the exact one only up to 2**22 s, hence Fraction.
     ticks = round(Fraction(seconds) * TICKS_PER_SECOND)
     if abs(ticks) >= TIME_LIMIT:
-        raise TraceError(
-            f"time {reprlib.repr(seconds)} s is out of range: at most 2**62 ns (146 years)"
-        )
+        shown = round(seconds) if isinstance(seconds, Fraction) else seconds
+        raise TraceError(f"time {_shown(shown)} s is out of range: at most 2**62 ns (146 years)")
     return ticks
 
 
@@ -69,10 +68,14 @@ def whole_ticks(t: Any) -> int:
             "take seconds"
         ) from None
     if not -TIME_LIMIT < ticks < TIME_LIMIT:
-        raise TraceError(
-            f"time {reprlib.repr(ticks)} ns is out of range: at most 2**62 ns (146 years)"
-        )
+        raise TraceError(f"time {_shown(ticks)} ns is out of range: at most 2**62 ns (146 years)")
     return ticks
+
+
+def _shown(number: float) -> str:
+    """A number for a message; of a very long integer only that it is one."""
+    long = isinstance(number, int) and abs(number) > 10**30
+    return "beyond 10**30" if long else repr(number)
 
 
 def _plain(seconds: Any) -> float | Fraction:
@@ -97,14 +100,19 @@ def ticks_of_text(text: str) -> int:
     >>> ticks_of_text("1700000000.123456789"), ticks_of_text("1e-3")
     (1700000000123456789, 1000000)
     """
+    shown = reprlib.repr(text)[1:-1]
     try:
-        number = Decimal(text)
+        # Python reads 1_000 as a number; no recording means it.
+        number = Decimal(text.replace("_", "?"))
     except InvalidOperation:
-        raise TraceError(f"time `{text}` is not a number of seconds") from None
+        raise TraceError(f"time `{shown}` is not a number of seconds") from None
     # An exponent is bounded before it becomes digits: 1e999999999 must not fill the memory.
-    if not number.is_finite() or number.adjusted() > 18:
-        raise TraceError(f"time `{text}` is out of range: at most 2**62 ns (146 years)")
-    return ticks_of_seconds(Fraction(0) if number.adjusted() < -30 else Fraction(number))
+    if number.is_finite() and number.adjusted() <= 18:
+        exact = Fraction(0) if number.adjusted() < -30 else Fraction(number)
+        ticks = round(exact * TICKS_PER_SECOND)
+        if abs(ticks) < TIME_LIMIT:
+            return ticks
+    raise TraceError(f"time `{shown}` is out of range: at most 2**62 ns (146 years)")
 
 
 def later(t: int, duration: int) -> int:

@@ -175,6 +175,11 @@ def test_what_is_no_parquet_file_is_refused_with_its_name(tmp_path):
         "t_ns,p\n2.,1\n",
         "t,x\n1,é\n",
         "t_ns,p\n9223372036854775807,1\n",
+        "t_ns,p\n4611686018427387904,1\n",
+        "t,p\n4611686018.427387904,1\n",
+        "t,count\n1,9223372036854775808\n",
+        "t,count\n1,9999999999999999999\n",
+        "t,count\n1,18446744073709551616\n",
     ],
 )
 def test_what_is_not_plain_is_left_to_the_other_way(text, tmp_path):
@@ -184,6 +189,20 @@ def test_what_is_not_plain_is_left_to_the_other_way(text, tmp_path):
     with pytest.raises(NotPlainError):
         list(csv_blocks(tmp_path / "a.csv", spec.schema))
     assert spec.evaluate_file(tmp_path / "a.csv") is None
+
+
+@pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
+def test_a_cell_that_rows_refuse_is_not_read_by_columns(text, tmp_path):
+    """A cell is as long as it may be, or one longer: judged both ways, or refused with its line."""
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    (tmp_path / "a.csv").write_text(text.format("a" * 131072))
+    assert len(list(csv_blocks(tmp_path / "a.csv", spec.schema))) == 1
+    assert spec.evaluate(tmp_path / "a.csv") == by_rows(spec, tmp_path / "a.csv")
+    (tmp_path / "a.csv").write_text(text.format("a" * 131073))
+    with pytest.raises(NotPlainError):
+        list(csv_blocks(tmp_path / "a.csv", spec.schema))
+    with pytest.raises(rvmon.TraceError, match=r"line \d: .*field larger than field limit"):
+        spec.evaluate(tmp_path / "a.csv")
 
 
 def cells(texts: list[str]) -> Cells:
@@ -204,8 +223,9 @@ def test_numbers_are_exact():
     assert read is not None
     assert [repr(x) for x in read.tolist()] == [repr(float(text)) for text in texts]
     texts.remove("999999999999999")
+    texts += ["1700000000.123456789", "-1700000000.999999999"]
     ticks = nanoseconds(cells(texts))
     assert ticks is not None
     assert ticks.tolist() == [ticks_of_text(text) for text in texts]
-    numbers = ["0", "-7", "+12", "123456789012345678"]
+    numbers = ["0", "-7", "+12", "-1700000000123456789", "9223372036854775807"]
     assert whole_numbers(cells(numbers)).tolist() == [int(text) for text in numbers]

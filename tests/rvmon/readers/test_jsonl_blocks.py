@@ -133,6 +133,25 @@ def test_what_is_not_plain_is_left_to_whoever_reads_lines(text, tmp_path):
         list(jsonl_blocks(path, SCHEMA, ALL, Counter()))
 
 
+@pytest.mark.parametrize("name", ["arm.speed", "note.more"])
+def test_a_name_that_is_flat_and_nested_loses_no_value(name, tmp_path):
+    """A line that holds a name in both ways is left to whoever reads lines, who sees both."""
+    outer, inner = name.split(".")
+    found = [
+        {"t": 0, name: 1.0, outer: {inner: 2.0}},
+        {"t": 1, name: 9.0},
+        {"t": 2, outer: {inner: 1.0}},
+    ]
+    path = written(tmp_path / "a.jsonl", found)
+    spec = rvmon.loads(
+        'spec a "A"\nsignal arm.speed : real\nrequirement R\n  always arm.speed < 5.0\n'
+    )
+    with pytest.raises(NotPlainError):
+        list(jsonl_blocks(path, spec.schema, frozenset({"arm.speed"}), Counter()))
+    if name in spec.schema.signals:
+        assert spec.evaluate(path).verdicts["R"] == "F"
+
+
 def test_a_plain_file_is_read(tmp_path):
     """Values as declared; what a line leaves out holds, or does not occur."""
     path = tmp_path / "a.jsonl"

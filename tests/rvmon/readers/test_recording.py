@@ -99,6 +99,11 @@ BAD = {
     "double column": ("a.csv", "t,n,n\n1,1,1\n", "`n` stands twice"),
     "short row": ("a.csv", "t,n,ok\n1,1\n", "line 2: 2 cells where the header has 3"),
     "underscored number": ("a.csv", "t,n\n0,1_0\n", "`1_0` is not a whole number"),
+    "underscored time": ("a.csv", "t,n\n1_0,1\n", "line 2: time `1_0` is not a number"),
+    "underscored ticks": ("a.csv", "t_ns,n\n1_0,1\n", "line 2: time `1_0` is not a whole"),
+    "late time": ("a.csv", "t,n\n10000000000,1\n", "line 2: time `10000000000` is out of range"),
+    "very late time": ("a.csv", f"t,n\n{'9' * 5000},1\n", "999...999"),
+    "blanks and cells": ("a.csv", "t,n\n   \n0,x\n", "line 3: column `n`: `x`"),
     "binary file": ("a.csv", b"\x7fELF\x02\x01\xff\xfe\x00" * 40, "is this a binary file?"),
     "open quote": ("a.csv", 't,n\n0,"1\n', "not a CSV row"),
     "empty JSON lines": ("a.jsonl", "\n\n", "holds no sample"),
@@ -106,7 +111,10 @@ BAD = {
     "JSON array": ("a.jsonl", "[1, 2]\n", "line 1: expected an object"),
     "JSON without time": ("a.jsonl", '{"n": 1}\n', "line 1: expected one time"),
     "JSON text in a number": ("a.jsonl", '{"t": 1, "n": "x"}\n', "field `n`: `x`"),
-    "JSON truth in a number": ("a.jsonl", '{"t": 1, "n": true}\n', "field `n`: `True`"),
+    "JSON truth in a number": ("a.jsonl", '{"t": 1, "n": true}\n', "field `n`: `true`"),
+    "JSON late": ("a.jsonl", f'{{"t_ns": {"9" * 20}, "n": 1}}\n', "is out of range"),
+    "JSON truth as time": ("a.jsonl", '{"t": false, "n": 1}\n', "line 1: time `false` is not"),
+    "JSON half pair": ("a.jsonl", '{"t": 1, "mode": "\\ud800"}\n', "half of a surrogate pair"),
     "JSON deep": ("a.jsonl", '{"t": 1, "n": ' + "[" * 100_000 + "\n", "line 1:"),
     "JSON bad event": ("a.jsonl", '{"t": 1, "go": "yes"}\n', "event `go`: expected true"),
     "JSON events no list": ("a.jsonl", '{"t": 1, "events": "go"}\n', 'such as ["go"]'),
@@ -149,6 +157,18 @@ def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path, file):
     text = "t,n\r\n1,4\r\n" if file == "a.csv" else '{"t": 1, "n": 4}\r\n'
     _, samples = read(tmp_path, file, "\ufeff" + text)
     assert samples == [(1_000_000_000, {"n": 4})]
+
+
+def test_a_byte_order_mark_stands_before_a_quoted_header(tmp_path):
+    """The mark is no part of the first cell, in quotes or not."""
+    _, samples = read(tmp_path, "a.csv", '\ufeff"t","n"\n1,4\n')
+    assert samples == [(1_000_000_000, {"n": 4})]
+
+
+def test_a_line_of_blanks_is_passed_over(tmp_path):
+    """Between rows, blanks say as much as an empty line."""
+    _, samples = read(tmp_path, "a.csv", "t,n\n1,4\n \t \n2,5\n")
+    assert [t for t, _ in samples] == [1_000_000_000, 2_000_000_000]
 
 
 def test_missing_file_is_named(tmp_path):

@@ -1,0 +1,59 @@
+"""Parquet files of odd columns, and damaged ones: read as rows are, or refused with the cause."""
+
+import pyarrow as pa
+import pytest
+from pyarrow import parquet
+
+import rvmon
+
+SPEC = """
+spec door "A door"
+signal shut : bool
+event knock
+requirement R1
+  upon knock
+  then immediately shut
+"""
+
+
+def judged(tmp_path, **columns) -> str:
+    """The verdict on a recording of three rows."""
+    table = {"t": [0.0, 1.0, 2.0], "shut": [False, True, True], "knock": [False, True, False]}
+    parquet.write_table(pa.table(table | columns), tmp_path / "a.parquet")
+    return str(rvmon.loads(SPEC).evaluate(tmp_path / "a.parquet").verdicts["R1"])
+
+
+def test_an_event_of_which_nothing_is_said_does_not_occur(tmp_path):
+    """A column of nothing but nulls is the same with a type and without."""
+    assert judged(tmp_path) == "P"
+    assert judged(tmp_path, knock=pa.array([None] * 3, pa.bool_())) == "NT"
+    assert judged(tmp_path, knock=pa.array([None] * 3)) == "NT"
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({"knock": [None, {"a": 1}, None]}, "`knock` has no field `a`"),
+        ({"t": [False, True, True]}, "row 1: time `False` is not a number of seconds"),
+        ({"knock": [None, 1, 0]}, "row 2: column `knock`: the number `1` is no truth value"),
+        ({"shut": [None, None, 1]}, "row 3: column `shut`: .* cast the column to bool"),
+        ({"shut": [0.0, 1.0, 1.0]}, "row 1: column `shut`: .* cast the column to bool"),
+    ],
+)
+def test_columns_of_another_type_are_refused(columns, message, tmp_path):
+    """The message names the place, the cause and what to do."""
+    with pytest.raises(rvmon.TraceError, match=message):
+        judged(tmp_path, **columns)
+
+
+@pytest.mark.parametrize("part", ["page", "footer"])
+def test_a_damaged_file_is_refused_with_its_name(part, tmp_path):
+    """One wrong byte, in a page or in the footer, is an error that names the file."""
+    judged(tmp_path)
+    path = tmp_path / "a.parquet"
+    data = bytearray(path.read_bytes())
+    footer = len(data) - 8 - int.from_bytes(data[-8:-4], "little")
+    data[4 if part == "page" else footer] ^= 0xFF
+    path.write_bytes(data)
+    with pytest.raises(rvmon.TraceError, match=r"a\.parquet: .*Parquet file"):
+        rvmon.loads(SPEC).evaluate(path)
