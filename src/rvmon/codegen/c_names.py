@@ -9,6 +9,20 @@ from functools import cached_property
 from rvmon.codegen.plan import Plan
 from rvmon.formula.state import State, StateOp
 
+_TAKEN = (
+    # Names of a monitor so called would be those of functions within the generated C,
+    "at holds_at print reach since step visit x y "
+    # its header would hide one of the C library,
+    "errno math stdbool stdint stdio stdlib string "
+    # and the namespace of its C++ wrapper would be no name.
+    "alignas alignof and asm auto bitand bitor bool break case catch char class compl concept "
+    "const consteval constexpr constinit continue decltype default delete do double else enum "
+    "explicit export extern false float for friend goto if inline int long mutable namespace new "
+    "noexcept not nullptr operator or posix private protected public register requires return "
+    "short signed sizeof static std struct switch template this throw true try typedef typeid "
+    "typename union unix linux unsigned using virtual void volatile while xor"
+)
+
 
 class Memory(Enum):
     """What a node remembers: a truth value, an instant, stretches of instants."""
@@ -52,7 +66,9 @@ class Names:
     def prefix(self) -> str:
         """What all identifiers start with."""
         made = re.sub(r"[^A-Za-z0-9]+", "_", self.plan.spec.name).strip("_").lower()
-        return made if made and made[0].isalpha() else f"spec_{made}".rstrip("_")
+        if made and made[0].isalpha() and made not in _TAKEN.split():
+            return made
+        return f"spec_{made}".rstrip("_")
 
     def signal(self, name: str) -> int:
         """The number of a signal."""

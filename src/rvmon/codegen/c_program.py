@@ -16,6 +16,7 @@ from rvmon.trace.schema import Kind
 
 _PARTS = (
     "program_head.c.in",
+    "program_text.c.in",
     "program_numbers.c.in",
     "program_samples.c.in",
     "read_csv.c.in",
@@ -97,7 +98,7 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
     if not things:
         yield '    {"", 0, -1, KIND_BOOL, false, NULL, NULL, 0.0},'
     yield "};"
-    yield f"#define N_ENTRIES {max(len(things), 1)}"
+    yield f"#define ENTRY_COUNT {max(len(things), 1)}"
     yield ""
     ids = ", ".join(c_string(rule.requirement.id) for rule in plan.rules)
     yield f"static const char *const requirements[] = {{{ids}}};"

@@ -47,8 +47,11 @@ def c_files(plan: Plan) -> CFiles:
     """Generate C.
 
     Raises:
-        RvmonError: a requirement has no automaton, or a number of the specification is no double.
+        RvmonError: there is no requirement, one has no automaton, or a number of the specification
+            is no double.
     """
+    if not plan.rules:
+        raise RvmonError("the specification has no requirements: there is nothing to compile")
     for rule in plan.rules:
         if rule.automaton is None:
             raise RvmonError(

@@ -26,7 +26,7 @@ def words_source(plan: Plan, names: Names) -> Iterator[str]:
         if leaf is not None and not isinstance(leaf, Constant):
             yield from _leaf(plan, names, place, leaf)
     yield ""
-    yield f"#define N_WATCHED {len(watched)}"
+    yield f"#define WATCHED_COUNT {len(watched)}"
     yield from _plain(plan, names)
     yield from _beginning(plan, names, watched)
     yield from _changes(plan, names, words, watched)

@@ -276,3 +276,144 @@ def test_wrong_json_is_refused(program, text):
     done = ran(program[1], "-", text)
     assert (done.returncode, done.stdout) == (2, "")
     assert "line 1" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"t":1,"events":["halt"],"halt":false}',
+        '{"t":1,"halt":false,"events":["halt"]}',
+        '{"t":1,"halt":null,"events":["halt"]}',
+        '{"t":1,"halt":true,"halt":false}',
+        '{"t":1,"halt":false,"halt":true}',
+        '{"t":1,"events":["halt"],"events":["pick"]}',
+        '{"t":1,"events":["halt"],"events":null}',
+        '{"t":1,"pick":{"id":3},"pick":false}',
+        '{"t":1,"pick":{"id":3},"pick":{"force":1}}',
+        '{"t":1,"events":["pick"],"pick":{"id":3}}',
+        '{"t":1,"parts":1,"parts":2,"mode":"idle"}',
+        '{"t":1,"mode":"\\u0069dle","x":"\\ud83d\\ude00"}',
+        '\ufeff{"t":1,"mode":"idle"}',
+        '{"t":1e0,"arm":{"speed":-0.5E-1},"mode":"idle"}',
+    ],
+)
+def test_json_that_says_a_thing_twice_or_otherwise(program, tmp_path, capsys, line):
+    """What a line says of one event in several ways counts as `rvmon run` counts it."""
+    spec, binary = program
+    trace = tmp_path / "a.jsonl"
+    trace.write_text(line + '\n{"t":3,"arm":{"speed":0.5}}\n', encoding="utf-8")
+    code = main(["run", str(spec), str(trace), "--format", "json"])
+    expected = told(capsys.readouterr().out)
+    done = ran(binary, str(trace))
+    assert (done.returncode, done.stderr) == (code, "")
+    assert told(done.stdout) == expected
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        *(f'{{"t":1,"arm":{{"speed":{n}}}}}' for n in ("1e400", "01", "5.", ".5", "+1", "-", "1e")),
+        *(f'{{"t":1,"x":{n}}}' for n in ("1e400", "-01", "5.", "1.e5", "NaN", "0x1")),
+        '{"t":01}',
+        '{"t_ns":1.0}',
+        '{"t":1}\0',
+        '{"t":1,"events":"halt"}',
+        '{"t":1,"events":[1]}',
+        '{"t":1,"x":"\\ud800"}',
+        '{"t":1,"x":"\\udc00\\ud800"}',
+        '{"t":1,"halt":[]}',
+        b'{"t":1,"x":"\xff"}',
+        b'{"t":1,"x":"\xed\xa0\x80"}',
+        b'{"t":1,"x":"\xc0\x80"}',
+        b'{"t":1,"x":"\xf0\x9f\x98"}',
+    ],
+)
+def test_json_that_rvmon_run_refuses(program, tmp_path, capsys, line):
+    """Both refuse numbers, escapes, bytes and members that are not what JSON or rvmon has."""
+    spec, binary = program
+    trace = tmp_path / "a.jsonl"
+    text = line if isinstance(line, bytes) else line.encode()
+    trace.write_bytes(b'{"t":0}\n' + text + b'\n{"t":2}\n')
+    assert main(["run", str(spec), str(trace)]) == 2
+    capsys.readouterr()
+    done = ran(binary, str(trace))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "line 2: " in done.stderr
+
+
+def test_a_repeated_line_has_a_time_of_json(program):
+    """The time of a line that says what the line before said is read as strictly."""
+    first = '{"t":1,"parts":2}\n'
+    assert ran(program[1], "-", first + '{"t":2,"parts":2}\n').returncode in (0, 1)
+    done = ran(program[1], "-", first + '{"t":02,"parts":2}\n')
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "line 2: no time: `02`" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"t":1,"arm":{"speed":1},"arm":{"other":2}}',
+        '{"t":1,"arm":{"speed":1},"arm":null}',
+        '{"t":1,"arm.speed":1,"arm":{"speed":2},"arm.speed":3}',
+        '{"t":1,"t":2}',
+        '{"t":1,"pick":[{"id":1},{"id":2}]}',
+        '{"t":1,"open_door":1.0}',
+        '{"t":1}\r{"t":2}',
+    ],
+)
+def test_json_that_only_rvmon_run_reads_is_refused(program, line):
+    """What the program would count otherwise it does not judge at all."""
+    done = ran(program[1], "-", line + "\n")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "line 1: " in done.stderr
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        't,mode,x\n1,idle,"a\nb"\n',
+        "t,halt\r\r\n1,1\r\r\n",
+        "t,halt\r1,1\r",
+        "t,x,x\n1,1,1\n",
+        "t,,\n1,1,1\n",
+        't,halt\n1, "1"\n',
+        't,halt\n1,"1" \n',
+        "t,halt\n1,\0\n",
+        "t,\u00a0halt\n1,1\n",
+        "t,arm.speed\n1e 0,1\n",
+        b"t,halt,\xff\n1,1,1\n",
+        b"t,halt,x\n1,1,\xff\n",
+        b"t,x\n1," + b"x" * 131073 + b"\n",
+    ],
+)
+def test_csv_that_readers_cut_otherwise_is_refused(program, tmp_path, text):
+    """No column, cell or line is passed over in silence."""
+    trace = tmp_path / "a.csv"
+    trace.write_bytes(text if isinstance(text, bytes) else text.encode())
+    done = ran(program[1], str(trace))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "line " in done.stderr
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\n\nt,halt\n1,1\n\n3,0\n",
+        '\ufeff"t",halt\n1,1\n3,0\n',
+        't,"  halt "\n1,"\t1 "\n3, 0\x1f\n',
+        't,halt,x\n1,1,a"b"\n3,0,"c""d"\n',
+        't,halt,x\n1,1, "y\n3,0,z\n',
+    ],
+)
+def test_csv_that_is_unusual_is_read_as_rvmon_run_does(program, tmp_path, capsys, text):
+    """Blank lines, marks of byte order, space and quotes within cells."""
+    spec, binary = program
+    trace = tmp_path / "a.csv"
+    trace.write_text(text, encoding="utf-8")
+    code = main(["run", str(spec), str(trace), "--format", "json"])
+    expected = told(capsys.readouterr().out)
+    done = ran(binary, str(trace))
+    assert (done.returncode, done.stderr) == (code, "")
+    assert told(done.stdout) == expected
+    assert len(expected["R1"][2]) == 1

@@ -1,5 +1,6 @@
 """Generated C: strict compilers, sanitizers, the oracle."""
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -8,6 +9,8 @@ import pytest
 
 import rvmon
 from rvmon.cli import main
+from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_program import built_program, program_source
 from rvmon.codegen.c_source import c_files
 from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
@@ -117,3 +120,50 @@ def test_the_command_writes_a_folder(tmp_path, capsys):
     listed = {Path(line).name for line in capsys.readouterr().out.split()}
     assert {"everything.h", "everything.c", "everything.hpp"} <= listed
     assert main(["compile", str(tmp_path / "s.rv"), "--to", "c"]) == 2
+
+
+def named(name: str) -> rvmon.Spec:
+    """The specification of everything, of another name."""
+    return rvmon.loads(SPEC.replace("spec everything", f"spec {name}"))
+
+
+@pytest.mark.parametrize("name", ["n", "print", "reach", "step", "string", "switch", "rule"])
+def test_no_name_of_a_spec_collides(name, tmp_path):
+    """What a specification is called does not matter to the compiler."""
+    spec = named(name)
+    assert built_program(spec.plan(only=["R2", "R4"])).exists()
+    made = c_files(spec.plan())
+    for file, text in made.texts.items():
+        (tmp_path / file).write_text(text)
+    words = ["g++", "-std=c++11", *STRICT[1:], "-I.", "-fsyntax-only", "-x", "c++"]
+    done = subprocess.run([*words, f"{made.prefix}.hpp"], cwd=tmp_path, check=False)  # noqa: S603
+    assert done.returncode == 0
+    trace = [(0.0, {"p": True, "mode": "red"}), (1.0, {"p": False})]
+    assert spec.evaluate(trace, engine="c").verdicts == spec.evaluate(trace).verdicts
+
+
+def test_names_within_the_c_are_no_names_of_another_spec():
+    """No name in the sources is one that the header would give to a specification called so."""
+    plan = named("zz").plan()
+    made = {**c_files(plan).texts, "": program_source(plan)}
+    bare = re.sub(r"/\*.*?\*/", "", "\n".join(made.values()), flags=re.DOTALL)
+    found = set(re.findall(r"[A-Za-z]\w*", bare))
+    for mark in ("zz", "ZZ"):
+        given = {name[2:] for name in found if name.startswith(f"{mark}_")}
+        assert len(given) > 30
+        for name in found - {mark + end for end in given}:
+            heads = {name.removesuffix(end) for end in given if name.endswith(end)}
+            for head in heads:
+                if head == (head.upper() if mark == "ZZ" else head.lower()):
+                    assert Names(named(head.lower()).plan()).prefix != head.lower(), name
+
+
+def test_nothing_is_compiled_of_no_requirement(tmp_path, capsys):
+    """A specification without requirements is refused before the C compiler sees it."""
+    path = tmp_path / "none.rv"
+    path.write_text("spec none\nsignal p : bool\n")
+    for words in (["build", str(path), "-o"], ["compile", str(path), "--to", "c", "-o"]):
+        assert main([*words, str(tmp_path / "made")]) == 2
+        assert "the specification has no requirements: there is nothing to compile" in (
+            capsys.readouterr().err
+        )
