@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
@@ -150,12 +151,25 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
+        if options.engine == "c" and can_be_read_again(trace):
+            before = _judged_before(spec, trace, options)
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(_shown(trace), None, tuple(before), place + message)
     report = second_look(spec, trace, report, recording.names, goals=options.only is None)
     trace = _shown(trace)
     return Judged(trace, _named(report, trace, recording.health()))
+
+
+def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
+    """What is decided up to the place where a recording breaks off."""
+    found: list[Attempt] = []
+    with suppress(TraceError):
+        recording = FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)
+        monitor = spec.monitor(only=options.only, sources=recording.names)
+        for sample in recording:
+            found.extend(monitor.step_ns(sample.t, sample.values))
+    return found
 
 
 class _Meter:

@@ -127,10 +127,13 @@ def test_never_triggered_is_an_error_on_request(files, capsys):
     assert main(["run", "door.rv", "NT.csv", "P.csv", "--require-triggered", "D1"]) == 0
 
 
-def test_a_broken_recording_keeps_what_was_judged(files, capsys):
+@pytest.mark.parametrize("engine", ["auto", "automaton", "c"])
+def test_a_broken_recording_keeps_what_was_judged(files, capsys, engine):
     """Exit 2, one message with file and line, and the failure before the break is still told."""
+    if engine == "c" and shutil.which("cc") is None:
+        pytest.skip("no C compiler")
     (files / "cut.csv").write_text(FAIL + "6,,\n9,maybe,\n")
-    assert main(["run", "door.rv", "cut.csv"]) == 2
+    assert main(["run", "door.rv", "cut.csv", "--engine", engine]) == 2
     told = capsys.readouterr().err
     assert "cut.csv: line 6: column `closed`: `maybe`" in told
     assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: window" in told
