@@ -133,17 +133,14 @@ class IntakeWriter:
             yield f"if {self._same(names)} and {quiet}:"
             yield from indented([*self.visit.done(), "return ()"])
             return
-        yield "if t.__class__ is int and self.after < t < LIMIT:"
-        yield from indented(self._told_apart(names))
-
-    def _told_apart(self, names: Sequence[tuple[int, str]]) -> Iterator[str]:
         for number, name in names:
             branch = "elif" if number else "if"
             yield f"{branch} x{number} is not {self.values.before(name)}:"
-            lines = [f"one, x = one{number}, x{number}"]
             rest = names[number + 1 :]
-            yield from indented([f"if {self._same(rest)}:", *indented(lines)] if rest else lines)
-        yield f"elif {self._quiet()}:"
+            same = f"{self._same(rest)} and " if rest else ""
+            yield f"    if {same}t.__class__ is int and self.after < t < LIMIT:"
+            yield f"        one, x = one{number}, x{number}"
+        yield f"elif {quiet}:"
         yield from indented([*self.visit.done(), "return ()"])
 
     def _same(self, names: Sequence[tuple[int, str]]) -> str:
