@@ -189,3 +189,16 @@ def test_a_run_that_time_alone_takes_on_and_decides_is_told_as_it_was(engine, ad
     assert attempt.reason.startswith("window [2 s, 2 s] closed without")
     assert (attempt.decided, attempt.deadline) == (2 * 10**9 + 1, 2 * 10**9)
     assert attempt.blame.window == (2 * 10**9, 2 * 10**9)
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
+def test_the_deadline_of_what_ends_an_obligation_is_that_of_its_window(engine):
+    """What releases an obligation has a window of its own, which time alone closes."""
+    monitor = rvmon.loads(
+        "spec s\ntime sampled\nsignal p, q : bool\nrequirement R1\n"
+        "  upon start then (q M (always[0 ns, 1 ns] p))\n"
+    ).monitor(engine=engine)
+    monitor.step_ns(0, {"p": True, "q": False})
+    monitor.step_ns(2, {"p": True, "q": True})
+    (attempt,) = monitor.step_ns(5, {"p": False})
+    assert (attempt.decided, attempt.deadline) == (4, 3)
