@@ -125,7 +125,7 @@ def _peers(python: str) -> Iterator[tuple[str, Peer]]:
         module = {"mstlo": "mstlo_python"}.get(name, name)
         code = f"import importlib.util, sys; sys.exit(not importlib.util.find_spec({module!r}))"
         try:
-            done = subprocess.run([python, "-c", code], capture_output=True, check=False)  # noqa: S603
+            done = subprocess.run([python, "-c", code], capture_output=True, check=False)  # noqa: S603 - our words
         except OSError as error:
             raise RvmonError(f"error: --peers {python}: {error.strerror or error}") from None
         if done.returncode == 0:

@@ -43,9 +43,9 @@ class ConeWriter:
 
     def looked_up(self) -> Iterator[str]:
         """Where samples are gathered: a function per leaf, by the bit of it."""
-        if self.visit.straight:
+        if self.visit.straight or self.each:
             return
-        found = self.cones if self.small and not self.each else []
+        found = self.cones if self.small else []
         for places in found:
             leaf = places[0]
             yield f"def cone{leaf}(self, t):"

@@ -272,6 +272,9 @@ class VisitWriter:
         yield f"v[{place}] = {value}"
 
     def _many(self) -> Iterator[str]:
+        if self.plan.gap in (None, 1):  # a lone value has taken another way
+            yield "letters, triggers, fading = self.evaluate(t, dirty)"
+            return
         yield "cone = self.CONES.get(dirty)"
         yield "if cone is None:"
         yield "    letters, triggers, fading = self.evaluate(t, dirty)"
