@@ -18,7 +18,7 @@ from importlib.metadata import version
 from itertools import groupby
 from pathlib import Path
 
-from benchmarks.agreement import Agreement, Referee
+from benchmarks.agreement import Agreement, Referee, peers_in
 from benchmarks.attempts import OpenAttempts, measure_open
 from benchmarks.contenders import contenders
 from benchmarks.findings import Findings
@@ -50,6 +50,7 @@ class Size:
         counts: of monitors on one stream.
         attempts: held open.
         traces: damaged ones per agreement.
+        step_seconds: that a peer may step on one workload to be compared.
         repeats: passes of each contender.
         processes: of each program, beside a first one that does not count.
         pass_seconds: what one pass may take.
@@ -63,6 +64,7 @@ class Size:
     counts: tuple[int, ...] = (10, 100, 1000)
     attempts: tuple[int, ...] = (1, 10, 100, 1_000, 10_000, 100_000)
     traces: int = 2
+    step_seconds: float = 90
     repeats: int = 5
     processes: int = 3
     pass_seconds: float = 0.1
@@ -72,7 +74,9 @@ class Size:
         return Plan(self.repeats, self.pass_seconds * (10 if section == "batch" else 1))
 
 
-QUICK = Size(5_000, 100_000, 20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 1, 3, 2, 0.05)
+QUICK = Size(
+    5_000, 100_000, 20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 1, 10, 3, 2, 0.05
+)
 
 
 def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
@@ -117,13 +121,13 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
     results: list[Result] = []
     agreements: list[Agreement] = []
     absent = dict(environment.missing)
-    with Referee(environment, size.traces) as referee:
+    with Referee(peers_in(environment), size.traces, size.step_seconds, say) as referee:
         for section, group in groupby(workloads(size, sections), lambda one: one.section):
             taking_part = list(contenders(environment, native, section))
             for workload in group:
                 say(f"{section}: {workload.name}, {workload.form}")
                 results.append(measure(workload, taking_part, size.plan_of(section)))
-                agreements += referee.check(workload)
+                agreements += referee.check(workload, results[-1].figures)
             for contender in taking_part:
                 contender.close()
         for workload in suite.processed(size.columns) if "process" in sections else ():
@@ -133,7 +137,7 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
                 results.append(
                     measure_process(workload, size.processes, environment, native, place)
                 )
-            agreements += referee.check(workload)
+            agreements += referee.check(workload, results[-1].figures)
     open_attempts: list[OpenAttempts] = []
     if "open" in sections:
         say("open attempts")

@@ -256,17 +256,22 @@ def _open_attempts(findings: Findings) -> Iterator[str]:
 
 
 def _agreements(agreements: Sequence[Agreement]) -> Iterator[str]:
-    yield "Verdicts compared row by row on damaged traces, and the instant of the first failure."
+    yield "Verdicts compared row by row, at the end of each trace and on damaged traces, and the"
+    yield "instant of the first failure. rtamt judges the past by the stepping that is timed."
     yield ""
-    yield "| peer | form | workloads | equal | of | our FALSE among them |"
-    yield "|---|---|---|---|---|---|"
+    yield "| peer | form | workloads | with our FALSE | equal | of | our FALSE among them |"
+    yield "|---|---|---|---|---|---|---|"
     compared = [entry for entry in agreements if entry.compared]
     for label, form in sorted({(entry.label, entry.form) for entry in compared}):
         own = [entry for entry in compared if (entry.label, entry.form) == (label, form)]
         names = {entry.name for entry in own}
+        failing = {entry.name for entry in own if entry.false}
         equal, count = sum(e.equal for e in own), sum(e.compared for e in own)
         false = sum(e.false for e in own)
-        yield f"| {label} | {form} | {len(names)} | {equal:,} | {count:,} | {false:,} |"
+        yield (
+            f"| {label} | {form} | {len(names)} | {len(failing)} | {equal:,} | {count:,} | "
+            f"{false:,} |"
+        )
     for entry in compared:
         if entry.equal < entry.compared:
             yield ""
@@ -274,6 +279,10 @@ def _agreements(agreements: Sequence[Agreement]) -> Iterator[str]:
                 f"{entry.label} disagrees on {entry.name}, {entry.form}: "
                 f"{entry.equal} of {entry.compared}."
             )
+    calm = sorted({f"{e.label} on {e.name}, {e.form}" for e in compared if not e.false})
+    if calm:
+        yield ""
+        yield "Ours was never FALSE, so that agreement says little: " + "; ".join(calm) + "."
     remarks = sorted({f"{e.label}: {e.remark}" for e in agreements if e.remark})
     if remarks:
         yield ""

@@ -58,6 +58,13 @@ _SHAPES = {
 
 CONTESTS = {name: Contest(WAYS[name], shape) for name, shape in _SHAPES.items()}
 
+RTAMT_STEPPED = Contest(
+    replace(WAYS["rtamt-discrete"], name="rtamt-discrete-online", kind="discrete online"),
+    replace(_PAST, step=True),
+)
+"""Asked row by row, as it is timed. Random formulas are not put to it: what stands twice in one
+it steps twice a row."""
+
 
 def random_question(dice: random.Random, contest: Contest) -> tuple[Question | None, str]:
     """A formula that the peer can say, and a trace; or no question and the reason."""

@@ -246,6 +246,16 @@ DIFFERENCES = (
     Difference(
         "rtamt",
         "rtamt",
+        "discrete online",
+        "a timed formula that stands twice is moved on twice a sample",
+        f"(not(once[0:1]{_P})) and s_prev(once[0:1]{_P})",
+        {"p": [_T, _F, _F]},
+        [_F, _F, _F],
+        fall(once(p, 0, 1)),
+    ),
+    Difference(
+        "rtamt",
+        "rtamt",
         "dense online",
         "future operators have no effect: the operand itself is answered",
         f"always[0:1]{_P}",

@@ -95,5 +95,5 @@ def test_disagreement_is_named() -> None:
     """Agreement is summed up by peer; where sides differ, the workload is named."""
     other = replace(ALIKE, name="AbsentBR 10", equal=299)
     page = render(replace(FINDINGS, agreements=(ALIKE, other)))
-    assert "| reelay | past | 2 | 599 | 600 | 40 |" in page
+    assert "| reelay | past | 2 | 2 | 599 | 600 | 40 |" in page
     assert "reelay disagrees on AbsentBR 10, past: 299 of 300." in page

@@ -19,13 +19,15 @@ class Peer:
         self._rows: list[tuple[int, list[tuple[str, float]]]] = []
 
     def judge(self, formula: str, kind: str, columns: dict[str, list[Any]]) -> dict[str, Any]:
-        """The robustness at every tick, offline."""
+        """The robustness at every tick; offline, or in discrete time sample by sample."""
         ticks = len(next(iter(columns.values())))
         if kind == "discrete":
             spec = _specified(self._rtamt.StlDiscreteTimeSpecification(), formula, list(columns))
             numbers = {name: [float(v) for v in column] for name, column in columns.items()}
             answer = spec.evaluate({"time": list(range(ticks)), **numbers})
             return {"values": [_finite(value) for _, value in answer]}
+        if kind == "discrete online":
+            return {"values": self._stepped(formula, columns, ticks)}
         if kind == "dense online":
             spec = self._rtamt.StlDenseTimeOnlineSpecification()
             return {"values": _online(spec, formula, columns, ticks)}
@@ -44,6 +46,16 @@ class Peer:
             (t, [(name, float(columns[name][t])) for name in self._names]) for t in range(rows)
         ]
         return {"rows": rows}
+
+    def _stepped(self, formula: str, columns: dict[str, list[Any]], ticks: int) -> list[Any]:
+        """Discrete time sample by sample: of the past alone, each answer is for its own sample."""
+        spec = _specified(self._rtamt.StlDiscreteTimeOnlineSpecification(), formula, list(columns))
+        spec.pastify()
+        values = []
+        for tick in range(ticks):
+            row = [(name, float(column[tick])) for name, column in columns.items()]
+            values.append(_finite(spec.update(tick, row)))
+        return values
 
     def run(self) -> dict[str, Any]:
         """One pass over the rows, online; the first row with a robustness below 0 per formula."""

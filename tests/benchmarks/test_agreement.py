@@ -1,0 +1,86 @@
+"""Who judges alike, asked of a peer that is played."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from benchmarks.agreement import Agreement, Referee
+from benchmarks.measure import Figure
+from benchmarks.workload import Workload
+
+from rvmon.testing.build import once, p
+from rvmon.testing.peers.client import Peer
+
+BOUND = 500
+SECONDS = 90
+ROWS = 3 * BOUND
+COLUMN = [row % 7 == 0 for row in range(2 * BOUND)] + [False] * (2 * BOUND)
+
+
+class Played(Peer):
+    """Answers `once` in bounded time as rtamt does: a robustness at every row."""
+
+    def __init__(self, *, blind: bool = False) -> None:
+        super().__init__(Path("nobody"), "rtamt")
+        self.kinds: list[str] = []
+        self.rows = 0
+        self._blind = blind
+
+    def ask(self, do: str, **request: Any) -> dict[str, Any]:
+        assert do == "judge"
+        self.kinds.append(request["kind"])
+        column = request["columns"]["v_p"]
+        self.rows += len(column)
+        last, values = -BOUND - 1, []
+        for row, cell in enumerate(column):
+            last = row if cell else last
+            values.append(0.5 if row - last <= BOUND or self._blind else -0.5)
+        return {"values": values}
+
+
+def check(peer: Played, ns_per_row: float) -> tuple[Agreement, list[str]]:
+    """What is found on `once` within a bound above what is asked offline."""
+    workload = Workload("online", "Recur", "past", (once(p, 0, BOUND),), {"p": COLUMN})
+    timed = Figure("rtamt", ROWS, ns_per_row, ns_per_row, ns_per_row, (None,))
+    said: list[str] = []
+    with Referee({"rtamt": peer}, 2, SECONDS, said.append) as referee:
+        [found] = referee.check(workload, [timed])
+    return found, said
+
+
+def test_past_is_stepped() -> None:
+    """A long bound of the past is compared by stepping, and ours is FALSE among the rows."""
+    peer = Played()
+    found, said = check(peer, 1000.0)
+    assert set(peer.kinds) == {"discrete online"}
+    assert found.compared >= 3 * ROWS
+    assert found.equal == found.compared
+    assert 0 < found.false < found.compared
+    assert said == []
+
+
+def test_disagreement_is_seen() -> None:
+    """A peer that never says FALSE does not judge alike."""
+    found, _ = check(Played(blind=True), 1000.0)
+    assert found.equal < found.compared
+
+
+@pytest.mark.parametrize("rows", [ROWS // 2, ROWS, 2 * ROWS + 700])
+def test_slow_stepping_gets_as_many_rows_as_fit(rows: int) -> None:
+    """A peer that is slow is asked for so many rows as it steps in the time, failures first."""
+    peer = Played()
+    found, said = check(peer, SECONDS * 1e9 / rows)
+    assert BOUND < peer.rows <= rows
+    assert found.false > 0
+    assert found.equal == found.compared
+    assert said == [f"  rtamt steps {peer.rows:,} rows, {SECONDS * peer.rows / rows:.0f} s"]
+
+
+def test_too_slow_to_see_a_failure() -> None:
+    """Where the rows are fewer than the bound nothing is compared, and the reason is told."""
+    peer = Played()
+    found, _ = check(peer, SECONDS * 1e9 / BOUND)
+    assert (peer.rows, found.compared) == (0, 0)
+    assert found.remark.startswith("past: no bound fails")
