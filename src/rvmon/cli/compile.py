@@ -64,9 +64,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.output is None:
         raise RvmonError("C is several files: name a folder with -o DIR")
     folder = Path(arguments.output)
+    if folder.exists() and not folder.is_dir():
+        raise RvmonError(f"cannot write to {folder}: C is several files: name a folder with -o DIR")
+    texts = c_files(plan).texts
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, text in c_files(plan).texts.items():
+        for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
             print(folder / name)
     except OSError as error:

@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     constants = constants_of(arguments.const)
     spec = load(arguments.spec, const=constants)
     _show_warnings(spec)
-    _refuse_places(arguments)
+    _refuse_places(arguments, spec)
     options = Options(
         _ids(arguments.only, spec),
         arguments.engine,
@@ -114,7 +114,7 @@ def run(arguments: argparse.Namespace) -> int:
     return int(failed)
 
 
-def _refuse_places(arguments: argparse.Namespace) -> None:
+def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
     """Say before anything is judged that a result has no place to go to."""
     if arguments.junit:
         path = Path(arguments.junit)
@@ -124,6 +124,9 @@ def _refuse_places(arguments: argparse.Namespace) -> None:
             raise RvmonError(f"cannot write {path}: there is no folder {path.parent}")
     if arguments.report and Path(arguments.report).is_file():
         raise RvmonError(f"cannot write to {arguments.report}: it is a file: name a folder")
+    if arguments.report and not spec.requirements:
+        name = spec.checked.name
+        raise RvmonError(f"a page shows requirements, and {name} has none: add one")
 
 
 def _show_warnings(spec: Spec) -> None:

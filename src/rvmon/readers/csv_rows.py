@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 from rvmon.errors import TraceError
-from rvmon.readers.values import scalar_of_text, shorten
+from rvmon.readers.values import is_whole, scalar_of_text, shorten
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.time import TIME_LIMIT, ticks_of_text
@@ -164,14 +165,15 @@ def _scalar(cell: str, column: Column) -> Scalar:
 def _ticks(cell: str, *, in_ticks: bool) -> int:
     if not in_ticks:
         return ticks_of_text(cell)
-    try:
+    with suppress(ValueError):
         # Python reads 1_000 as a number; no recording means it.
         t = int(cell.replace("_", "?"))
-    except ValueError:
-        raise TraceError(f"time `{shorten(cell)}` is not a whole number of nanoseconds") from None
-    if abs(t) >= TIME_LIMIT:
+        if abs(t) < TIME_LIMIT:
+            return t
+    # Python reads no more than some thousand digits, which are a whole number as well.
+    if is_whole(cell):
         raise TraceError(f"time `{shorten(cell)}` is out of range: at most 2**62 ns (146 years)")
-    return t
+    raise TraceError(f"time `{shorten(cell)}` is not a whole number of nanoseconds")
 
 
 def csv_samples(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from contextlib import suppress
 from typing import assert_never
 
@@ -37,6 +39,9 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
             with suppress(ValueError):
                 if "_" not in text:
                     return int(text) if kind is Kind.INT else float(text)
+            if kind is Kind.INT and is_whole(text):
+                most = sys.get_int_max_str_digits()
+                raise TraceError(f"`{shorten(text)}` has more than {most} digits: is it a number?")
         case Kind.LABEL:
             return text
         case _:
@@ -50,6 +55,11 @@ DESCRIPTION = {
     Kind.REAL: "a number",
     Kind.LABEL: "a label",
 }
+
+
+def is_whole(text: str) -> bool:
+    """Whether the text is a whole number, however many digits it has."""
+    return re.fullmatch(r"\s*[+-]?\d+\s*", text) is not None
 
 
 def shorten(text: str, width: int = 40) -> str:

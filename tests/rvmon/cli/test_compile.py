@@ -52,6 +52,19 @@ def test_hoa(spec, capsys):
     assert capsys.readouterr().out.startswith('HOA: v1\nname: "D2: At last it is closed"')
 
 
+def test_c_wants_a_folder(spec, tmp_path, capsys):
+    """A file in its place is named with what to name instead; no folder is made in vain."""
+    place = tmp_path / "door.c"
+    place.write_text("")
+    for output in ([], ["-o", str(place)]):
+        assert main(["compile", spec, "--to", "c", *output]) == 2
+        assert "C is several files: name a folder with -o DIR" in capsys.readouterr().err
+    refused = tmp_path / "refused.rv"
+    refused.write_text(SPEC.replace("upon knock\n", "upon knock\n  let c = closed\n", 1))
+    assert main(["compile", str(refused), "--to", "c", "-o", str(tmp_path / "made")]) == 2
+    assert not (tmp_path / "made").exists()
+
+
 def test_unknown_requirements_are_named(spec, capsys):
     """The ones there are stand in the message."""
     assert main(["compile", spec, "--to", "dot", "--only", "D7"]) == 2

@@ -90,6 +90,11 @@ def test_a_place_that_is_none_is_told_before_anything_is_judged(files, capsys):
         assert not told.out
     assert main(["run", "door.rv", "P.csv", "--report", "file", "--junit", "j.xml"]) == 2
     assert "cannot write to file: it is a file: name a folder" in capsys.readouterr().err
+    (files / "none.rv").write_text("spec none\nsignal closed : bool\n")
+    assert main(["run", "none.rv", "P.csv", "--report", "rep"]) == 2
+    told = capsys.readouterr()
+    assert "a page shows requirements, and none has none: add one" in told.err
+    assert not told.out
     assert not (files / "rep").exists()
     assert not (files / "j.xml").exists()
 
