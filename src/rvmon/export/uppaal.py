@@ -2,8 +2,8 @@
 
 Each automaton becomes a template without parameters, all that was local becomes global. What
 UPPAAL does not know stands in comments that our reader understands: the unit of time, weights and
-labels of edges. Queries with a bound on the path operator, or with path operators inside, are not
-UPPAAL's: their text is kept as a comment.
+labels of edges, the ids of queries. Queries with a bound on the path operator, or with path
+operators inside, are not UPPAAL's: their text is kept as a comment.
 """
 
 from __future__ import annotations
@@ -159,6 +159,8 @@ def _query(names: Names, query: Query) -> Iterator[str]:
     formula, comment = _formula(names, query.formula), query.remark
     if not formula:
         comment = f"not a query of UPPAAL: {query.text} {comment}".strip()
+    if query.id:
+        comment = f"query {query.id}\n{comment}".strip()
     yield "    <query>"
     yield f"      <formula>{escape(formula)}</formula>"
     yield f"      <comment>{escape(comment)}</comment>"

@@ -7,9 +7,9 @@ which runs there are: they are passed over. Refused, with place and reason: bran
 functions, stop-watches, and what `ta.lark` has no rule for. A query that cannot be read is a
 warning, and left out.
 
-A unit of time, weights and labels, which UPPAAL does not have, are read from comments as
-`export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and `as name` in an
-edge's comments.
+A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
+comments as `export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and
+`as name` in an edge's comments; `query R1` alone on the first line of a query's comment.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ _NAME = re.compile(
     r"^[ \t]*//[ \t]*network[ \t]+(\w+)(?:[ \t]+\"([^\"\n]*)\")?[ \t]*$", re.MULTILINE
 )
 _WEIGHT = re.compile(r"^[ \t]*weight[ \t]+(\d+(?:\.\d+)?)[ \t]*$", re.MULTILINE)
+_QUERY = re.compile(r"\s*query[ \t]+([A-Za-z_]\w*)[ \t]*(?:\n|$)")
 _LABEL = re.compile(r"^[ \t]*as[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
@@ -178,7 +179,9 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
         formula = element.first("formula")
         if formula is None or not formula.text.strip():
             continue
-        comment = " ".join(_text(element.first("comment")).split())
+        comment = _text(element.first("comment"))
+        named = _QUERY.match(comment)
+        remark = " ".join((comment[named.end() :] if named else comment).split())
         try:
             read = parse_part(formula.text, "query", formula.place)
         except ModelError as error:
@@ -190,4 +193,5 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
             continue
         length = len(formula.text.rstrip())
         text = formula.text.strip()
-        yield syntax.QueryText("", comment, text, read, formula.place(0, length))
+        span = formula.place(0, length)
+        yield syntax.QueryText(named[1] if named else "", remark, text, read, span)

@@ -52,6 +52,9 @@ def test_the_handover_network_keeps_unit_weights_and_labels():
     assert again.automata == network.automata
     assert (again.name, again.title) == (network.name, network.title)
     assert "not a query of UPPAAL: robot.recv2 --&gt;[&lt;=600]" in " ".join(xml.split())
+    told = {(query.id, query.remark) for query in network.queries}
+    assert {(query.id, query.remark) for query in again.queries} <= told
+    assert "R1" in {query.id for query in again.queries}
 
 
 def test_names_become_identifiers():

@@ -150,6 +150,23 @@ def test_places_are_right_behind_entities_and_newlines():
     assert span.column == 3
 
 
+@pytest.mark.parametrize(
+    ("comment", "told"),
+    [
+        ("query safe\nnever\n in a", ("safe", "never in a")),
+        (" query safe ", ("safe", "")),
+        ("query safe, always", ("", "query safe, always")),
+        ("see\nquery safe", ("", "see query safe")),
+        ("", ("", "")),
+    ],
+)
+def test_the_first_line_of_a_comment_may_be_an_id(comment, told):
+    """What our writer says of a query's id is read; what people write of it stays a remark."""
+    queries = f"<query><formula>E&lt;&gt; T.a</formula><comment>{comment}</comment></query>"
+    [query] = loads_network(wrap(ONE, queries=queries)).queries
+    assert (query.id, query.remark) == told
+
+
 def test_a_query_that_cannot_be_read_is_a_warning():
     """Statistical and other foreign queries are left out, the model is still checked."""
     queries = "".join(
