@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from handover.campaign.documents import table_document, to_json
 from handover.campaign.execute import INTERRUPTED, WORKER_DIED, execute
-from handover.campaign.files import write_tables, write_tests
+from handover.campaign.files import dated_files, left_over, write_tables, write_tests
 from handover.campaign.model_checking import check_model
 from handover.campaign.outcome import Results
 from handover.campaign.plan import Plan, plan
@@ -68,6 +68,7 @@ def _campaign(
 
     console = Console(stderr=True)
     folder = made(arguments.out) if arguments.out else None
+    before = dated_files(folder) if folder is not None else {}
     with _told("generating tests", console):
         chosen = plan(
             robots,
@@ -91,6 +92,8 @@ def _campaign(
             write_tables(folder, summary)
             write_tests(folder, results)
             write_pages(folder, summary, results, specs, _again(arguments))
+        if remark := left_over(folder, before):
+            print(remark, file=sys.stderr)
     return summary
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 
 from handover.campaign.documents import coverage_document, table_document, to_json
@@ -13,6 +15,11 @@ from handover.generator.files import save
 from handover.generator.model_based import save_templates
 from rvmon.report.table_csv import tables_csv
 from rvmon.report.table_latex import table_latex
+
+TESTS = "tests"
+TEMPLATES = "templates"
+RUNS = "runs"
+"""Folders of a campaign's folder."""
 
 TEXT_COLUMNS = 100
 """Width of `table.txt`."""
@@ -35,11 +42,40 @@ def write_tests(folder: Path, results: Results) -> None:
 
     Those that the model gave have their templates in `templates/`.
     """
-    tests = folder / "tests"
+    tests = folder / TESTS
     tests.mkdir(parents=True, exist_ok=True)
     for test in {one.job.test.name: one.job.test for one in results.outcomes}.values():
         save(test, tests)
-    save_templates({one.job.test.strategy for one in results.outcomes}, folder / "templates")
+    save_templates({one.job.test.strategy for one in results.outcomes}, folder / TEMPLATES)
+
+
+def dated_files(folder: Path) -> dict[Path, int]:
+    """The files in folders of a campaign's folder, each with the instant of its last change."""
+    return {
+        path: path.stat().st_mtime_ns
+        for part in (TESTS, TEMPLATES, RUNS)
+        for path in (folder / part).rglob("*")
+        if path.is_file()
+    }
+
+
+def left_over(folder: Path, before: Mapping[Path, int]) -> str:
+    """Say which files of an earlier campaign lie beside those of this one; empty if none does.
+
+    Args:
+        folder: of the campaign, which is written.
+        before: what `dated_files` found there before.
+    """
+    now = dated_files(folder)
+    counts = Counter(
+        path.relative_to(folder).parts[0] for path, at in before.items() if now.get(path) == at
+    )
+    if not counts:
+        return ""
+    places = " and ".join(f"{count} in {folder / part}" for part, count in counts.items())
+    return (
+        f"files that this campaign did not write stay: {places}; remove them, or name a new --out"
+    )
 
 
 def _plain_text(summary: CampaignSummary) -> str:

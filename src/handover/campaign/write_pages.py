@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from handover.campaign.examples import choose_examples, comparable_jobs
+from handover.campaign.files import RUNS, TESTS
 from handover.campaign.outcome import Outcome, Results
 from handover.campaign.pages import judged, simulated_page
 from handover.campaign.plan import Job
@@ -19,7 +20,6 @@ from rvmon.session import Spec
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
-RUNS = "runs"
 REPORT = "report.html"
 
 Replays = dict[tuple[str, str], tuple[Run, Report]]
@@ -89,7 +89,7 @@ def _replayed(job: Job, spec: Spec, replays: Replays) -> tuple[Run, Report]:
 
 
 def _command(folder: Path, job: Job) -> str:
-    words: list[object] = ["replay", folder / "tests" / f"{job.test.name}.json"]
+    words: list[object] = ["replay", folder / TESTS / f"{job.test.name}.json"]
     if job.robot == "legacy" and job.test.robot is None:
         words.append("--legacy")
     return typed(words)

@@ -71,6 +71,21 @@ def test_the_page_and_the_terminal_count_the_same_physics(tmp_path, capsys):
     assert f"{told[1]} s of physics" in page
 
 
+def test_what_an_earlier_campaign_left_is_told(tmp_path, capsys):
+    """Its files stay and are counted; what this one writes over is not among them."""
+    run = ["run", "--strategy", "pseudorandom", "--jobs", "1", "--out", str(tmp_path)]
+    (tmp_path / "mine.txt").write_text("of somebody else")
+    assert main([*run, "--tests", "3"]) == 0
+    assert "stay" not in capsys.readouterr().err
+    assert main([*run, "--tests", "2"]) == 0
+    told = capsys.readouterr().err
+    assert f"files that this campaign did not write stay: 1 in {tmp_path / 'tests'}" in told
+    assert {path.name for path in (tmp_path / "tests").iterdir()} == {
+        f"pseudorandom-00{number}.json" for number in range(3)
+    }
+    assert (tmp_path / "mine.txt").exists()
+
+
 def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
     """One test alone, by the file that the campaign wrote; its recording is judged the same."""
     known = json.loads((demo / "table.json").read_text())["robots"]["correct"]["known_answers"]
