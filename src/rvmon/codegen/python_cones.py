@@ -87,7 +87,7 @@ class ConeWriter:
             yield "dirty = 0"
         else:
             yield "letters = triggers = dirty = 0"
-        yield from at_hand(lines, "before", "dues", "last")
+        yield from at_hand(lines, "before", "dues")
         yield from lines
 
     def _values(self, leaf: int) -> Iterator[tuple[str, str]]:

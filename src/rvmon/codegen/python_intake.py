@@ -64,18 +64,11 @@ class IntakeWriter:
         """All of them, and the tables that they look up."""
         yield "def step(self, t, values):"
         yield '    """Take one sample; returns what it decided."""'
-        yield from indented(self._quick())
-        if self.single:
-            yield "    if one is not None:"
-            yield "        return one(self, t, x, values)"
-        yield "    if t.__class__ is not int or not self.after < t < LIMIT:"
-        yield "        return self.clerk.other(t, values)"
-        if not self.whole:
-            yield "    return self.some(t, values)"
-        else:
-            yield f"    if size != {len(self.arriving)}:"
-            yield "        return self.some(t, values)"
-            yield from indented(self._whole())
+        # Other mappings may answer what they do not hold.
+        yield "    if values.__class__ is dict:"
+        yield from indented(self._by_size(), 2)
+        yield from indented(self._checked())
+        yield "    return self.some(t, values)"
         yield ""
         yield from self._some()
         yield ""
@@ -98,37 +91,45 @@ class IntakeWriter:
 
     # A sample that holds all names.
 
-    def _quick(self) -> Iterator[str]:
-        """See what a sample holds; be done with one that brings nothing new."""
-        in_order = "t.__class__ is int and self.after < {}"
-        quiet = [f"if {in_order.format(self._quiet())}:"]
-        if self.single:
-            yield "one = None"
-        yield "try:"
-        # Other mappings may answer what they do not hold.
-        yield "    size = len(values) if values.__class__ is dict else -1"
+    def _by_size(self) -> Iterator[str]:
+        """See what a dictionary holds; be done with one that brings one value or nothing new."""
+        branch = "if"
         if self.whole:
-            yield f"    if size == {len(self.arriving)}:"
+            yield f"if len(values) == {len(self.arriving)}:"
+            yield "    try:"
             for number, name in enumerate(self.arriving):
                 yield f"        x{number} = values[{name!r}]"
-            yield "        last = self.last"
+            yield "    except LookupError:"
+            yield "        return self.clerk.other(t, values)"
             if not self.every:
-                yield from indented(self._compared(), 2)
-        yield f"    {'elif' if self.whole else 'if'} not size:"
-        yield from indented([*quiet, *indented([*self.visit.done(), "return ()"])], 2)
+                yield from indented(self._compared())
+            yield from indented(self._checked())
+            yield from indented(self._whole())
+            branch = "elif"
+        yield f"{branch} not values:"
+        yield f"    if {self._in_order(self._quiet())}:"
+        yield from indented([*self.visit.done(), "return ()"], 2)
         if self.single and len(self.arriving) > 1:
-            yield "    elif size == 1:"
+            yield "elif len(values) == 1:"
+            yield f"    if {self._in_order('t < LIMIT')}:"
             yield "        (name,) = values"
-            yield "        x = values[name]"
-            yield f"        if {in_order.format('t < LIMIT')}:"
-            yield "            one = ONE.get(name)"
-        yield "except (AttributeError, LookupError, TypeError, ValueError):"
+            yield "        one = ONE.get(name)"
+            yield "        if one is not None:"
+            yield "            return one(self, t, values[name], values)"
+
+    def _in_order(self, before: str) -> str:
+        """Whether a time is valid and not yet too late."""
+        return f"t.__class__ is int and self.after < {before}"
+
+    def _checked(self) -> Iterator[str]:
+        """Have an invalid time seen to."""
+        yield "if t.__class__ is not int or not self.after < t < LIMIT:"
         yield "    return self.clerk.other(t, values)"
 
     def _compared(self) -> Iterator[str]:
         """Compare a whole row with the one before; go on with a value that alone is another."""
         names = list(enumerate(self.arriving))
-        quiet = f"t.__class__ is int and self.after < {self._quiet()}"
+        quiet = self._in_order(self._quiet())
         if len(self.single) < len(names) or len(names) > _PAIRED:
             yield f"if {self._same(names)} and {quiet}:"
             yield from indented([*self.visit.done(), "return ()"])
@@ -138,8 +139,8 @@ class IntakeWriter:
             yield f"{branch} x{number} is not {self.values.before(name)}:"
             rest = names[number + 1 :]
             same = f"{self._same(rest)} and " if rest else ""
-            yield f"    if {same}t.__class__ is int and self.after < t < LIMIT:"
-            yield f"        one, x = one{number}, x{number}"
+            yield f"    if {same}{self._in_order('t < LIMIT')}:"
+            yield f"        return one{number}(self, t, x{number}, values)"
         yield f"elif {quiet}:"
         yield from indented([*self.visit.done(), "return ()"])
 
@@ -151,7 +152,7 @@ class IntakeWriter:
         lines: list[str] = []
         for number, name in enumerate(self.arriving):
             lines += self._noticed(number, name)
-        yield from at_hand(lines, "last")
+        yield from at_hand(lines)
         yield from lines
         yield from self._time()
         yield from indented(self._expired())
@@ -160,7 +161,7 @@ class IntakeWriter:
         for number, name in enumerate(self.arriving):
             lines.append(f"if changed & {1 << number}:")
             lines += indented(self.values.new(f"x{number}", name))
-        yield from at_hand(lines, "last")
+        yield from at_hand(lines)
         yield from lines
         yield from self._after()
 
@@ -169,7 +170,7 @@ class IntakeWriter:
         for number, name in enumerate(self.arriving):
             signal = self.plan.spec.signals.get(name)
             if signal is not None and signal.stale_after is not None:
-                yield f"if self.last[{self.plan.signals.index(name)}] is MISSING:"
+                yield f"if self.last{self.plan.signals.index(name)} is MISSING:"
                 yield f"    changed |= {1 << number}"
 
     def _noticed(self, number: int, name: str) -> Iterator[str]:
@@ -199,7 +200,7 @@ class IntakeWriter:
         general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
         general += indented(self.values.new("x", name))
         general += self._after()
-        yield from indented([*at_hand(head), *head, *lines, *at_hand(general, "last"), *general])
+        yield from indented([*at_hand(head), *head, *lines, *at_hand(general), *general])
 
     # A sample of any names.
 

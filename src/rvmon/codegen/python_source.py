@@ -60,7 +60,8 @@ class _Writer:
         yield "class Generated(Unit):"
         yield f'    """Judges {", ".join(rule.requirement.id for rule in self.plan.rules)}."""'
         yield ""
-        yield "    __slots__ = ()"
+        held = (f"last{signal}" for signal in range(len(self.plan.signals)))
+        yield f"    __slots__ = {tuple(held)!r}"
         yield from indented(self._constants())
         yield ""
         yield from indented(self.intake.lines())

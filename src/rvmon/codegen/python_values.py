@@ -37,7 +37,7 @@ class ValueWriter:
 
     def before(self, name: str) -> str:
         """What a value is compared with: the one before."""
-        return "False" if name in self.plan.events else f"last[{self.plan.signals.index(name)}]"
+        return "False" if name in self.plan.events else f"self.last{self.plan.signals.index(name)}"
 
     def is_odd(self, variable: str, name: str) -> str:
         """Whether a value needs a closer look: of another class, unknown, or a payload."""
@@ -112,7 +112,7 @@ class ValueWriter:
         yield f"if s[{signal}] is None and self.first[{signal}] is None:"
         yield f"    self.first[{signal}] = t"
         known = variable if given else f"MISSING if {variable} is None else {variable}"
-        yield f"last[{signal}] = {known}"
+        yield f"self.last{signal} = {known}"
         yield f"s[{signal}] = {variable}"
 
     def _occurs(self, variable: str, name: str) -> Iterator[str]:

@@ -10,7 +10,7 @@ from rvmon.codegen.python_nodes import NEVER, NodeWriter, Roles, bits, keeps_str
 from rvmon.spec.checked import Mode
 
 _ARRAYS = (
-    *("v", "s", "last", "w", "b", "wakes", "queued", "timers", "before"),
+    *("v", "s", "w", "b", "wakes", "queued", "timers", "before"),
     "marked",
 )
 """Attributes of the monitor that statements have at hand under their own name."""

@@ -30,7 +30,6 @@ class Nodes:
         since: per node of a letter, the position from which on it has had its value.
         until: per node of a letter and truth, the last position at which it had that before.
         s: per signal, its value; `None` if it is unknown.
-        last: the same, `MISSING` if it is unknown: nothing that a sample brings is that.
         o: per event, whether it occurs at this position.
         p: per event, its payloads.
         w: per node, what it remembers, taking the unknown for the worse.
@@ -49,7 +48,6 @@ class Nodes:
         "first",
         "gathered",
         "h",
-        "last",
         "marked",
         "momentary",
         "o",
@@ -104,7 +102,7 @@ class Nodes:
         self.since = [0] * self.NODES
         self.until: list[int | None] = [None] * (3 * self.NODES)
         self.s: list[Any] = [None] * len(self.SIGNALS)
-        self.last: list[Any] = [MISSING] * len(self.SIGNALS)
+        self.last = (MISSING,) * len(self.SIGNALS)
         self.first: list[int | None] = [None] * len(self.SIGNALS)
         self.silent = [UNKNOWN if name in absent else FALSE for name in self.EVENTS]
         self.o = list(self.silent)
@@ -129,6 +127,19 @@ class Nodes:
         self.stale_at = [NEVER] * len(self.SIGNALS)
         self.expired: dict[int, tuple[int, int]] = {}
         self.timers: list[tuple[int, int]] = []
+
+    @property
+    def last(self) -> tuple[Any, ...]:
+        """Per signal, its value; `MISSING` if it is unknown: nothing that a sample brings is that.
+
+        Each is an attribute of the generated part, `last` and the number of the signal.
+        """
+        return tuple([getattr(self, f"last{signal}") for signal in range(len(self.SIGNALS))])
+
+    @last.setter
+    def last(self, values: Sequence[Any]) -> None:
+        for signal, value in enumerate(values):
+            setattr(self, f"last{signal}", value)
 
     # What nodes call.
 
@@ -247,7 +258,7 @@ class Nodes:
             actual = self.stale_at[signal]
             if actual <= t:
                 self.s[signal] = None
-                self.last[signal] = MISSING
+                setattr(self, f"last{signal}", MISSING)
                 self.stale_at[signal] = NEVER
                 count, first = self.expired.get(signal, (0, actual))
                 self.expired[signal] = (count + 1, first)
