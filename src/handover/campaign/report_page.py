@@ -10,6 +10,7 @@ from handover.campaign.flow_chart import flow_chart
 from handover.campaign.paper import SOURCE
 from handover.campaign.summary import CampaignSummary, KnownAnswer, RobotSummary
 from handover.campaign.tables import ROBOTS, comparable, fitted_note, unfitted_table, verdict_table
+from handover.collector.statements import StatementCoverage
 from rvmon.report.markup import Child, e, page
 from rvmon.report.percent import percent_text
 from rvmon.report.style import MARKS
@@ -109,8 +110,7 @@ def _coverage(robot: str, figures: RobotSummary) -> ET.Element:
                 "figcaption",
                 None,
                 e("b", None, name),
-                f" {strategy.tests} tests, "
-                f"{percent_text(strategy.total.covered, strategy.total.statements)} of "
+                f" {strategy.tests} tests, {_unbroken(strategy.total)} of "
                 f"{strategy.total.statements} statements",
             ),
             flow_chart(strategy),
@@ -131,14 +131,17 @@ def _coverage(robot: str, figures: RobotSummary) -> ET.Element:
     )
 
 
+def _unbroken(total: StatementCoverage) -> str:
+    """The share that ran; a line does not end before its sign."""
+    return percent_text(total.covered, total.statements).replace(" ", "\N{NO-BREAK SPACE}")
+
+
 def _known(robot: str, figures: RobotSummary, tests: Mapping[tuple[str, str], str]) -> ET.Element:
     ids = list(figures.requirements)
-    head = e(
-        "tr",
-        None,
-        *(e("th", None, text) for text in ("test", *ids, "purpose", "planted fault")),
-    )
-    rows = [_known_row(robot, one, ids, tests) for one in figures.known]
+    faults = any(one.mutation for one in figures.known)
+    titles = ["test", *ids, "purpose", *(["planted fault"] if faults else [])]
+    head = e("tr", None, *(e("th", None, title) for title in titles))
+    rows = [_known_row(robot, one, ids, tests, faults=faults) for one in figures.known]
     right = sum(one.as_expected for one in figures.known)
     grid = e("table", {"class": "verdicts"}, e("thead", None, head), e("tbody", None, *rows))
     return e(
@@ -151,13 +154,18 @@ def _known(robot: str, figures: RobotSummary, tests: Mapping[tuple[str, str], st
 
 
 def _known_row(
-    robot: str, one: KnownAnswer, ids: list[str], tests: Mapping[tuple[str, str], str]
+    robot: str,
+    one: KnownAnswer,
+    ids: list[str],
+    tests: Mapping[tuple[str, str], str],
+    *,
+    faults: bool,
 ) -> ET.Element:
     address = tests.get((robot, one.test))
     name: Child = one.test if address is None else e("a", {"href": address}, one.test)
     cells = [_verdict_cell(one, requirement) for requirement in ids]
-    purpose = e("td", {"class": "text"}, one.text)
-    fault = e("td", {"class": "text"}, one.mutation or "")
+    purpose = e("td", {"class": "text purpose"}, one.text)
+    fault = e("td", {"class": "text"}, one.mutation or "") if faults else None
     return e("tr", None, e("th", {"scope": "row"}, name), *cells, purpose, fault)
 
 

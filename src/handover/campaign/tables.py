@@ -90,12 +90,14 @@ def fitted_note(table: VerdictTable, unfitted: VerdictTable) -> str:
     for strategy, requirement in sorted(FITTED_BY_LOSS):
         with_fit, without = (_cell(one, strategy, requirement) for one in (table, unfitted))
         if with_fit and without:
-            shown.append(f"{strategy} {requirement} ({with_fit} with it, {without} without)")
+            letters = "/".join(Verdict)
+            counts = f"{letters} {with_fit} with it, {without} without"
+            shown.append(f"{strategy} {requirement}, by the loss of signals at start-up ({counts})")
     if not shown:
         return ""
     return (
-        f"No evidence: {', '.join(shown)}, to which the loss of signals at start-up is fitted, "
-        "and R4, to which the slowness of polls is."
+        f"Fitted to the paper's counts, and so no evidence: {'; '.join(shown)}; "
+        "R4, by the slowness of polls."
     )
 
 
