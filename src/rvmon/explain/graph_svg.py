@@ -12,6 +12,10 @@ from rvmon.explain.graph_text import ENDS, label_of
 
 COLUMN, ROW, BOX, HALF = 230, 110, 150, 28
 MARGIN, LINE, LOOP = 30, 18, 46
+WRAP = 22
+"""Characters in a line of a box."""
+BENDS = tuple(ROW * share for share in (0.55, -0.55, 1.1, 1.6, 2.2, 2.8))
+"""How far an edge past a column swings down; the first that no box hides is taken."""
 FONT = "ui-sans-serif, system-ui, sans-serif"
 Point = tuple[float, float]
 Curve = tuple[Point, Point, Point]
@@ -23,13 +27,22 @@ def graph_svg(graph: Graph, title: str) -> str:
     at = _positions(graph)
     edges = list(_merged(graph).items())
     width = max(max(x for x, _ in at.values()) + BOX + MARGIN, 560)
-    height = max(y for _, y in at.values()) + HALF + MARGIN
-    legend = [line for number, (_, texts) in enumerate(edges, 1) for line in _legend(number, texts)]
+    drawn = [_edge(at, ends) for ends, _ in edges]
+    lowest = max(_at(curve, share / 10)[1] for _, curve in drawn for share in range(11))
+    height = max(max(y for _, y in at.values()) + HALF, lowest) + MARGIN
+    legend = [
+        line
+        for number, (_, texts) in enumerate(edges, 1)
+        for line in _legend(str(number), "  or  ".join(texts))
+    ]
+    for place in graph.places:
+        if _shown(place)[-1:] != textwrap.wrap(place.owed, WRAP)[-1:]:
+            legend += _legend(place.name, f"owed: {place.owed}")
     svg = ET.Element(
         "svg",
         {
             "xmlns": "http://www.w3.org/2000/svg",
-            "viewBox": f"0 0 {width} {height + LINE * (len(legend) + 2)}",
+            "viewBox": f"0 0 {width} {height + LINE * (len(legend) + 2):g}",
             "width": str(width),
             "font-family": FONT,
             "font-size": "12",
@@ -39,8 +52,7 @@ def graph_svg(graph: Graph, title: str) -> str:
     ET.SubElement(svg, "title").text = f"Automaton of {title}"
     _background(svg)
     badges: list[Point] = []
-    for ends, _ in edges:
-        path, curve = _edge(at, ends)
+    for path, curve in drawn:
         look = {"fill": "none", "stroke": "#555", "stroke-width": "1.3"}
         ET.SubElement(svg, "path", {"d": path, **look, "marker-end": "url(#arrow)"})
         badges.append(_free_point(curve, badges, at.values()))
@@ -50,7 +62,7 @@ def graph_svg(graph: Graph, title: str) -> str:
         _place(svg, place, at[place.name])
     for row, line in enumerate(legend):
         y = height + LINE * (row + 1)
-        ET.SubElement(svg, "text", {"x": str(MARGIN), "y": str(y), "fill": "#222"}).text = line
+        ET.SubElement(svg, "text", {"x": str(MARGIN), "y": f"{y:g}", "fill": "#222"}).text = line
     ET.indent(svg)
     return ET.tostring(svg, encoding="unicode") + "\n"
 
@@ -88,8 +100,8 @@ def _condition(edge: Edge) -> str:
     return label_of(edge) + (f"  ({edge.sets})" if edge.sets else "")
 
 
-def _legend(number: int, texts: list[str]) -> list[str]:
-    lines = textwrap.wrap(f"{number}  " + "  or  ".join(texts), 84, subsequent_indent="     ")
+def _legend(sign: str, text: str) -> list[str]:
+    lines = textwrap.wrap(f"{sign}  {text}", 84, subsequent_indent="     ")
     return [line.replace("  ", "\u00a0\u00a0") for line in lines]
 
 
@@ -109,8 +121,7 @@ def _place(svg: ET.Element, place: Place, at: tuple[int, int]) -> None:
     look = {"height": str(HALF * 2), "rx": str(HALF if end else 8), "fill": "#f7f7f7"}
     ET.SubElement(svg, "rect", {**box, **look, "stroke": stroke, "stroke-width": "1.5"})
     lines = [ENDS.get(place.name, place.name)]
-    if not end:
-        lines += textwrap.wrap(place.owed, 22, max_lines=2, placeholder=" …")
+    lines += _shown(place)
     middle = x + (HALF if end else BOX // 2)
     for row, line in enumerate(lines):
         height = y + 4 + (row - (len(lines) - 1) / 2) * 15
@@ -121,6 +132,13 @@ def _place(svg: ET.Element, place: Place, at: tuple[int, int]) -> None:
         text.text = line
         if row == 0 and not end:
             ET.SubElement(text, "title").text = place.owed
+
+
+def _shown(place: Place) -> list[str]:
+    """What is owed at a place, as far as its box has room."""
+    if place.name in ENDS:
+        return []
+    return textwrap.wrap(place.owed, WRAP, max_lines=2, placeholder=" …")
 
 
 def _edge(at: Mapping[str, tuple[int, int]], ends: tuple[str, str]) -> tuple[str, Curve]:
@@ -141,11 +159,29 @@ def _edge(at: Mapping[str, tuple[int, int]], ends: tuple[str, str]) -> tuple[str
         ahead = x2 > x1
         left, right = (x1 + BOX, x2) if ahead else (x1, x2 + BOX)
         lift = 14 if ahead else -14
-        bend = ROW * 0.55 if abs(x2 - x1) > COLUMN else 0
         middle = (left + right) / 2
-        curve = ((left, y1 + lift), (middle, (y1 + y2) / 2 + bend + lift), (right, y2 + lift / 2))
+
+        def bent(bend: float) -> Curve:
+            return (left, y1 + lift), (middle, (y1 + y2) / 2 + bend + lift), (right, y2 + lift / 2)
+
+        others = [corner for name, corner in at.items() if name not in ends]
+        bends = BENDS if abs(x2 - x1) > COLUMN else (0.0,)
+        curve = min(map(bent, bends), key=lambda tried: _hidden(tried, others))
     (ax, ay), (bx, by), (cx, cy) = curve
     return f"M{ax:g} {ay:g} Q{bx:g} {by:g} {cx:g} {cy:g}", curve
+
+
+def _hidden(curve: Curve, boxes: Sequence[tuple[int, int]]) -> int:
+    """How much of a curve, in twentieths, lies behind boxes."""
+    return sum(_is_behind(_at(curve, share / 20), boxes, 0) for share in range(1, 20))
+
+
+def _is_behind(point: Point, boxes: Iterable[tuple[int, int]], margin: float) -> bool:
+    x, y = point
+    return any(
+        left - margin < x < left + BOX + margin and abs(y - middle) < HALF + margin
+        for left, middle in boxes
+    )
 
 
 def _free_point(curve: Curve, taken: Sequence[Point], boxes: Iterable[tuple[int, int]]) -> Point:
@@ -153,11 +189,9 @@ def _free_point(curve: Curve, taken: Sequence[Point], boxes: Iterable[tuple[int,
     corners = list(boxes)
 
     def room(point: Point) -> float:
-        x, y = point
-        hidden = any(
-            left - 9 < x < left + BOX + 9 and abs(y - middle) < HALF + 9 for left, middle in corners
-        )
-        return 0.0 if hidden else min((20.0, *(dist(point, other) for other in taken)))
+        if _is_behind(point, corners, 9):
+            return 0.0
+        return min((20.0, *(dist(point, other) for other in taken)))
 
     shares = (0.5, 0.4, 0.6, 0.3, 0.7, 0.22, 0.78, 0.14, 0.86)
     return max((_at(curve, share) for share in shares), key=room)

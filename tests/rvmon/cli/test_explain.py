@@ -104,6 +104,18 @@ def test_dot_and_svg(door, capsys):
     assert {"start", "A", "✓ P", "✗ F"} <= set(texts)
 
 
+def test_a_drawing_tells_in_full_what_its_boxes_cut(door, capsys):
+    """What has no room in a box stands below, with the box's letter."""
+    text = "spec a\nevent e\nsignal x : real\nrequirement R\n  upon e\n"
+    (door / "a.rv").write_text(text + "  then within 500 ms for 1 s x > 1\n")
+    shown(capsys, "a.rv", "R", "--svg", "r.svg")
+    drawn = (door / "r.svg").read_text()
+    assert "owed: for 1 s x &gt; 1, or within 500 ms for 1 s x &gt; 1" in drawn.replace(
+        "\u00a0", " "
+    )
+    assert "A\u00a0\u00a0owed" not in drawn
+
+
 def test_a_code_has_its_page(capsys):
     """A diagnostic's code is explained by its page, in either case of letters."""
     assert "# RV012 unknown-signal" in shown(capsys, "RV012")
