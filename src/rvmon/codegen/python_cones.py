@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_leaves import known_test
@@ -10,8 +12,21 @@ from rvmon.codegen.python_nodes import NodeWriter, Roles, bits
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
 from rvmon.spec.checked import SignalAtom
 
+_BEFORE = re.compile(r"(?<![.\w])before\b")
+
+_DEEPEST = 8
+"""So many blocks stand within each other at most."""
+
 _MOST = 1500
 """So many nodes at most stand in what is written for changes of one leaf."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Node:
+    """A node, and those behind it in a cone that can change only if it does."""
+
+    place: int
+    behind: list[_Node] = field(default_factory=list)
 
 
 class ConeWriter:
@@ -54,7 +69,7 @@ class ConeWriter:
             lines += ["if n == 2:", *indented(self._cone(places, "2"))]
             lines += ["elif n == 0:", *indented(self._cone(places, "0"))]
             lines += ["else:", *indented(self._cone(places, "1"))]
-            yield "    letters = triggers = fading = dirty = 0"
+            yield "    letters = triggers = fading = 0"
             yield from indented([*at_hand(lines), *lines])
             yield "    return letters, triggers, fading"
             yield ""
@@ -76,18 +91,17 @@ class ConeWriter:
             lines += [test, *indented(self._moved(places, value))]
         timed = self.joins or any(self.nodes.is_timed(place) for place in places)
         lines += self.visit.followed(timed=timed)
-        if "before" in "\n".join(lines):
-            yield f"before = {self.visit.preceding()}"
+        # Few values come to where it is asked for.
+        lines = [_BEFORE.sub(self.visit.preceding(), line) for line in lines]
         if self.joins:
             yield "letters = triggers = 0"
             yield "if self.dirty:"
             yield f"    self.before = {self.visit.preceding()}"
             yield "    letters, triggers, _ = self.evaluate(t, self.dirty)"
             yield "    self.dirty = 0"
-            yield "dirty = 0"
         else:
-            yield "letters = triggers = dirty = 0"
-        yield from at_hand(lines, "before", "dues")
+            yield "letters = triggers = 0"
+        yield from at_hand(lines, "dues")
         yield from lines
 
     def _values(self, leaf: int) -> Iterator[tuple[str, str]]:
@@ -143,28 +157,46 @@ class ConeWriter:
 
     def _cone(self, places: list[int], value: str) -> Iterator[str]:
         """What the new value of a leaf makes of the nodes above it."""
-        nodes = self.nodes
         leaf, *above = places
-        number = {place: index for index, place in enumerate(places)}
-        nodes.settling(leaf, value)
-        yield from self.visit.changed(leaf, value, 0)
-        sure = 1 << leaf
-        for place in above:
-            parents = self.roles.parents[place]
-            dirty = bits(tuple(number[other] for other in above if parents >> other & 1))
-            reached = any(
-                sure >> below & 1 and self.roles.parents[below] >> place & 1 for below in places
-            )
-            lines = list(nodes.statements(place))
-            if len(lines) == 1 and nodes.settling(place, lines[0].removeprefix("n = ")):
-                yield f"if v[{place}] != {nodes.settled[place]}:"
-                yield from indented(self.visit.changed(place, nodes.settled[place], dirty))
-                continue
-            lines += [f"if n != v[{place}]:", *indented(self.visit.changed(place, "n", dirty))]
-            if not reached:
-                yield f"if dirty & {1 << number[place]}:"
-            yield from indented(lines, 0 if reached else 1)
-        nodes.settled.clear()
+        below = {
+            place: [other for other in places if self.roles.parents[other] >> place & 1]
+            for place in above
+        }
+        self.nodes.settling(leaf, value)
+        written = {place: self._value_of(place) for place in above}
+        self.nodes.settled.clear()
+        roots = _nested(above, below)
+        waiting = [
+            root.place for root in roots if leaf not in below[root.place] and written[root.place][0]
+        ]
+        asked = {other for place in waiting for other in below[place]}
+        yield from self.visit.changed(leaf, value)
+        if asked:
+            yield f"{' = '.join(f'moved{other}' for other in sorted(asked))} = False"
+        for root in roots:
+            if root.place in waiting:
+                yield f"if {' or '.join(f'moved{other}' for other in below[root.place])}:"
+            yield from indented(self._then(root, written, asked), root.place in waiting)
+
+    def _value_of(self, place: int) -> tuple[list[str], str]:
+        """The statements that give a node its value, if it needs any, and then what has it."""
+        lines = list(self.nodes.statements(place))
+        if len(lines) == 1 and self.nodes.settling(place, lines[0].removeprefix("n = ")):
+            return [], self.nodes.settled[place]
+        return lines, "n"
+
+    def _then(
+        self, node: _Node, written: Mapping[int, tuple[list[str], str]], asked: set[int]
+    ) -> Iterator[str]:
+        """Give a node its value; if that is another one, go on with those behind it."""
+        place = node.place
+        lines, value = written[place]
+        yield from lines
+        yield f"if v[{place}] != {value}:"
+        onward = (f"moved{place} = True",) if place in asked else ()
+        yield from indented(self.visit.changed(place, value, onward))
+        for other in node.behind:
+            yield from indented(self._then(other, written, asked))
 
     def _above(self, place: int) -> list[int]:
         """A node and those whose value depends on it, in order."""
@@ -173,3 +205,21 @@ class ConeWriter:
             if other >= place and found >> other & 1:
                 found |= self.roles.parents[other]
         return [other for other in self.visit.kept if found >> other & 1]
+
+
+def _nested(above: Sequence[int], below: Mapping[int, list[int]]) -> list[_Node]:
+    """Nodes in their order, each behind the one it depends on if that is the only one.
+
+    Args:
+        above: the nodes of a cone but for its leaf.
+        below: what they depend on in the cone.
+    """
+    roots: list[_Node] = []
+    path: list[_Node] = []
+    for place in above:
+        node = _Node(place)
+        while path and (below[place] != [path[-1].place] or len(path) > _DEEPEST):
+            path.pop()
+        (path[-1].behind if path else roots).append(node)
+        path.append(node)
+    return roots

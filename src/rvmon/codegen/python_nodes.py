@@ -79,11 +79,11 @@ def value_before(state: State) -> int:
     return 0 if _is_latch(state) else 1
 
 
-def memory_before(state: State) -> int:
+def memory_before(state: State) -> int | None:
     """What a node remembers before the first position."""
     if state.op is not StateOp.SINCE:
         return 0
-    return NEVER if state.high is None else -NEVER
+    return None if state.high is None else -NEVER
 
 
 def keeps_stretches(state: State) -> bool:
@@ -179,21 +179,23 @@ class NodeWriter:
         if _is_latch(state):
             yield from self._latched(place, left, right)
             return
-        yield f"l = {left}"
-        yield f"r = {right}"
+        given = []
+        for name, own in (("l", left), ("r", right)):
+            given.append(own if own in _TRUTHS else name)
+            if own not in _TRUTHS:
+                yield f"{name} = {own}"
+        operands_now = ", ".join(given)
         if keeps_stretches(state):
-            yield f"n, e = marked[{place}].step(t, before, l, r)"
+            yield f"n, e = marked[{place}].step(t, before, {operands_now})"
             yield from self._wake(place, "e", "")
             return
         yield f"e = w[{place}]"
-        unknown = [
-            f"{name} == 1"
-            for name, own in zip("lr", (left, right), strict=True)
-            if own not in _TRUTHS
-        ]
-        yield f"if {' or '.join([*unknown, f'b[{place}] != e'])}:"
+        unknown = [f"{name} == 1" for name in given if name not in _TRUTHS]
+        # Both readings are the same object while they are equal: that is the cheaper question.
+        yield f"if {' or '.join([*unknown, f'b[{place}] is not e'])}:"
         slow = "beyond_" if high is None else "within_"
-        yield f"    n = self.{slow}({place}, t, before, l, r, {low if high is None else high})"
+        bound = low if high is None else high
+        yield f"    n = self.{slow}({place}, t, before, {operands_now}, {bound})"
         if high is None:
             yield from self._beyond(place, low, left, right)
         else:
@@ -215,7 +217,7 @@ class NodeWriter:
         """As `rvmon.codegen.runtime.past.within`, both readings at once."""
         if right != "0":
             yield "elif r:" if right != "2" else "else:"
-            yield f"    w[{place}] = b[{place}] = {NEVER}"
+            yield f"    w[{place}] = b[{place}] = None"
             yield f"    wakes[{place}] = {NEVER}"
             yield "    n = 2"
         if right == "2":
@@ -228,7 +230,7 @@ class NodeWriter:
         if left == "0":
             return
         yield "else:"
-        yield f"    if e == {NEVER}:"
+        yield "    if e is None:"
         yield f"        e = w[{place}] = b[{place}] = before + {high}"
         yield "    n = 0"
         yield "    if e >= t:"
@@ -239,24 +241,31 @@ class NodeWriter:
         """As `rvmon.codegen.runtime.past.beyond`, both readings at once."""
         if left != "2":
             yield "elif not l:" if left != "0" else "else:"
-            ended = {"0": f"{NEVER}", "2": f"-{NEVER}"}.get(right, f"-{NEVER} if r else {NEVER}")
+            ended = {"0": "None", "2": "True"}.get(right, "True if r else None")
             yield f"    w[{place}] = b[{place}] = {ended}"
             yield f"    wakes[{place}] = {NEVER}"
             yield "    n = 0"
         if left == "0":
             return
         yield "else:"
-        yield f"    if e == -{NEVER}:"
-        yield f"        e = w[{place}] = b[{place}] = before + {low}"
-        if right != "0":
-            asked = "" if right == "2" else "r and "
-            yield f"    if {asked}e == {NEVER}:"
-            yield f"        e = w[{place}] = b[{place}] = t + {low}"
         yield "    n = 0"
-        yield "    if e <= t:"
+        yield "    if e is True:"
+        yield f"        e = w[{place}] = b[{place}] = before + {low}"
+        yield "        if e <= t:"
+        yield "            n = 2"
+        yield "        else:"
+        yield from self._wake(place, "e", "            ")
+        if right != "0":
+            yield "    elif e is None:"
+            inner = "        "
+            if right != "2":
+                yield "        if r:"
+                inner += "    "
+            yield f"{inner}e = w[{place}] = b[{place}] = t + {low}"
+            yield from self._wake(place, "e", inner)
+        # Else time wakes it at `e` already.
+        yield f"    elif {'' if right != '0' else 'e is not None and '}e <= t:"
         yield "        n = 2"
-        yield f"    elif e < {NEVER}:"
-        yield from self._wake(place, "e", "        ")
 
     def _wake(self, place: int, instant: str, indent: str) -> Iterator[str]:
         if self.watched is not None:

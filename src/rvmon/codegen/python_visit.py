@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_nodes import NEVER, NodeWriter, Roles, bits, keeps_stretches
@@ -165,7 +165,8 @@ class VisitWriter:
 
     def _concerns(self) -> Iterator[str]:
         """If none of these holds, a position is not to be judged."""
-        yield "letters and letters & self.active or triggers"
+        alone = len(self.plan.rules) == 1
+        yield f"letters and {'' if alone else 'letters & '}self.active or triggers"
         if self.repeats:
             yield "self.repeating"
         if not self.calm:
@@ -247,11 +248,12 @@ class VisitWriter:
         for place in self.kept:
             parents = self.roles.parents[place]
             dirty = bits(tuple(other for other in self.kept if parents >> other & 1))
+            onward = (f"dirty |= {dirty}",) if dirty else ()
             yield f"if dirty & {1 << place}:"
             yield from indented(self.nodes.statements(place))
             yield from indented(self.momentary_lines(place))
             yield f"    if n != v[{place}]:"
-            yield from indented(self.changed(place, "n", dirty), 2)
+            yield from indented(self.changed(place, "n", onward), 2)
 
     def momentary_lines(self, place: int) -> Iterator[str]:
         """Whether a leaf speaks of this position only, behind its statements."""
@@ -259,16 +261,22 @@ class VisitWriter:
             yield f"if n and self.momentary & {1 << place}:"
             yield f"    fading |= {1 << place}"
 
-    def changed(self, place: int, value: str, dirty: int) -> Iterator[str]:
-        """A node has another value: tell whom it concerns."""
+    def changed(self, place: int, value: str, onward: Iterable[str] = ()) -> Iterator[str]:
+        """A node has another value: tell whom it concerns.
+
+        Args:
+            place: of the node.
+            value: the new one.
+            onward: tells the nodes that depend on it.
+        """
+        sign = "|=" if len(self.plan.rules) > 1 else "="
         if self.roles.letters[place]:
             yield f"self.until[{3 * place} + v[{place}]] = before"
             yield f"self.since[{place}] = t"
-            yield f"letters |= {self.roles.letters[place]}"
+            yield f"letters {sign} {self.roles.letters[place]}"
         if self.roles.triggers[place]:
-            yield f"triggers |= {self.roles.triggers[place]}"
-        if dirty:
-            yield f"dirty |= {dirty}"
+            yield f"triggers {sign} {self.roles.triggers[place]}"
+        yield from onward
         yield f"v[{place}] = {value}"
 
     def _many(self) -> Iterator[str]:

@@ -33,7 +33,7 @@ class Nodes:
         o: per event, whether it occurs at this position.
         p: per event, its payloads.
         w: per node, what it remembers, taking the unknown for the worse.
-        b: the same, taking it for the better.
+        b: the same, taking it for the better: the same object, if that is equal.
         wakes: per node, when it changes by itself.
         wake: before this instant, no sample coming, nothing happens; `LIMIT` at most.
         queued: per node, the instant at which `timers` has it next.
@@ -86,7 +86,7 @@ class Nodes:
     """The leaves that speak of one position, with the names of which one has to have a source."""
     BEFORE: tuple[int, ...] = ()
     """Per node, its value before the first position."""
-    MEMORY: tuple[int, ...] = ()
+    MEMORY: tuple[int | None, ...] = ()
     """Per node, what it remembers before the first position."""
     MARKED: Mapping[int, tuple[int, int | None]]
     """Per node that keeps stretches of time, its bounds."""
@@ -148,6 +148,7 @@ class Nodes:
         w, b = self.w, self.b
         w[place], holds, wake = within(w[place], t, last, high, left == TRUE, right == TRUE)
         b[place], may, other = within(b[place], t, last, high, left != FALSE, right != FALSE)
+        self.agree(place)
         self.set_wake(place, min(wake, other))
         return TRUE if holds else UNKNOWN if may else FALSE
 
@@ -156,8 +157,15 @@ class Nodes:
         w, b = self.w, self.b
         w[place], holds, wake = beyond(w[place], t, last, low, left == TRUE, right == TRUE)
         b[place], may, other = beyond(b[place], t, last, low, left != FALSE, right != FALSE)
+        self.agree(place)
         self.set_wake(place, min(wake, other))
         return TRUE if holds else UNKNOWN if may else FALSE
+
+    def agree(self, place: int) -> None:
+        """Have both readings of what a node remembers be one object if they are equal."""
+        worse, better = self.w[place], self.b[place]
+        if worse == better and worse.__class__ is better.__class__:
+            self.b[place] = worse
 
     def elapsed_(self, place: int, t: int, duration: int) -> int:
         """Whether so much time has passed since the first position."""

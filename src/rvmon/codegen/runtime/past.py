@@ -106,12 +106,12 @@ def _better(truth: int) -> int:
 
 
 def within(
-    end: int, t: int, last: int, high: int, left: bool, right: bool
-) -> tuple[int, bool, int]:
+    end: int | None, t: int, last: int, high: int, left: bool, right: bool
+) -> tuple[int | None, bool, int]:
     """One reading of `left S[0, high] right` at `t`.
 
     Args:
-        end: the last instant at which it holds as of the position before: `NEVER` if `right` was
+        end: the last instant at which it holds as of the position before; `None` if `right` was
             true there.
         t: the position.
         last: the position before.
@@ -122,22 +122,22 @@ def within(
     Returns:
         The new `end`, the value, and the instant at which it changes by time alone.
     """
-    if end == NEVER:
+    if end is None:
         end = last + high
     if right:
-        return NEVER, True, NEVER
+        return None, True, NEVER
     if not left:
         return -NEVER, False, NEVER
     return end, end >= t, end + 1 if end >= t else NEVER
 
 
 def beyond(
-    start: int, t: int, last: int, low: int, left: bool, right: bool
-) -> tuple[int, bool, int]:
+    start: int | None, t: int, last: int, low: int, left: bool, right: bool
+) -> tuple[int | None, bool, int]:
     """One reading of `left S[low, inf) right` at `t`, with a `low` above 0.
 
     Args:
-        start: the first instant at which it holds, `NEVER` if there is none; `-NEVER` if at the
+        start: the first instant at which it holds; `None` if there is none; `True` if at the
             position before, `right` was true and `left` was not.
         t: the position.
         last: the position before.
@@ -148,11 +148,13 @@ def beyond(
     Returns:
         The new `start`, the value, and the instant at which it changes by time alone.
     """
-    if start == -NEVER:
+    if start is True:
         start = last + low
     if not left:
-        return -NEVER if right else NEVER, False, NEVER
-    if right and start == NEVER:
+        return True if right else None, False, NEVER
+    if start is None:
+        if not right:
+            return None, False, NEVER
         start = t + low
     return start, start <= t, start if start > t else NEVER
 
