@@ -64,7 +64,12 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     parser.add_argument("--spec", metavar="FILE", help="judge by these requirements")
     parser.add_argument("--no-monitors", action="store_true", help="judge nothing: only play")
     parser.add_argument("--strict", action="store_true", help="exit with 1 unless all is well")
-    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="for people (default), or as data",
+    )
     _add_common(parser)
     parser.set_defaults(run=_run, command="run")
 
@@ -101,7 +106,12 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
     parser.add_argument("--spec", metavar="FILE", help="judge by these requirements")
     parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
-    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="for people (default), or as data",
+    )
     parser.set_defaults(run=_replay)
 
 

@@ -73,7 +73,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
     )
-    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="for people (default), or as data",
+    )
     parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")
     parser.add_argument("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
     parser.add_argument(

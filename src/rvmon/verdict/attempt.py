@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any
 
 from rvmon.trace.sample import Scalar
+from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 
 
@@ -105,6 +106,18 @@ class Attempt(_Later):
     blame: Blame | None = None
     forecast: Verdict | None = None
     robustness: float | None = None
+
+    def __str__(self) -> str:
+        """One line for people.
+
+        >>> print(Attempt("R1", 3, 0, 2 * 10**9, Verdict.FAIL, reason="`a` false at 2 s"))
+        R1 #3 FAIL at 2 s: `a` false at 2 s
+        """
+        when = f"triggered at {format_ticks(self.triggered)}"
+        if self.decided is not None:
+            when = f"at {format_ticks(self.decided)}"
+        told = f"{self.requirement} #{self.number} {self.verdict.name} {when}"
+        return f"{told}: {self.reason}" if self.reason else told
 
 
 class _Draft(_Later):
