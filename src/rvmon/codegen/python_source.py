@@ -100,13 +100,14 @@ class _Writer:
                 yield from self._noted(index, rule, rule.noted)
 
     def _noted(self, index: int, rule: PlannedRule, noted: Sequence[State]) -> Iterator[str]:
-        """What a record keeps: values, then since when and until when they were other ones."""
+        """What a record keeps: what it is given, then values, since and until when they were."""
         index_of = self.plan.graph.index
         places = [index_of[state] for state in rule.alphabet.propositions]
-        kept = [f"v[{index_of[state]}]" for state in noted if state in index_of]
+        kept = ["seen", "t", "before", "rule.letter", "rule.other", "rule.position"]
+        kept += [f"v[{index_of[state]}]" for state in noted if state in index_of]
         kept += [f"v[{place}]" for place in places] + [f"since[{place}]" for place in places]
         kept += [f"until[{3 * place + truth}]" for place in places for truth in (0, 2)]
-        yield f"def noted{index}(v, since, until):"
+        yield f"def noted{index}(seen, t, before, rule, v, since, until):"
         yield f"    return {_tuple(kept)}"
         yield ""
         yield ""

@@ -147,7 +147,9 @@ class VisitWriter:
 
     def _concluded(self, concerns: list[str]) -> Iterator[str]:
         yield f"if {' or '.join(concerns)}:"
-        how = "conclude_calmly" if self.calm else "conclude"
+        how = "conclude"
+        if self.calm:
+            how = "conclude_alone" if len(self.plan.rules) == 1 else "conclude_calmly"
         yield f"    self.{how}(t, letters, triggers)"
 
     def done(self) -> Iterator[str]:

@@ -93,10 +93,13 @@ class Ledger:
         if not self._decided:
             if not self.told:
                 return ()
-            if len(self.told) > 1:
+            if len(self.told) == 1:
+                ((_, _, _, record),) = self.told
+                records = [record]
+            else:
                 # No two are of one instant, requirement and number: no records are compared.
                 self.told.sort()
-            records = [entry[3] for entry in self.told]
+                records = [entry[3] for entry in self.told]
         else:
             made = [(rank, record) for _, rank, _, record in self.told]
             made += [

@@ -21,7 +21,7 @@ from rvmon.verdict.verdict import Verdict
 _PASS, _FAIL = Verdict.PASS, Verdict.FAIL
 
 Pick = Callable[[list[Any]], tuple[Any, ...]]
-Noted = Callable[[list[int], list[int], list[int | None]], tuple[Any, ...]]
+Noted = Callable[..., tuple[Any, ...]]
 
 
 class Seat(Witness):
@@ -33,8 +33,7 @@ class Seat(Witness):
         unit: judges it.
         ledger: takes the records.
         counts: of the attempts of all requirements.
-        noted: gives what a record keeps: the values of what is read and owed, then since when and
-            until when these were other ones.
+        noted: gives what a record keeps, see `rvmon.codegen.runtime.unit.Unit.NOTED`.
     """
 
     def __init__(
@@ -120,11 +119,7 @@ class Seat(Witness):
         unit = self._unit
         unit.news = True
         decided = triggered if self._upon_end else t
-        # One flat tuple, which costs the collector of garbage next to nothing.
-        noted = (
-            *(seen, t, before, rule.letter, rule.other, rule.position),
-            *self._noted(unit.v, unit.since, unit.until),
-        )
+        noted = self._noted(seen, t, before, rule, unit.v, unit.since, unit.until)
         record = decided_attempt(
             self._id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
         )

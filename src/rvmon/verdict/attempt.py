@@ -125,27 +125,9 @@ class _Draft(_Later):
 
     __slots__ = tuple(one.name for one in fields(Attempt))
 
-    def __init__(
-        self,
-        requirement: str,
-        number: int,
-        triggered: int,
-        decided: int | None,
-        verdict: Verdict,
-        details: Callable[[Attempt, Any], Mapping[str, Any]],
-        noted: Any,
-    ) -> None:
-        self.requirement = requirement
-        self.number = number
-        self.triggered = triggered
-        self.decided = decided
-        self.verdict = verdict
-        self.decision = _PREFIX
-        self._details = details
-        self._noted = noted
-
 
 _PREFIX = Decision.PREFIX
+_bare = object.__new__
 
 
 def decided_attempt(
@@ -172,7 +154,15 @@ def decided_attempt(
     >>> made.verdict.value, made.reason
     ('P', 'at 5')
     """
-    made: Any = _Draft(requirement, number, triggered, decided, verdict, details, noted)
+    made: Any = _bare(_Draft)
+    made.requirement = requirement
+    made.number = number
+    made.triggered = triggered
+    made.decided = decided
+    made.verdict = verdict
+    made.decision = _PREFIX
+    made._details = details
+    made._noted = noted
     made.__class__ = Attempt
     attempt: Attempt = made
     return attempt

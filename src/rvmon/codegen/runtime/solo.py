@@ -47,14 +47,22 @@ class SoloRule(Rule):
     as that of every rule.
     """
 
-    __slots__ = ("place", "targets")
+    __slots__ = ("firsts", "place", "targets")
 
     def __init__(self, *given: Any) -> None:
         super().__init__(*given)
         machine: Table = self.machine
         start, _ = machine.start
         self.place = only_location(start, machine.cuts_of, machine.bases, machine.rows) or 0
-        self.targets = [edge[0] for edge in machine.rows[machine.bases[self.place]]]
+        self.firsts = self._targets(start)
+        """By letter, where an attempt starts."""
+        self.targets = self._targets(self.place)
+        """By letter, where one goes that waits."""
+
+    def _targets(self, location: int) -> list[int]:
+        machine = self.machine
+        edges = machine.rows[machine.bases[location]]
+        return [edges[kind][0] for kind in machine.class_of]
 
     def begin(self, t: int, triggered: int) -> None:
         """Start an attempt at the position `t`, at which the values are."""
@@ -66,25 +74,22 @@ class SoloRule(Rule):
         letter, other = self.letters(self.values)
         self.letter, self.other = letter, other
         self.position = t
-        machine = self.machine
-        kind = machine.class_of[letter]
-        if kind != machine.class_of[other]:
+        if letter != other and self._part(letter, other):
             self.begin_alone(t, triggered)
             return
-        number, seen = self.clerk.entered(self)
-        target, _ = machine.rows[machine.bases[machine.start[0]]][kind]
+        clerk = self.clerk
+        number, seen = clerk.entered(self)
+        target = self.firsts[letter]
         if target <= PASSED:
             verdict = target == PASSED
-            self.clerk.decided_in_run(self, number, triggered, seen, verdict, t, machine.start)
+            clerk.decided_in_run(self, number, triggered, seen, verdict, t, self.machine.start)
         else:
             self.runs[target] = (triggered, number, seen)
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, at which the values are."""
         worse, better = self.letters(self.values)
-        kinds = self.machine.class_of
-        kind = kinds[worse]
-        if self.attempts or kind != kinds[better]:
+        if self.attempts or (worse != better and self._part(worse, better)):
             self.attempts = self.undecided()
             self.runs.clear()
             Rule.visit(self, t)
@@ -92,11 +97,16 @@ class SoloRule(Rule):
         self.letter, self.other = worse, better
         self.position = t
         if self.runs:
-            target = self.targets[kind]
+            target = self.targets[worse]
             if target <= PASSED:
                 triggered, number, seen = self.runs.pop(self.place)
                 token: Token = (self.place, ())
                 self.clerk.decided_in_run(self, number, triggered, seen, target == PASSED, t, token)
+
+    def _part(self, worse: int, better: int) -> bool:
+        """Whether the automaton tells these letters apart."""
+        kinds = self.machine.class_of
+        return bool(kinds[worse] != kinds[better])
 
     def pass_to(self, t: int) -> None:
         """Let time come to `t` with the letters as they are; positions up to there are stepped."""

@@ -55,8 +55,10 @@ class Unit(Nodes):
 
     ABOVE: tuple[int, ...] = ()
     """Per node, a bit for it and each that depends on it; left out where nobody asks."""
-    NOTED: tuple[Callable[[list[int], list[int], list[int | None]], tuple[Any, ...]], ...]
-    """Per requirement, where records are kept: what they note of `v`, `since` and `until`."""
+    NOTED: tuple[Callable[..., tuple[Any, ...]], ...]
+    """Per requirement, where records are kept: what they note, from what was seen at the trigger,
+    the instant, the token before it, the rule, `v`, `since` and `until`. One flat tuple costs the
+    collector of garbage next to nothing."""
     RULES: tuple[tuple[type[Rule], Callable[[list[int]], tuple[int, int]], int, bool, bool], ...]
     """Per requirement: what judges it, its letters, the node of its trigger, pulse, episodic."""
 
@@ -221,6 +223,20 @@ class Unit(Nodes):
                 rule.begin(t, t)
                 if rule.runs or rule.attempts:
                     self.active |= bit
+        if self.gathered:
+            self.leave()
+
+    def conclude_alone(self, t: int, letters: int, triggers: int) -> None:
+        """As `conclude_calmly`, where there is but one requirement."""
+        (rule,) = self.rules
+        if letters and self.active:
+            rule.visit(t)
+            if not (rule.runs or rule.attempts):
+                self.active = 0
+        if triggers and rule.starts(self.v[self.RULES[0][2]]):
+            rule.begin(t, t)
+            if rule.runs or rule.attempts:
+                self.active = 1
         if self.gathered:
             self.leave()
 
