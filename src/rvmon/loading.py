@@ -20,6 +20,12 @@ def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
         SpecError: the file cannot be read or is wrong; carries all diagnostics, rendered.
     """
     path = Path(path)
+    if path.suffix != ".rv":
+        from rvmon.readers.recording import FORMATS
+
+        if path.suffix.lower() in FORMATS:
+            told = f"error: {path}: a recording by its name; a specification (.rv) is expected here"
+            raise SpecError((), told)
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:

@@ -132,3 +132,11 @@ def test_ticks_given_online_are_whole_numbers(spec, engine, wrong):
             call(wrong)
         assert len(str(told.value)) < 200
     assert [attempt.decided for attempt in monitor.advance_ns(5_000_000_000)] == [2_000_000_002]
+
+
+def test_a_recording_is_no_specification(tmp_path):
+    """Files that were named in the wrong order are told apart by their names."""
+    path = tmp_path / "monday.csv"
+    path.write_text("t,x\n0,1\n")
+    with pytest.raises(rvmon.SpecError, match=r"monday.csv: a recording by its name"):
+        rvmon.load(path)

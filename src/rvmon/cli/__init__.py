@@ -91,7 +91,8 @@ def guarded(namespace: argparse.Namespace) -> int:
         return 2
     except KeyboardInterrupt:
         return _interrupted()
-    except BrokenPipeError:  # the reader of our output left, as `head` does
+    except (BrokenPipeError, SystemExit):
+        # The reader of our output left, as `head` does; rich ends the program where it notices.
         _drop_output()
         return 0
     except Exception as error:

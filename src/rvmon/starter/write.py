@@ -6,25 +6,23 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from rvmon.spec.formatter import format_text
 from rvmon.spec.printer import format_duration
 from rvmon.starter.column import Column, Profile
 from rvmon.starter.skeletons import Skeleton, name_text, round_up, skeletons_of
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
-COMMENT_COLUMN = 34
-"""Where the remarks beside declarations start, if there is room."""
-
 
 def starter_text(profile: Profile) -> str:
-    """The text of a starter specification; it runs on the recording without edits."""
+    """A starter specification in the canonical layout; it runs on the recording as it is."""
     lines = [*_header(profile), "", *map(_declaration, profile.columns)]
     if profile.left_out:
         lines += ["", "# Not declared:"]
         lines += [f"#   {_plain(name)}: {why}" for name, why in profile.left_out.items()]
     for number, skeleton in enumerate(skeletons_of(profile), 1):
         lines += ["", *_requirement(f"R{number}", skeleton)]
-    return "\n".join(lines) + "\n"
+    return format_text("\n".join(lines) + "\n")
 
 
 def _header(profile: Profile) -> Iterator[str]:
@@ -44,8 +42,7 @@ def _header(profile: Profile) -> Iterator[str]:
 def _declaration(column: Column) -> str:
     remark = "; ".join(_remarks(column))
     line = _declared(column)
-    gap = max(COMMENT_COLUMN - len(line), 2)
-    return f"{line}{' ' * gap}# {remark}" if remark else line
+    return f"{line}  # {remark}" if remark else line
 
 
 def _declared(column: Column) -> str:

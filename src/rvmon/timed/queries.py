@@ -23,6 +23,9 @@ def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]
     by_id = {query.id: query for query in network.queries if query.id}
     for text in asked:
         parts = [part.strip() for part in text.split(",")]
+        if text.isidentifier() and text not in by_id and by_id:
+            own = ", ".join(by_id)
+            raise model_error("TA002", f"the model has no query `{text}`", None, f"it has {own}")
         if len(parts) > 1 and all(part in by_id for part in parts):
             several = " ".join(f"--query {part}" for part in parts)
             raise model_error("TA020", f"`{text}` is no query", None, f"write {several}")

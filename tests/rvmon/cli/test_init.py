@@ -88,7 +88,9 @@ def test_what_was_seen_stands_beside_the_names(tmp_path, capsys):
     )
     assert any("longest gap 1500 ms" in line for line in lines)
     assert any(line.startswith("event  go ") and "once" in line for line in lines)
-    assert "signal mode : {idle, busy}" in "\n".join(lines)
+    assert "signal mode  : {idle, busy}" in "\n".join(lines)
+    (tmp_path / "a.rv").write_text("\n".join(lines) + "\n")
+    assert main(["format", "--check", str(tmp_path / "a.rv")]) == 0
 
 
 def test_a_response_is_timed_from_the_recording(tmp_path, capsys):

@@ -65,6 +65,7 @@ def test_the_run_is_shown_in_seconds(tmp_path, capsys):
     [
         (["missing.ta"], "No such file"),
         ([str(MODELS / "bridge.ta"), "--query", "E<> Nobody.safe"], "no automaton `Nobody`"),
+        ([str(MODELS / "bridge.ta"), "--query", "cross"], "no query `cross`\nhelp: it has "),
         ([str(MODELS / "bridge.ta"), "--query", "Torch.one"], "a query speaks of runs"),
         ([str(MODELS / "fischer.ta"), "--const", "N"], "expected NAME=NUMBER"),
         ([str(MODELS / "fischer.ta"), "--const", "M=2"], "no constant `M`"),
