@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 help:  ## show this list
 	@awk -F':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
-demo: $(VENV)/.demo  ## Table 1: 200 simulated handovers, judged; results in out/demo
+demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; results in out/demo
 	@$(BIN)/handover demo --out out/demo
 
 test: $(VENV)/.dev  ## run all tests
