@@ -14,7 +14,8 @@ from rvmon.diagnostics import Source, Span
 from rvmon.errors import ModelError
 from rvmon.spec.grammar_cache import parser_of
 from rvmon.timed.foreign import reason_at
-from rvmon.timed.rules import model_error
+from rvmon.timed.mistakes import all_mistakes
+from rvmon.timed.rules import model_error, refusal
 from rvmon.timed.syntax import Document, QueryText
 from rvmon.timed.syntax_builder import SyntaxBuilder
 
@@ -42,14 +43,20 @@ def parse_document(source: Source) -> Document:
     """Read a whole `.ta` text.
 
     Raises:
-        ModelError: the text is no model; the diagnostic says where and what was expected.
+        ModelError: the text is no model; the diagnostics say where and what was expected.
 
     >>> parse_document(Source("tiny.ta", "automaton a { location l start l }")).templates[0].name
     'a'
     """
-    name, title, unit, declarations, templates, instances, system, queries, signals = parse_part(
-        source.text, "document", lambda start, end: Span(source, start, end)
-    )
+
+    def read(text: str) -> Any:
+        return parse_part(text, "document", lambda start, end: Span(source, start, end))
+
+    try:
+        parts = read(source.text)
+    except ModelError as error:
+        raise refusal(*all_mistakes(source.text, error, read)) from None
+    name, title, unit, declarations, templates, instances, system, queries, signals = parts
     return Document(
         source, name, title, unit, declarations, templates, instances, system, queries, signals
     )

@@ -1,6 +1,7 @@
 """What the `.ta` form accepts, and what it says about what it does not."""
 
 import logging
+import random
 
 import lark
 import pytest
@@ -217,6 +218,46 @@ automaton A {
         ("TA002", 6, 13),
         ("TA002", 7, 18),
     ]
+
+
+def test_all_parts_that_cannot_be_read_appear_at_once():
+    """Each with its own place, whatever is wrong with others; what is right is not blamed."""
+    text = """network n
+clock x
+automaton A {
+  location a, b
+  urgent location c
+  start a
+  edge a -> c when x > > 3
+  edge c -> a when x >= 1
+       do x = = 0
+  edge c -> a when x < 9
+  edge c -> a sometimes
+}
+query Q1: E<> A.c
+query Q2: E<> A.c and
+query Q3: E<> (A.c
+"""
+    assert findings(text) == [
+        ("TA001", 4, 13),
+        ("TA001", 7, 24),
+        ("TA001", 9, 15),
+        ("TA001", 12, 1),
+        ("TA001", 15, 9),
+        ("TA001", 16, 1),
+    ]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_damaged_is_told_and_nothing_else(seed):
+    """Of a model with some edges damaged, each of these is told and no other."""
+    dice = random.Random(seed)
+    lines = ["clock x", "automaton A {", "  location a", "  start a"]
+    lines += ["  edge a -> a when x > 1 do x = 0"] * 12 + ["}", "query: E<> A.a"]
+    damaged = sorted(dice.sample(range(4, 15), dice.randint(1, 4)))
+    for row in damaged:
+        lines[row] = dice.choice(["  edge a -> a when x > > 1", "  edge a -> a do x = ) 0"])
+    assert [line for _, line, _ in findings("\n".join(lines))] == [row + 1 for row in damaged]
 
 
 def test_a_finding_says_what_was_probably_meant():
