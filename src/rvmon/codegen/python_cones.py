@@ -90,7 +90,8 @@ class ConeWriter:
         for test, value in self._values(places[0]):
             lines += [test, *indented(self._moved(places, value))]
         timed = self.joins or any(self.nodes.is_timed(place) for place in places)
-        lines += self.visit.followed(timed=timed)
+        triggers = self.joins or any(self.roles.triggers[place] for place in places)
+        lines += self.visit.followed(timed=timed, triggers=triggers)
         # Few values come to where it is asked for.
         lines = [_BEFORE.sub(self.visit.preceding(), line) for line in lines]
         if self.joins:
@@ -100,7 +101,7 @@ class ConeWriter:
             yield "    letters, triggers, _ = self.evaluate(t, self.dirty)"
             yield "    self.dirty = 0"
         else:
-            yield "letters = triggers = 0"
+            yield f"letters = {'triggers = ' if triggers else ''}0"
         yield from at_hand(lines, "dues")
         yield from lines
 
@@ -147,8 +148,9 @@ class ConeWriter:
         if not self.joins:
             return quiet
         cone = bits(tuple(self._cone_of(name)))
-        late = quiet.replace("t < self.wake", "t <= self.wake", 1)
-        return f"{late} and not (t == self.wake and self.meets(t, {cone}))"
+        rest = quiet.removeprefix("t < self.wake")
+        late = f"t == self.wake < LIMIT{rest} and not self.meets(t, {cone})"
+        return f"(t < self.wake or {late}){rest}"
 
     def _cone_of(self, name: str) -> list[int]:
         (leaf,) = self.plan.graph.by_name[name]

@@ -111,15 +111,15 @@ class IntakeWriter:
         yield from indented([*self.visit.done(), "return ()"], 2)
         if self.single and len(self.arriving) > 1:
             yield "elif len(values) == 1:"
-            yield f"    if {self._in_order('t < LIMIT')}:"
+            yield f"    if {self._in_order()}:"
             yield "        (name,) = values"
             yield "        one = ONE.get(name)"
             yield "        if one is not None:"
             yield "            return one(self, t, values[name], values)"
 
-    def _in_order(self, before: str) -> str:
-        """Whether a time is valid and not yet too late."""
-        return f"t.__class__ is int and self.after < {before}"
+    def _in_order(self, before: str = "") -> str:
+        """Whether a time is whole and later than the one before; it may be beyond the limit."""
+        return f"t.__class__ is int and self.after < t{before and f' and {before}'}"
 
     def _checked(self) -> Iterator[str]:
         """Have an invalid time seen to."""
@@ -139,7 +139,7 @@ class IntakeWriter:
             yield f"{branch} x{number} is not {self.values.before(name)}:"
             rest = names[number + 1 :]
             same = f"{self._same(rest)} and " if rest else ""
-            yield f"    if {same}{self._in_order('t < LIMIT')}:"
+            yield f"    if {same}{self._in_order()}:"
             yield f"        return one{number}(self, t, x{number}, values)"
         yield f"elif {quiet}:"
         yield from indented([*self.visit.done(), "return ()"])
@@ -197,7 +197,8 @@ class IntakeWriter:
         if name in self.plan.signals and self.cones.can_follow(name, self.values.instant):
             lines.append(f"elif {self.cones.apart(name, self._quiet())}:")
             lines += indented(self.cones.followed(name, self.values.kept("x", name, given=True)))
-        general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
+        general = ["if t >= LIMIT:", "    return self.clerk.other(t, values)"]
+        general += [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
         general += indented(self.values.new("x", name))
         general += self._after()
         yield from indented([*at_hand(head), *head, *lines, *at_hand(general), *general])

@@ -127,17 +127,19 @@ class VisitWriter:
         yield from self._concluded([*self._concerns(), *self._timely()])
         yield from self._alarm()
 
-    def followed(self, *, timed: bool) -> Iterator[str]:
+    def followed(self, *, timed: bool, triggers: bool) -> Iterator[str]:
         """As `judged` and `told`, where before the sample nothing was awaited at its instant.
 
         Args:
             timed: whether something may be awaited from now on, though no requirement is concerned.
+            triggers: whether one may have been triggered.
         """
         yield "self.position = self.after = t"
         if not self.calm:
             yield "dues = self.dues"
-        yield from self._concluded([*self._concerns()])
-        yield from indented(self._alarm())
+        yield from self._concluded([*self._concerns(triggers=triggers)], triggers=triggers)
+        if timed or not self.calm:
+            yield from indented(self._alarm())
         yield "    if self.news:"
         yield "        return self.clerk.told()"
         if timed:
@@ -145,12 +147,12 @@ class VisitWriter:
             yield from indented(self._alarm())
         yield "return ()"
 
-    def _concluded(self, concerns: list[str]) -> Iterator[str]:
+    def _concluded(self, concerns: list[str], *, triggers: bool = True) -> Iterator[str]:
         yield f"if {' or '.join(concerns)}:"
         how = "conclude"
         if self.calm:
             how = "conclude_alone" if len(self.plan.rules) == 1 else "conclude_calmly"
-        yield f"    self.{how}(t, letters, triggers)"
+        yield f"    self.{how}(t, letters, {'triggers' if triggers else 0})"
 
     def done(self) -> Iterator[str]:
         """Note that a sample was taken."""
@@ -165,10 +167,12 @@ class VisitWriter:
         yield "    return self.clerk.told()"
         yield "return ()"
 
-    def _concerns(self) -> Iterator[str]:
+    def _concerns(self, *, triggers: bool = True) -> Iterator[str]:
         """If none of these holds, a position is not to be judged."""
         alone = len(self.plan.rules) == 1
-        yield f"letters and {'' if alone else 'letters & '}self.active or triggers"
+        yield f"letters and {'' if alone else 'letters & '}self.active"
+        if triggers:
+            yield "triggers"
         if self.repeats:
             yield "self.repeating"
         if not self.calm:

@@ -7,8 +7,10 @@ import pytest
 import rvmon
 from rvmon.codegen import python_cones
 from rvmon.codegen.runtime.unit import Unit, closures
+from rvmon.errors import TraceError
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.show import show
+from rvmon.trace.time import TIME_LIMIT
 
 SIGNALS = ("p", "q", "r")
 SHAPE = Shape(future=False, numbers=False, events=False)
@@ -61,6 +63,24 @@ def test_they_judge_as_tables_do_however_deep_blocks_stand(count, deepest, monke
         text, samples = many(random.Random(f"deep/{count}/{seed}"), "held", count)
         spec = rvmon.loads(text)
         assert judged(spec, samples, "python") == judged(spec, samples, "automaton"), text
+
+
+@pytest.mark.parametrize("count", [1, 12])
+def test_times_beyond_the_limit_are_refused_whatever_they_bring(count):
+    """All values, one or none; the monitor goes on as if it had not been asked."""
+    text, samples = many(random.Random(f"limit/{count}"), "held", count)
+    spec = rvmon.loads(text)
+    monitor = spec.monitor(engine="python")
+    for t, values in samples:
+        monitor.step_ns(t, values)
+    whole = dict.fromkeys(SIGNALS, True)
+    for values in (whole, {**whole, "p": False}, {"p": True}, {"p": False}, {}):
+        for t in (TIME_LIMIT, TIME_LIMIT + 1):
+            with pytest.raises(TraceError, match="out of range"):
+                monitor.step_ns(t, values)
+    last = (TIME_LIMIT - 1, whole)
+    expected, _ = judged(spec, [*samples, last], "automaton")
+    assert [*map(repr, monitor.step_ns(*last))] == expected[-1]
 
 
 def test_what_depends_on_a_node_is_all_above_it():
