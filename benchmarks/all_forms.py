@@ -36,10 +36,10 @@ Judge = Callable[[list[str]], "Counter[str]"]
 
 def stepped(engine: str, each: int, seeds: list[str]) -> Counter[str]:
     """Judge the cases of some seeds sample by sample; runs in a worker."""
-    whole = engine != "c"
+    whole = not engine.startswith("c")
     profile = Profile(captures=whole, for_each=whole)
     tally = campaign(
-        Maker(engine), seeds, profile, TraceProfile(), each=each, online_every=10 * whole
+        Maker(engine), seeds, profile, TraceProfile(), each=each, online_every=10 * (engine != "c rows")
     )
     for text in tally.disagreements:
         print(text, flush=True)
@@ -63,7 +63,8 @@ FORMS: dict[str, Callable[[int], Judge]] = {
     "table": lambda each: partial(stepped, "automaton", each),
     "generated Python": lambda each: partial(stepped, "python", each),
     "batch": lambda each: partial(batched, "auto", each),
-    "C": lambda each: partial(stepped, "c", each),
+    "C, stepped": lambda each: partial(stepped, "c", each),
+    "C, rows": lambda each: partial(stepped, "c rows", each),
     "batch in C": lambda each: partial(batched, "c", each),
 }
 

@@ -6,6 +6,7 @@ import ctypes
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -85,6 +86,10 @@ class _In(ctypes.Structure):
     )
 
 
+def _library(path: Path) -> ctypes.CDLL:
+    return ctypes.CDLL(str(path))
+
+
 class BatchLibrary:
     """A plan compiled to a shared library.
 
@@ -107,7 +112,7 @@ class BatchLibrary:
             "-shared",
             "-fPIC",
         ]
-        library = loaded(made.texts, [f"{made.prefix}_batch.c"], flags)
+        library = loaded(made.texts, [f"{made.prefix}_batch.c"], ".so", flags, _library)
         address, number = ctypes.c_void_p, ctypes.c_int64
 
         def function(name: str, result: Any, *arguments: Any) -> Any:

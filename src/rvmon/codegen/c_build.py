@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import hashlib
 import os
 import platform
@@ -11,11 +10,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from rvmon.cache import is_ours, made_folder
 from rvmon.errors import RvmonError
+
+Loaded = TypeVar("Loaded")
 
 FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-ffp-contract=off")
 """Of every build: numbers are computed as the specification says, product and sum apart."""
@@ -109,21 +111,34 @@ def built(
     return target
 
 
-def loaded(texts: Mapping[str, str], sources: Sequence[str], flags: Sequence[str]) -> ctypes.CDLL:
-    """A shared library of some files, as `built` makes it; one that cannot be loaded is made anew.
+def loaded(
+    texts: Mapping[str, str],
+    sources: Sequence[str],
+    suffix: str,
+    flags: Sequence[str],
+    load: Callable[[Path], Loaded],
+) -> Loaded:
+    """What is in a shared library, as `built` makes it; one that cannot be loaded is made anew.
+
+    Args:
+        texts: as for `built`; so are the next three.
+        sources: those that are compiled.
+        suffix: of the library.
+        flags: for the compiler.
+        load: loads it.
 
     Raises:
         RvmonError: it cannot be made, or not be loaded.
     """
-    path = built(texts, sources, ".so", flags)
+    path = built(texts, sources, suffix, flags)
     try:
-        return ctypes.CDLL(str(path))
-    except OSError:  # cut off, or of another machine that shares the folder
+        return load(path)
+    except (OSError, ImportError):  # cut off, or of another machine that shares the folder
         path.unlink(missing_ok=True)
-    path = built(texts, sources, ".so", flags)
+    path = built(texts, sources, suffix, flags)
     try:
-        return ctypes.CDLL(str(path))
-    except OSError as error:
+        return load(path)
+    except (OSError, ImportError) as error:
         raise RvmonError(
             f"cannot load a compiled monitor: {error}: name a cache on a disk that programs may "
             "run from with XDG_CACHE_HOME"

@@ -190,18 +190,18 @@ def _update(names: Names, function: UpdateFunction, name: str) -> str:
 
 def _arithmetic(op: NumericOp, args: list[str]) -> str:
     if op in _INFIX:
-        return f"finite({args[0]} {_INFIX[op]} {args[1]})"
+        return f"finite_only({args[0]} {_INFIX[op]} {args[1]})"
     if op in _ROOTS:
-        return f"finite({_ROOTS[op]}({', '.join(args)}))"
+        return f"finite_only({_ROOTS[op]}({', '.join(args)}))"
     match op:
         case NumericOp.NEG:
-            return f"finite(-{args[0]})"
+            return f"finite_only(-{args[0]})"
         case NumericOp.ABS:
-            return f"finite(magnitude({args[0]}))"
+            return f"finite_only(magnitude({args[0]}))"
         case NumericOp.MIN:
-            return f"finite({_nested('lesser', args)})"
+            return f"finite_only({_nested('lesser', args)})"
         case _:
-            return f"finite({_nested('greater', args)})"
+            return f"finite_only({_nested('greater', args)})"
 
 
 def _nested(function: str, args: list[str]) -> str:

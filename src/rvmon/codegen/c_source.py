@@ -68,10 +68,11 @@ class _Writer:
 
     def files(self) -> CFiles:
         prefix = self.names.prefix
-        places = {  # the first three hold others
+        places = {  # the first four hold others
             "HELPERS": "\n".join(self._helpers()),
             "TABLES": "\n".join(self._tables()),
             "ROWS": "\n".join(rows_source(self.plan, self.names)),
+            "HEAP": template("heap.c.in"),
             "SPEC": comment(self.plan.spec.name),
             "GUARD": f"{prefix.upper()}_MONITOR_H",
             "HEADER": f"{prefix}.h",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rvmon.errors import UnknownNameError
-from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.generated import Forms, GeneratedMonitor
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import can_feed
@@ -28,7 +28,8 @@ def build_monitor(
         only: ids of the requirements to judge; default all.
         engine: `auto` runs generated code where there is an automaton, else the delay network;
             `python`: the same; `automaton`, `network` and `progression` look up tables, take note
-            of what becomes known, or work out residuals, at each step.
+            of what becomes known, or work out residuals, at each step; `c` compiles the monitor,
+            and gives records without reasons.
         settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
             each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
@@ -49,9 +50,14 @@ def build_monitor(
         for name, requirement in compiled.requirements.items()
         if wanted is None or name in wanted
     ]
+    expect_engine(engine, ALL_ENGINES)
+    given = None if sources is None else frozenset(sources)
+    if engine == "c" and chosen:
+        from rvmon.monitor.online_c import compiled_monitor
+
+        return compiled_monitor(compiled, chosen, settle, given)
     for requirement in chosen:
         requirement.engine(engine)
-    given = None if sources is None else frozenset(sources)
     if engine not in _GENERATED or not any(can_feed(one) for one in chosen):
         return Monitor(compiled, chosen, engine, settle, given)
     key = (tuple(one.requirement.id for one in chosen), given)

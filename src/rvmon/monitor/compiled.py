@@ -36,8 +36,8 @@ MOST_SEEN = 19
 
 ENGINES = ("auto", "python", "automaton", "progression", "network")
 
-OF_RECORDINGS = (*ENGINES, "c")
-"""The engines that judge finished recordings."""
+ALL_ENGINES = (*ENGINES, "c")
+"""With the one that needs a C compiler, and gives no reasons."""
 
 
 def expect_engine(name: str, known: Sequence[str]) -> None:

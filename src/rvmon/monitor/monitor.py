@@ -115,6 +115,10 @@ class Monitor:
                 "that none before would come: advance later, or drop the sample"
             )
         self._judge(t_ns, self._validator.check(t_ns, values))
+        return self._flush()
+
+    def _flush(self) -> Sequence[Attempt]:
+        """What was decided since the last call."""
         return self._ledger.flush()
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
@@ -128,7 +132,7 @@ class Monitor:
         for sample in samples:
             self._judge(sample.t, sample.values)
         self._pass_to(floor)
-        return self._ledger.flush()
+        return self._flush()
 
     def advance(self, t: float) -> Sequence[Attempt]:
         """Say that no sample before `t` (seconds) will come; see `advance_ns`."""

@@ -8,11 +8,13 @@ from types import ModuleType
 from typing import Any
 
 from rvmon.codegen.c_batch import BatchLibrary, BatchRun
+from rvmon.codegen.c_online import OnlineLibrary, online_library
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_file import python_file
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.online_c import CompiledMonitor
 from rvmon.monitor.planned import can_generate, plan_alone
 from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked import CheckedSpec
@@ -26,8 +28,9 @@ from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
-FORMS = (*ENGINES, "file", "c")
-"""The engines of `Spec.monitor`; the Python file that runs alone; the compiled C."""
+FORMS = (*ENGINES, "file", "c", "c rows")
+"""The engines of `Spec.monitor` that give reasons; the Python file that runs alone; compiled C that
+is stepped, and fed rows."""
 
 
 NEXT, INTERRUPT = "next", "interrupt"
@@ -90,6 +93,8 @@ class Maker:
                 return self._driven(compiled, case)
             case BatchLibrary() as library:
                 return _Compiled(library, case)
+            case OnlineLibrary() as library:
+                return _Terse(library, self._compile(case.spec), case)
             case ModuleType() as module:
                 return _Alone(module, case)
             case _:
@@ -101,13 +106,15 @@ class Maker:
         driven = Interrupted(monitor, dice) if self._interrupts else monitor
         return driven if self.settle == "now" else HeldBack(driven, case.spec, dice)
 
-    def _compiled(self, spec: CheckedSpec) -> CompiledSpec | BatchLibrary | ModuleType | None:
+    def _compiled(
+        self, spec: CheckedSpec
+    ) -> CompiledSpec | BatchLibrary | OnlineLibrary | ModuleType | None:
         compiled = self._compile(spec)
         requirements = compiled.requirements.values()
         if self.form == "progression":
             ahead = any(one.network_plan.looks_back for one in requirements)
             return None if ahead else compiled
-        if self.form not in ("automaton", "file", "c"):
+        if self.form not in ("automaton", "file", "c", "c rows"):
             return compiled
         if any(one.automaton is None for one in requirements):
             return None
@@ -116,7 +123,13 @@ class Maker:
         if not all(can_generate(one) for one in requirements):
             return None
         plan = plan_alone(compiled)
-        return BatchLibrary(plan, optimised=False) if self.form == "c" else _module_of(plan)
+        match self.form:
+            case "c":
+                return online_library(plan, optimised=False)
+            case "c rows":
+                return BatchLibrary(plan, optimised=False)
+            case _:
+                return _module_of(plan)
 
 
 def _module_of(plan: Plan) -> ModuleType:
@@ -175,6 +188,17 @@ def _records(found: Sequence[Any]) -> list[Attempt]:
         )
         for one in found
     ]
+
+
+class _Terse:
+    """A compiled monitor that is stepped; what other monitors say beside verdicts is not asked."""
+
+    def __init__(self, library: OnlineLibrary, compiled: CompiledSpec, case: Case) -> None:
+        chosen = list(compiled.requirements.values())
+        monitor = CompiledMonitor(library, compiled, chosen, "now", case.names)
+        self.step_ns = monitor.step_ns
+        self.advance_ns = monitor.advance_ns
+        self.finish_ns = monitor.finish_ns
 
 
 class _Compiled:

@@ -58,7 +58,7 @@ def test_the_oracle_agrees(nodes, monkeypatch):
     monkeypatch.setattr("rvmon.codegen.c_nodes.GROUP", nodes)
     profile = Profile(mixed=False, captures=False, for_each=False)
     seeds = [f"c/{number}" for number in range(20)]
-    tally = campaign(Maker("c"), seeds, profile, TraceProfile(), each=2, online_every=0)
+    tally = campaign(Maker("c rows"), seeds, profile, TraceProfile(), each=2, online_every=0)
     assert tally.pairs >= 30
     assert not tally.disagreements, tally.disagreements[0]
 

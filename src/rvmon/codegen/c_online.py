@@ -1,0 +1,216 @@
+"""A compiled monitor that Python steps: the C of a plan as an extension module of this Python.
+
+ctypes would cost more per call than the monitor itself; the module takes samples as dictionaries
+and hands back what was decided.
+"""
+
+from __future__ import annotations
+
+import sys
+import sysconfig
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from itertools import accumulate
+from pathlib import Path
+from typing import Any, Protocol
+
+from rvmon.codegen.c_build import NATIVE, compiler, loaded
+from rvmon.codegen.c_exact import whole_limits
+from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_source import c_files
+from rvmon.codegen.c_tables import array
+from rvmon.codegen.c_text import comment, filled, template
+from rvmon.codegen.plan import Plan
+from rvmon.errors import RvmonError
+from rvmon.spec.checked import Type
+from rvmon.trace.schema import Kind
+from rvmon.verdict.attempt import Attempt
+
+_PARTS = ("online.c.in", "online_type.c.in")
+
+_MODULE = "rvmon_online"
+
+_KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
+"""In the order of the template's `IS_…`."""
+
+NEVER = (1 << 63) - 1
+"""The instant of what does not happen."""
+
+NOT_YET = -1 << 63
+"""The instant of what did not happen."""
+
+
+class Core(Protocol):
+    """The compiled monitor: what `online_type.c.in` lists."""
+
+    step: Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
+
+    def take(self, t: int, values: dict[str, Any], /) -> None:
+        """Judge a sample that is in order, of plain values."""
+
+    def advance(self, t: int, /) -> None:
+        """Let time come to `t`."""
+
+    def flush(self) -> Sequence[Attempt]:
+        """The attempts that were decided since the last call."""
+
+    def close(self, until: int | None, /) -> int:
+        """End the run; gives the last instant, or `NOT_YET`."""
+
+    def records(self) -> bytes:
+        """All records, each as `rvmon.codegen.c_batch.RECORD` has it."""
+
+    def counts(self) -> list[tuple[int, int, int]]:
+        """How many attempts of each requirement failed, passed, and stayed open."""
+
+    def open(self) -> list[Attempt]:
+        """The attempts that are undecided now."""
+
+    def times(self) -> tuple[bool, int, int, int]:
+        """Whether there was a sample; when the first one was, the last, and the present."""
+
+    def next_due(self) -> int:
+        """The next instant at which time alone can decide something, or `NEVER`."""
+
+    def reset(self) -> None:
+        """Begin anew."""
+
+
+@dataclass(frozen=True, slots=True)
+class OnlineLibrary:
+    """A plan compiled to a type of Python.
+
+    Attributes:
+        plan: of requirements that all have automata.
+        names: of the plan.
+        limits: of whole numbers, by signal and `event.field`.
+        type: makes a `Core`.
+    """
+
+    plan: Plan
+    names: Names
+    limits: Mapping[str, int]
+    type: Callable[..., Core]
+
+    def core(
+        self,
+        absent: frozenset[str],
+        *,
+        look_closer: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
+        attempt: Callable[[int, int, int, int, int, int], Attempt],
+    ) -> Core:
+        """Begin a run.
+
+        Args:
+            absent: the names without a source.
+            look_closer: judges samples that are not plain: the first lets it do so.
+            attempt: makes one of what a record holds, in its order.
+        """
+        plan, names = self.plan, self.names
+        called = (*plan.signals, *plan.events)
+        words: list[dict[str, int] | None] = [
+            _labels(names, plan.spec.signals[name].type) for name in plan.signals
+        ]
+        words += [
+            {field: names.field(event, field) for field in plan.spec.events[event].fields}
+            for event in plan.events
+        ]
+        return self.type(
+            tuple(words),
+            tuple(_labels(names, type_) for type_ in _field_types(plan, names)),
+            {name: names.number(name) for name in called if name not in absent},
+            bytes(name in absent for name in called),
+            look_closer,
+            attempt,
+            RvmonError,
+        )
+
+
+def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
+    """Compile a plan, once for each content.
+
+    Args:
+        plan: of requirements that all have automata.
+        optimised: whether it is to be fast; otherwise it is compiled sooner.
+
+    Raises:
+        RvmonError: there is no C compiler, or no header of Python; a requirement has no automaton,
+            or a number of the specification is no double.
+    """
+    # Under the specification's own name its functions might be called as some of Python's headers.
+    named = replace(plan, spec=replace(plan.spec, name="rvmon"))
+    made = c_files(named)
+    name = f"{made.prefix}_online.c"
+    texts = {**made.texts, name: online_source(named), "python.txt": sys.version}
+    speed = ("-O3", "-fno-math-errno", NATIVE) if optimised else ("-O0",)
+    flags = [*speed, "-shared", "-fPIC", "-I", _headers()]
+    type_ = loaded(texts, [name], EXTENSION_SUFFIXES[0], flags, _type_in)
+    return OnlineLibrary(plan, Names(plan), whole_limits(plan), type_)
+
+
+def _headers() -> str:
+    """The folder of Python's headers.
+
+    Raises:
+        RvmonError: there is none; how to get it is said.
+    """
+    compiler()  # whoever has neither is told of this first
+    folder = sysconfig.get_path("include")
+    if not (Path(folder) / "Python.h").is_file():
+        raise RvmonError(
+            f"no Python.h in {folder}, which a compiled monitor needs to be stepped from Python: "
+            "install the package python3-dev, or use the engine `auto`"
+        )
+    return folder
+
+
+def _type_in(path: Path) -> Callable[..., Core]:
+    loader = ExtensionFileLoader(_MODULE, str(path))
+    spec = spec_from_loader(_MODULE, loader)
+    if spec is None:
+        raise ImportError(f"{path} is no module")
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    made: Callable[..., Core] = module.Core
+    return made
+
+
+def online_source(plan: Plan) -> str:
+    """The source of the module; it includes that of `rvmon.codegen.c_source.c_files`."""
+    names = Names(plan)
+    places = {  # the first two hold others
+        "HEAP": template("heap.c.in"),
+        "KINDS": "\n".join(_kinds(plan, names)),
+        "SPEC": comment(plan.spec.name),
+        "PREFIX": names.prefix.upper(),
+        "prefix": names.prefix,
+    }
+    return filled("".join(template(part) for part in _PARTS), places)
+
+
+def _kinds(plan: Plan, names: Names) -> Iterator[str]:
+    """What each name and each field of a payload is."""
+    limits = whole_limits(plan)
+    spec = plan.spec
+    signals = [spec.signals[name].type for name in plan.signals]
+    for what, types, called in (
+        ("signal", signals, plan.signals),
+        ("field", _field_types(plan, names), [f"{event}.{field}" for event, field in names.fields]),
+    ):
+        yield array("uint8_t", f"{what}_kinds", [_KINDS.index(one.kind) for one in types])
+        yield array("int64_t", f"{what}_limits", [limits[name] for name in called])
+    counts = [len(spec.events[event].fields) for event in plan.events]
+    yield array("int32_t", "field_first", [0, *accumulate(counts)])
+
+
+def _field_types(plan: Plan, names: Names) -> list[Type]:
+    return [plan.spec.events[event].fields[field] for event, field in names.fields]
+
+
+def _labels(names: Names, type_: Type) -> dict[str, int] | None:
+    """The numbers of the labels that a type has; `None`: it has none."""
+    if type_.kind is not Kind.LABEL:
+        return None
+    return {label: names.label(label) for label in type_.labels}

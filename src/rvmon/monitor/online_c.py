@@ -1,0 +1,213 @@
+"""Online monitors that are compiled C; their records have no reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rvmon.codegen.c_online import NEVER, NOT_YET, OnlineLibrary, online_library
+from rvmon.codegen.c_tables import DECISIONS, VERDICTS
+from rvmon.errors import SnapshotError, TraceError
+from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.lanes import Lanes
+from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.planned import plan_alone
+from rvmon.trace.sample import Value
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
+
+
+class CompiledMonitor(Monitor):
+    """A monitor whose `step_ns` is compiled C.
+
+    Samples that need a closer look (other than plain values in a `dict`, what is wrong) take the
+    way of every monitor up to the judging.
+
+    Args:
+        library: compiled for the requirements.
+        compiled: the specification.
+        requirements: to be judged.
+        settle: see `build_monitor`.
+        sources: the names that can arrive; `None`: all.
+    """
+
+    def __init__(
+        self,
+        library: OnlineLibrary,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        settle: str,
+        sources: frozenset[str] | None,
+    ) -> None:
+        names = {*compiled.checked.signals, *compiled.checked.events}
+        absent = frozenset() if sources is None else frozenset(names - sources)
+        self._library = library
+        self._ids = [one.requirement.id for one in requirements]
+        self._core = library.core(absent, look_closer=self.step_slowly, attempt=self._attempt)
+        super().__init__(compiled, requirements, "c", settle, sources)
+        if self._intake is None:
+            self.__dict__["step_ns"] = self._core.step
+
+    def _attempt(
+        self,
+        requirement: int,
+        number: int,
+        triggered: int,
+        decided: int,
+        verdict: int,
+        decision: int,
+    ) -> Attempt:
+        settled = DECISIONS[decision]
+        return Attempt(
+            self._ids[requirement],
+            number,
+            triggered,
+            None if settled is Decision.OPEN else decided,
+            VERDICTS[verdict],
+            settled,
+        )
+
+    def _make_lanes(self) -> Lanes:
+        return Lanes(self._compiled.checked, (), "auto", self._sources, self._ledger)
+
+    def reset(self) -> None:
+        """Forget the run; the next sample starts another."""
+        super().reset()
+        self._core.reset()
+
+    def _see(self) -> None:
+        """Note how far the run has come."""
+        sampled, began, last, reached = self._core.times()
+        self._health.began = began if sampled else None
+        self._last = None if last == NOT_YET else last
+        self._reached = None if reached == NOT_YET else reached
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """See `Monitor.step_ns`."""
+        return self.step_slowly(t_ns, values)
+
+    def step_slowly(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample by the way of every monitor."""
+        self._see()
+        return super().step_ns(t_ns, values)
+
+    def _judge(self, t: int, values: Mapping[str, Value]) -> None:
+        self._core.take(t, {name: self._plain(name, value, t) for name, value in values.items()})
+
+    def _plain(self, name: str, value: Value, t: int) -> Value:
+        """A value as C takes it.
+
+        Raises:
+            TraceError: there are several payloads, or a whole number is too large.
+        """
+        if isinstance(value, tuple):
+            if len(value) > 1:
+                raise several_payloads(name, len(value), t)
+            value = value[0] if value else False
+        if isinstance(value, Mapping):
+            for field, scalar in value.items():
+                self._expect_exact(f"{name}.{field}", scalar, t)
+            return dict(value)
+        self._expect_exact(name, value, t)
+        return value
+
+    def _expect_exact(self, name: str, value: object, t: int) -> None:
+        limit = self._library.limits.get(name)
+        if limit is not None and isinstance(value, int) and abs(value) > limit:
+            from rvmon.codegen.c_batch import too_large
+
+            raise too_large(name, value, limit, t)
+
+    def _flush(self) -> Sequence[Attempt]:
+        return self._core.flush()
+
+    def _pass_to(self, t: int) -> None:
+        self._core.advance(t)
+
+    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
+        """See `Monitor.advance_ns`."""
+        self._see()
+        return super().advance_ns(t_ns)
+
+    def finish_ns(self, t_ns: int | None = None) -> Report:
+        """See `Monitor.finish_ns`."""
+        if self._report is not None:
+            return self._report
+        if t_ns is not None:
+            t_ns = self._taken_time(t_ns)
+        for sample in () if self._intake is None else self._intake.close():
+            self._judge(sample.t, sample.values)
+        import numpy as np
+
+        from rvmon.codegen.c_batch import RECORD, Told
+        from rvmon.monitor.recorded import report_of_records
+
+        end = self._core.close(t_ns)
+        self._core.flush()
+        self._see()
+        told = Told(
+            np.frombuffer(self._core.records(), RECORD),
+            ordered=False,
+            counts=np.array(self._core.counts(), np.int64).reshape(-1, 3),
+            end=None if end == NOT_YET else end,
+        )
+        self._report = report_of_records(self._ids, told, origin=self._health.began or 0)
+        return self._report
+
+    def snapshot(self) -> bytes:
+        """Refused: what C holds cannot be checked when it comes back.
+
+        Raises:
+            SnapshotError: always.
+        """
+        raise SnapshotError(
+            "a compiled monitor cannot be put away: use the engine `auto` for snapshots"
+        )
+
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """The attempts that are undecided now, without deadlines and forecasts."""
+        return [] if self._report is not None else self._core.open()
+
+    @property
+    def next_due(self) -> int | None:
+        """See `Monitor.next_due`."""
+        self._see()
+        if self._reached is None or self._report is not None:
+            return None
+        found = self._core.next_due()
+        return max(found, self._reached + 1) if found < NEVER else None
+
+
+def several_payloads(event: str, count: int, t: int) -> TraceError:
+    """The error that an instant has more payloads of an event than compiled monitors take."""
+    return TraceError(
+        f"sample at {format_ticks(t)}: {count} payloads of `{event}`: compiled monitors take one "
+        "at an instant"
+    )
+
+
+def compiled_monitor(
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    settle: str,
+    sources: frozenset[str] | None,
+) -> CompiledMonitor:
+    """A monitor that is compiled C; compiled once for a specification.
+
+    Args:
+        compiled: the specification.
+        requirements: chosen from it.
+        settle: see `build_monitor`.
+        sources: the names that can arrive; `None`: all.
+
+    Raises:
+        RvmonError: there is no C compiler, or a requirement is beyond generated code.
+    """
+    ids = tuple(one.requirement.id for one in requirements)
+    key = ("online c", ids)
+    library = compiled.forms.get(key)
+    if not isinstance(library, OnlineLibrary):
+        library = compiled.forms[key] = online_library(plan_alone(compiled, ids))
+    return CompiledMonitor(library, compiled, requirements, settle, sources)
