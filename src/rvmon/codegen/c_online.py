@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import sysconfig
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from itertools import accumulate
@@ -20,7 +20,7 @@ from rvmon.codegen.c_build import NATIVE, compiler, loaded
 from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
-from rvmon.codegen.c_tables import array
+from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array
 from rvmon.codegen.c_text import comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
@@ -40,6 +40,19 @@ NEVER = (1 << 63) - 1
 
 NOT_YET = -1 << 63
 """The instant of what did not happen."""
+
+
+_SLOTS = (
+    *("requirement", "number", "triggered", "decided", "verdict", "decision"),
+    *("_details", "_noted"),
+)
+"""The fields of an attempt that are set in C, in the order of the template's `SLOT_…`."""
+
+
+def _no_details(attempt: Attempt, _: None) -> Mapping[str, Any]:
+    """The fields of an attempt of which nothing more is known."""
+    bare = Attempt(attempt.requirement, 0, 0, None, attempt.verdict)
+    return {one.name: getattr(bare, one.name) for one in fields(Attempt) if one.name not in _SLOTS}
 
 
 class Core(Protocol):
@@ -99,14 +112,12 @@ class OnlineLibrary:
         absent: frozenset[str],
         *,
         look_closer: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
-        attempt: Callable[[int, int, int, int, int, int], Attempt],
     ) -> Core:
         """Begin a run.
 
         Args:
             absent: the names without a source.
-            look_closer: judges samples that are not plain: the first lets it do so.
-            attempt: makes one of what a record holds, in its order.
+            look_closer: judges the samples that are not plain values in a `dict`.
         """
         plan, names = self.plan, self.names
         called = (*plan.signals, *plan.events)
@@ -123,8 +134,15 @@ class OnlineLibrary:
             {name: names.number(name) for name in called if name not in absent},
             bytes(name in absent for name in called),
             look_closer,
-            attempt,
             RvmonError,
+            (
+                Attempt,
+                tuple(getattr(Attempt, name) for name in _SLOTS),
+                tuple(rule.requirement.id for rule in plan.rules),
+                VERDICTS,
+                DECISIONS,
+                _no_details,
+            ),
         )
 
 

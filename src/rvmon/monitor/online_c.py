@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rvmon.codegen.c_online import NEVER, NOT_YET, OnlineLibrary, online_library
-from rvmon.codegen.c_tables import DECISIONS, VERDICTS
 from rvmon.errors import SnapshotError, TraceError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.lanes import Lanes
@@ -14,7 +13,7 @@ from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import plan_alone
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 
@@ -44,29 +43,10 @@ class CompiledMonitor(Monitor):
         absent = frozenset() if sources is None else frozenset(names - sources)
         self._library = library
         self._ids = [one.requirement.id for one in requirements]
-        self._core = library.core(absent, look_closer=self.step_slowly, attempt=self._attempt)
+        self._core = library.core(absent, look_closer=self.step_slowly)
         super().__init__(compiled, requirements, "c", settle, sources)
         if self._intake is None:
             self.__dict__["step_ns"] = self._core.step
-
-    def _attempt(
-        self,
-        requirement: int,
-        number: int,
-        triggered: int,
-        decided: int,
-        verdict: int,
-        decision: int,
-    ) -> Attempt:
-        settled = DECISIONS[decision]
-        return Attempt(
-            self._ids[requirement],
-            number,
-            triggered,
-            None if settled is Decision.OPEN else decided,
-            VERDICTS[verdict],
-            settled,
-        )
 
     def _make_lanes(self) -> Lanes:
         return Lanes(self._compiled.checked, (), "auto", self._sources, self._ledger)
