@@ -39,7 +39,12 @@ def stepped(engine: str, each: int, seeds: list[str]) -> Counter[str]:
     whole = not engine.startswith("c")
     profile = Profile(captures=whole, for_each=whole)
     tally = campaign(
-        Maker(engine), seeds, profile, TraceProfile(), each=each, online_every=10 * (engine != "c rows")
+        Maker(engine),
+        seeds,
+        profile,
+        TraceProfile(),
+        each=each,
+        online_every=10 * (engine != "c rows"),
     )
     for text in tally.disagreements:
         print(text, flush=True)

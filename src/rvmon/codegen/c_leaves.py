@@ -61,7 +61,7 @@ def node_body(plan: Plan, names: Names, place: int) -> list[str]:
     if isinstance(state.leaf, Elapsed):
         return [
             f"const int64_t due = sum(m->origin, {_integer(state.leaf.duration)});",
-            f"m->wake[{place}] = (t < due) ? due : NEVER;",
+            f"m->wake[{names.timers[place]}] = (t < due) ? due : NEVER;",
             "return truth_of(true, t >= due);",
         ]
     return [f"return {_value(plan, names, place, state)};"]
@@ -79,7 +79,7 @@ def _value(plan: Plan, names: Names, place: int, state: State) -> str:
         case StateOp.OR:
             return _nested("either", operands)
         case StateOp.PREVIOUS:
-            return f"previous(m, {place}, {names.memory[place]}, t, {operands[0]})"
+            return f"previous(m, {names.timers[place]}, {names.memory[place]}, t, {operands[0]})"
         case StateOp.SINCE:
             return _since(names, place, state, ", ".join(operands))
         case StateOp.LEAF:
@@ -95,7 +95,8 @@ def _since(names: Names, place: int, state: State, operands: str) -> str:
         return f"since_ever(m, {slot}, {operands})"
     high = "NEVER" if state.high is None else _integer(state.high)
     function = "since_edge" if memory is Memory.EDGE else "since"
-    return f"{function}(m, {place}, {slot}, t, {operands}, {_integer(state.low)}, {high})"
+    low, timer = _integer(state.low), names.timers[place]
+    return f"{function}(m, {timer}, {slot}, t, {operands}, {low}, {high})"
 
 
 def leaf_value(names: Names, leaf: Leaf) -> str:

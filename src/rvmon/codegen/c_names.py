@@ -7,7 +7,7 @@ from enum import Enum
 from functools import cached_property
 
 from rvmon.codegen.plan import Plan
-from rvmon.formula.state import State, StateOp
+from rvmon.formula.state import Elapsed, State, StateOp
 
 _TAKEN = (
     # Names of a monitor so called would be those of functions within the generated C,
@@ -115,6 +115,18 @@ class Names:
                 slots[place] = counts[kind]
                 counts[kind] += 1
         return slots
+
+    @cached_property
+    def timers(self) -> dict[int, int]:
+        """For each node that time alone can change, the number of its timer; in order of nodes."""
+        timed = [
+            place
+            for place, state in enumerate(self.plan.graph.nodes)
+            if isinstance(state.leaf, Elapsed)
+            or state.op is StateOp.PREVIOUS
+            or memory_of(state) in (Memory.EDGE, Memory.PAST)
+        ]
+        return {place: number for number, place in enumerate(timed)}
 
     def memories(self, kind: Memory) -> int:
         """How many memories of a kind there are."""

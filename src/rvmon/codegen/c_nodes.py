@@ -58,7 +58,7 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
         yield from _node_function(place, node_body(plan, names, place))
     for group in range(group_count(plan)):
         yield ""
-        yield f"static void look{group}(monitor *m, int64_t t, bool *letters, bool *asked)"
+        yield f"static void look{group}(monitor *m, int64_t t, uint32_t *letters, uint32_t *asked)"
         yield "{"
         yield "    uint32_t changed = 0;"
         for place in range(GROUP * group, min(GROUP * (group + 1), len(plan.graph.nodes))):
@@ -67,9 +67,9 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
                 yield f"    {_storing(place, heard[group])}"
         own = heard[group]
         for index, mask in own.letters.items():
-            yield f"    letters[{index}] |= {_any(mask)};"
+            yield f"    {_listed('letters', index, mask)}"
         for index, mask in own.triggers.items():
-            yield f"    asked[{index}] |= {_any(mask)};"
+            yield f"    {_listed('asked', index, mask)}"
         for other, mask in own.groups.items():
             yield f"    m->soiled[{other}] |= (uint8_t){_any(mask)};"
         yield "    (void)m;"
@@ -79,7 +79,8 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
         yield "    (void)asked;"
         yield "}"
     yield ""
-    yield "static void look(monitor *m, int32_t group, int64_t t, bool *letters, bool *asked)"
+    yield "static void look(monitor *m, int32_t group, int64_t t, uint32_t *letters,"
+    yield "                 uint32_t *asked)"
     yield "{"
     yield "    switch (group) {"
     for group in range(group_count(plan)):
@@ -87,6 +88,11 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
     yield "    default: break;"
     yield "    }"
     yield "}"
+
+
+def _listed(rules: str, index: int, mask: int) -> str:
+    """Add a rule to a set of rules if some node changed."""
+    return f"{rules}[{index // 32}] |= (uint32_t){_any(mask)} << {index % 32}U;"
 
 
 def _any(mask: int) -> str:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import accumulate
 
 from rvmon.codegen.c_leaves import uses_library
-from rvmon.codegen.c_names import Memory, Names, memory_of
+from rvmon.codegen.c_names import Memory, Names
 from rvmon.codegen.c_nodes import (
     group_count,
     group_of,
@@ -17,11 +19,10 @@ from rvmon.codegen.c_nodes import (
 )
 from rvmon.codegen.c_rows import rows_source
 from rvmon.codegen.c_samples import SAMPLE, take_source
-from rvmon.codegen.c_tables import array, automata_source, lists
+from rvmon.codegen.c_tables import array, automata_source, lists, repeats
 from rvmon.codegen.c_text import called, comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
-from rvmon.formula.state import Elapsed, StateOp
 
 _LIBRARY = ("helpers.c.in", "monitor_past.c.in")
 """Functions of which a source has those that it calls."""
@@ -79,6 +80,7 @@ class _Writer:
             "PREFIX": prefix.upper(),
             "prefix": prefix,
             "GAP": str(self.plan.gap or 0),
+            "REPEATING": str(int(any(map(repeats, self.plan.rules)))),
             "NAMES": "\n".join(self._constants()),
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }
@@ -106,12 +108,12 @@ class _Writer:
             "RULES": len(plan.rules),
             "CLOCKS": clocks,
             "GROUPS": group_count(plan),
+            "TIMED": len(names.timers),
             **{kind.name: names.memories(kind) for kind in Memory},
         }
         for name, size in sizes.items():
             yield f"#define {upper}_{name} {size}"
             yield f"#define {upper}_{name}_MIN {max(size, 1)}"
-        yield f"#define {upper}_TIMED {len(self._timed())}"
         yield f"#define {upper}_PERISHABLE {len(self._perishable())}"
         yield f"#define {upper}_STATEFUL {len(groups_of(plan.graph.stateful))}"
         for what, listed in (
@@ -126,15 +128,6 @@ class _Writer:
             yield f"#define {upper}_FIELD_{number} {number} /* {comment(f'{event}.{field}')} */"
         for label, number in names.labels.items():
             yield f"#define {upper}_LABEL_{number} {number} /* {comment(label)} */"
-
-    def _timed(self) -> list[int]:
-        return [
-            place
-            for place, state in enumerate(self.plan.graph.nodes)
-            if isinstance(state.leaf, Elapsed)
-            or state.op is StateOp.PREVIOUS
-            or memory_of(state) in (Memory.EDGE, Memory.PAST)
-        ]
 
     def _perishable(self) -> list[int]:
         signals = self.plan.spec.signals
@@ -172,8 +165,9 @@ class _Writer:
             yield "static const int32_t reader_first[] = {0, 0};"
             yield "static const int32_t readers[] = {0};"
         yield from lists("need_first", "needs", needs(plan))
-        yield array("int32_t", "timed", self._timed())
-        yield array("int32_t", "timed_group", [group_of(place) for place in self._timed()])
+        counts = Counter(map(group_of, self.names.timers))
+        ends = accumulate(counts[group] for group in range(group_count(plan)))
+        yield array("int32_t", "timed_first", [0, *ends])
         yield array("int32_t", "perishable", self._perishable())
         yield array("int32_t", "stateful", groups_of(graph.stateful))
         # Counted down for each name without a source; at 0 the leaf stays as it is.

@@ -34,6 +34,11 @@ def automata_source(plan: Plan) -> Iterator[str]:
     yield "};"
 
 
+def repeats(rule: PlannedRule) -> bool:
+    """Whether a trigger that stays true starts an attempt at each position."""
+    return rule.requirement.pulse and rule.requirement.mode is not Mode.WHENEVER
+
+
 def outcomes(policy: EndPolicy) -> list[int]:
     """What becomes of an undecided attempt: verdict plus 4 times the decision.
 
