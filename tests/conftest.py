@@ -2,7 +2,10 @@
 
 import os
 import shutil
+import sysconfig
 from collections.abc import Callable
+from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -10,11 +13,14 @@ import pytest
 def _program(name: str) -> str:
     path = shutil.which(name)
     if path is None:
-        message = f"needs the program `{name}`"
-        if os.environ.get("CI"):
-            pytest.fail(message)
-        pytest.skip(message)
+        _do_without(f"needs the program `{name}`")
     return path
+
+
+def _do_without(message: str) -> NoReturn:
+    if os.environ.get("CI"):
+        pytest.fail(message)
+    pytest.skip(message)
 
 
 @pytest.fixture
@@ -33,6 +39,14 @@ def graphviz() -> str:
 def gcc() -> str:
     """Path of a C compiler."""
     return _program("gcc")
+
+
+@pytest.fixture(scope="session")
+def extensions() -> None:
+    """Extension modules can be compiled."""
+    _program("gcc")
+    if not Path(sysconfig.get_path("include"), "Python.h").is_file():
+        _do_without("needs the headers of Python, `python3-dev`")
 
 
 @pytest.fixture

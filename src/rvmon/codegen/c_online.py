@@ -35,6 +35,9 @@ _MODULE = "rvmon_online"
 _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
 """In the order of the template's `IS_…`."""
 
+FAST = ("-O3", "-fno-math-errno", NATIVE)
+"""Of a monitor that is worth the time that the compiler takes."""
+
 NEVER = (1 << 63) - 1
 """The instant of what does not happen."""
 
@@ -162,8 +165,7 @@ def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
     made = c_files(named)
     name = f"{made.prefix}_online.c"
     texts = {**made.texts, name: online_source(named), "python.txt": sys.version}
-    speed = ("-O3", "-fno-math-errno", NATIVE) if optimised else ("-O0",)
-    flags = [*speed, "-shared", "-fPIC", "-I", _headers()]
+    flags = [*(FAST if optimised else ("-O0",)), "-shared", "-fPIC", "-I", _headers()]
     type_ = loaded(texts, [name], EXTENSION_SUFFIXES[0], flags, _type_in)
     return OnlineLibrary(plan, Names(plan), whole_limits(plan), type_)
 

@@ -1,0 +1,350 @@
+"""Compiled monitors that are stepped: what a user of `Spec.monitor(engine="c")` meets."""
+
+import gc
+import math
+import pickle
+import random
+import sysconfig
+import weakref
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
+from rvmon.testing.differential import cases_of
+from rvmon.testing.drive import drive
+from rvmon.testing.forms import Maker
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+
+SPEC = """
+spec watch "A base"
+time held
+signal p, q : bool
+signal speed : real
+signal count : int
+signal mode : {red, green}
+event stop
+event pick(id: int, weight: real, color: {red, blue})
+requirement R1 "a"
+  upon rise(p)
+  then within 3 s q
+requirement R2 "b"
+  always (speed < 2 or mode == red)
+requirement R3 "c"
+  upon pick.id > 2 and pick.weight < 1.5 and pick.color == red
+  then within 1 s (count > 3 or stop)
+"""
+
+FIRST = {"p": False, "q": False, "speed": 1.0, "count": 0, "mode": "green"}
+
+
+@pytest.fixture(autouse=True)
+def cache(extensions, tmp_path_factory, monkeypatch):
+    """Compiled monitors of these tests stay in them, and are compiled once."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.getbasetemp() / "online"))
+    monkeypatch.setattr("rvmon.codegen.c_online.FAST", ("-O0",))
+
+
+@pytest.fixture
+def spec() -> rvmon.Spec:
+    """The specification above."""
+    return rvmon.loads(SPEC)
+
+
+def told(attempts):
+    """What records say of verdicts."""
+    return [(a.requirement, a.number, a.triggered, a.decided, a.verdict.value) for a in attempts]
+
+
+def both(spec, samples, end=None, **how):
+    """Step a compiled monitor and one that gives reasons; they have to say the same each time."""
+    fast, slow = spec.monitor(engine="c", **how), spec.monitor(engine="automaton", **how)
+    found = []
+    for t, values in samples:
+        mine, other = fast.step_ns(t, values), slow.step_ns(t, values)
+        assert told(mine) == told(other)
+        assert told(sorted(fast.open, key=order)) == told(sorted(slow.open, key=order))
+        found += told(mine)
+    mine, other = fast.finish_ns(end), slow.finish_ns(end)
+    assert mine.verdicts == other.verdicts
+    assert mine.counts == other.counts
+    assert told(mine.attempts) == told(other.attempts)
+    assert (mine.origin, mine.end) == (other.origin, other.end)
+    return found
+
+
+def order(attempt):
+    """By requirement and number."""
+    return attempt.requirement, attempt.number
+
+
+S = 1_000_000_000
+
+
+def test_records_come_with_the_step_that_decides_them(spec):
+    """Each call returns what it decided, in the order of reports, and the report has all of it."""
+    samples = [
+        (0, FIRST),
+        (S, {"p": True}),
+        (2 * S, {"q": True}),
+        (3 * S, {"p": False, "q": False}),
+        (4 * S, {"p": True, "pick": {"id": 3, "weight": 1.0, "color": "red"}}),
+        (9 * S, {"speed": 3.5}),
+        (10 * S, {"pick": True, "stop": True}),
+        (11 * S, {"pick": None, "count": 4}),
+    ]
+    found = both(spec, samples, 12 * S)
+    assert found == [
+        ("R1", 1, S, 2 * S, "P"),
+        ("R3", 1, 4 * S, 5 * S + 1, "F"),
+        ("R1", 2, 4 * S, 7 * S + 1, "F"),
+        ("R2", 1, 0, 9 * S, "F"),
+    ]
+
+
+def test_all_kinds_of_values(spec):
+    """Numbers of NumPy, whole numbers for real ones, NaN, `None`, labels, payloads, subclasses."""
+    values = [
+        {"speed": 3},
+        {"speed": np.float64(1.5), "p": np.bool_(True)},
+        {"speed": np.float32(2.5), "count": np.int64(7)},
+        {"speed": math.nan},
+        {"speed": None, "mode": None},
+        {"mode": "red"},
+        {"pick": {"id": 3, "weight": np.float64(0.5), "color": "red"}},
+        {"pick": {"id": None, "color": "blue"}},
+        {"pick": ({"id": 5, "weight": 1, "color": "red"},)},
+        {"pick": (), "stop": False},
+        {"pick": False, "stop": True},
+        {"q": True, "p": None, "count": None},
+    ]
+    both(spec, [(0, FIRST), *((number * S // 2, row) for number, row in enumerate(values, 1))])
+
+
+class Row(dict):
+    """A dictionary of somebody's own."""
+
+
+@pytest.mark.parametrize("kind", [Row, lambda row: __import__("types").MappingProxyType(row)])
+def test_any_mapping(spec, kind):
+    """Mappings of other types are looked through as dictionaries are."""
+    both(spec, [(0, kind(FIRST)), (S, kind({"p": True})), (2 * S, kind({"q": True}))])
+
+
+def test_names_in_any_order(spec):
+    """The order of names may change from sample to sample, and names be equal, not the same."""
+    dice = random.Random(1)
+    samples = []
+    for t in range(200):
+        names = list(FIRST)
+        dice.shuffle(names)
+        row = {
+            "".join(name): dice.choice(
+                {"speed": [1.0, 3.0], "count": [1, 4], "mode": ["red", "green"]}.get(
+                    name, [True, False]
+                )
+            )
+            for name in names[: dice.randint(0, len(names))]
+        }
+        samples.append((t * S // 3, row))
+    both(spec, samples)
+
+
+@pytest.mark.parametrize(
+    ("t", "values", "error", "text"),
+    [
+        (S, {}, TimeOrderError, "is not after the one at 1 s"),
+        (0, {}, TimeOrderError, "is not after the one at 1 s"),
+        (2 * S, {"z": True}, TraceError, "no signal or event named `z`"),
+        (2 * S, {"p": 1}, TraceError, "`p`: expected True or False, found 1"),
+        (2 * S, {"count": 1.5}, TraceError, "`count`: expected a whole number"),
+        (2 * S, {"count": True}, TraceError, "`count`: expected a whole number"),
+        (2 * S, {"mode": "blue"}, TraceError, "`mode`: expected one of red, green"),
+        (2 * S, {"stop": 1}, TraceError, "`stop` is an event"),
+        (2 * S, {"stop": {"x": 1}}, TraceError, "has no field `x`"),
+        (2 * S, {"pick": {"id": "a"}}, TraceError, "`pick.id`: expected a whole number"),
+        (2 * S, {"pick": ({"id": 1}, {"id": 2})}, TraceError, "2 payloads of `pick`"),
+        (2 * S, {"count": 1 << 60}, TraceError, "compute with doubles"),
+        (2 * S, {"speed": 1 << 60}, TraceError, "compute with doubles"),
+        (2 * S, {"speed": 1 << 70}, TraceError, "compute with doubles"),
+        (2 * S, {"pick": {"id": 1 << 60}}, TraceError, "compute with doubles"),
+        (2 * S, {1: True}, TraceError, "no signal or event named"),
+        (2 * S, [("p", True)], TraceError, "expected values by name"),
+        (1 << 62, {}, TraceError, "time"),
+        (1 << 70, {}, TraceError, "time"),
+        (2.5, {}, TraceError, "whole"),
+    ],
+)
+def test_what_is_wrong_is_refused(spec, t, values, error, text):
+    """A wrong sample is refused as by every monitor, and changes nothing."""
+    monitor = spec.monitor(engine="c")
+    monitor.step_ns(S, FIRST)
+    with pytest.raises(error, match=text):
+        monitor.step_ns(t, values)
+    assert told(monitor.step_ns(2 * S, {"speed": 5.0})) == [("R2", 1, S, 2 * S, "F")]
+
+
+def test_a_wrong_call(spec):
+    """Python's own errors for what is no call of a method."""
+    monitor = spec.monitor(engine="c")
+    with pytest.raises(TypeError, match="positional"):
+        monitor.step_ns()
+    with pytest.raises(TypeError, match="unexpected"):
+        monitor.step_ns(0, {}, other=1)
+    assert monitor.step_ns(t_ns=0, values=FIRST) == ()
+
+
+def test_advance_finish_reset(spec):
+    """Time passes without samples; a finished run takes nothing; another one begins afresh."""
+    monitor = spec.monitor(engine="c")
+    assert monitor.open == []
+    assert monitor.next_due is None
+    for _ in range(2):
+        monitor.step(0.0, FIRST)
+        monitor.step(1.0, {"p": True})
+        assert [a.requirement for a in monitor.open] == ["R1", "R2"]
+        assert monitor.next_due is not None
+        assert monitor.advance(4.0) == ()
+        assert told(monitor.advance(4.1)) == [("R1", 1, S, 4 * S + 1, "F")]
+        with pytest.raises(TimeOrderError, match="none before would come"):
+            monitor.step(4.05, {})
+        report = monitor.finish(5.0)
+        assert report.verdicts == {"R1": "F", "R2": "P", "R3": "NT"}
+        assert monitor.finish(6.0) is report
+        assert monitor.open == []
+        assert monitor.next_due is None
+        for call in (lambda: monitor.step(7.0, {}), lambda: monitor.advance(7.0)):
+            with pytest.raises(TraceError, match="finished"):
+                call()
+        monitor.reset()
+
+
+def test_no_sample_at_all(spec):
+    """A run without samples ends with nothing triggered."""
+    report = spec.monitor(engine="c").finish()
+    assert set(report.verdicts.values()) == {"NT"}
+    assert report.end is None
+    assert list(report.attempts) == []
+
+
+def test_only_and_sources(spec):
+    """Some of the requirements; names that cannot come are refused, and unknown throughout."""
+    samples = [(0, {"p": False}), (S, {"p": True}), (5 * S, {})]
+    both(spec, samples, only=["R1"], sources=["p", "q"])
+    with pytest.raises(TraceError, match="not among the sources"):
+        spec.monitor(engine="c", sources=["p"]).step(0, {"q": True})
+
+
+def test_settled_by_the_next_stamp(spec):
+    """With `settle="next"` equal stamps are one sample."""
+    rows = [(0, FIRST), (S, {"p": True}), (S, {"q": True}), (S, {"stop": True}), (9 * S, {})]
+    both(spec, [(t, row) for t, row in rows], settle="next")
+
+
+def test_no_snapshot(spec):
+    """It says that it cannot be put away, and what can."""
+    monitor = spec.monitor(engine="c")
+    with pytest.raises(SnapshotError, match="engine `auto`"):
+        monitor.snapshot()
+
+
+def test_attempts_are_attempts(spec):
+    """Records are whole: equal, hashable, shown, pickled, changed as others are."""
+    monitor = spec.monitor(engine="c")
+    monitor.step(0.0, FIRST)
+    (made,) = monitor.step(1.0, {"speed": 3.0})
+    assert made.reason == ""
+    assert made.deadline is None
+    assert dict(made.at_trigger) == {}
+    assert pickle.loads(pickle.dumps(made)) == made
+    assert replace(made, number=2).number == 2
+    assert "R2" in str(made)
+    assert made == monitor.finish().attempts[0]
+
+
+ECHO = """
+spec echo
+signal p, q : bool
+requirement R1
+  upon once[1 s, 1 s] p
+  then within 1 h q
+"""
+
+
+def knocks(begin: int, count: int) -> list[tuple[int, dict[str, bool]]]:
+    """So many short stretches of `p`, a millisecond each."""
+    return [(begin + n * S // 1000, {"p": n % 2 == 0}) for n in range(2 * count)]
+
+
+def test_open_attempts_beyond_any_number():
+    """The room for open attempts grows, also where a gap between samples starts many at once."""
+    bursts = [row for n in range(22) for row in knocks(10 * n * S, 50)]
+    monitor = rvmon.loads(ECHO).monitor(engine="c")
+    decided = []
+    for t, row in [(-9 * S, {"p": False, "q": False}), *bursts, (300 * S, {"q": True})]:
+        decided += told(monitor.step_ns(t, row))
+    starts = [t + S for t, row in bursts if row["p"]]
+    assert decided == [("R1", n, t, 300 * S, "P") for n, t in enumerate(starts, 1)]
+
+
+def test_more_stretches_than_there_is_room_for():
+    """Where a past operator has to remember too much it says so, and goes on saying so."""
+    monitor = rvmon.loads(ECHO).monitor(engine="c")
+    with pytest.raises(RvmonError, match="not enough room for a past operator: use the engine"):
+        for t, row in knocks(0, 100):
+            monitor.step_ns(t, row)
+    with pytest.raises(RvmonError, match="not enough room"):
+        monitor.step_ns(50 * S, {})
+    with pytest.raises(RvmonError, match="not enough room"):
+        monitor.finish()
+
+
+def test_a_monitor_is_freed(spec):
+    """The monitor and its C refer to each other; both go once nobody else does."""
+    monitor = spec.monitor(engine="c")
+    monitor.step(0.0, FIRST)
+    gone = weakref.ref(monitor)
+    del monitor
+    gc.collect()
+    assert gone() is None
+
+
+def test_beyond_compiled_monitors():
+    """What has no automaton of bounded size is refused with what to do."""
+    text = "spec s\nsignal p, q : bool\nrequirement R1\n  always once[0 s, 1 s] (p until q)\n"
+    with pytest.raises(RvmonError, match="R1"):
+        rvmon.loads(text).monitor(engine="c")
+
+
+def test_no_headers(spec, monkeypatch):
+    """Without the headers of Python it says what to install."""
+    monkeypatch.setattr(sysconfig, "get_path", lambda name: "/nowhere")
+    with pytest.raises(RvmonError, match="python3-dev"):
+        spec.monitor(engine="c")
+
+
+def test_nothing_to_judge(spec):
+    """No requirement is asked for: there is nothing to compile."""
+    monitor = spec.monitor(engine="c", only=[])
+    monitor.step(0.0, FIRST)
+    assert monitor.finish().verdicts == {}
+
+
+def test_random_specifications():
+    """As many records at each call as the monitor that looks up tables, on random cases."""
+    fast, slow = Maker("c"), Maker("automaton")
+    judged = 0
+    for number in range(12):
+        profile = Profile(mixed=False, captures=False, for_each=False)
+        for case in cases_of(f"online/{number}", profile, TraceProfile(), 4):
+            mine, other = fast(case), slow(case)
+            if mine is None or other is None:
+                continue
+            judged += 1
+            left, right = drive(mine, case), drive(other, case)
+            assert [told(one) for one in left[1]] == [told(one) for one in right[1]]
+            assert told(left[0].attempts) == told(right[0].attempts)
+    assert judged > 20
