@@ -28,7 +28,7 @@ from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 
-_PARTS = ("online.c.in", "online_type.c.in")
+_PARTS = ("online.c.in", "online_calls.c.in", "online_type.c.in")
 
 _MODULE = "rvmon_online"
 
