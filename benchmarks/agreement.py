@@ -29,6 +29,7 @@ from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import UntranslatableError, names_in
 from rvmon.testing.peers.ways import Cell
 from rvmon.testing.walk import intervals
+from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
 CONTEST_OF = {"reelay": "reelay-discrete", "rtamt": "rtamt-discrete", "mstlo": "mstlo-delayed"}
@@ -41,6 +42,9 @@ RTAMT_BOUND = 300
 """The longest deadline of the future that its offline evaluation judges in reasonable time."""
 
 MOST_ROWS = 4000
+
+COMPILED = "rvmon step, C"
+"""The form of ours that is compared with ours."""
 
 MOST_DAMAGED = 40
 """So many damaged traces are tried until ours is FALSE on one."""
@@ -120,7 +124,7 @@ class Referee:
         except RvmonError as error:
             remark = str(error).splitlines()[0]
             return [Agreement("rvmon", workload.name, workload.form, remark=remark)]
-        found = []
+        found = [_compare_compiled(workload, cases)]
         for label, peer in self._peers.items():
             if workload.form == "past" and label in STEPPED:
                 costs = [figure.median for figure in timed if figure.label == label]
@@ -211,17 +215,42 @@ def _case(question: Question) -> _Case:
 
 def _first_failure(question: Question) -> int | None:
     """The row at which the requirement `always φ` fails, as it is timed."""
+    decided = (attempt for row in _stepped(question, "auto") for attempt in row)
+    return next((one.decided for one in decided if one.verdict is Verdict.FAIL), None)
+
+
+def _stepped(question: Question, engine: str) -> Iterator[Sequence[Attempt]]:
+    """What each row decides of the requirement `always φ`."""
     columns = {
         name: [cell for cell in column if cell is not None]
         for name, column in question.columns.items()
     }
     spec = loads(specification([always_text(question.formula)], columns))
-    monitor = spec.monitor()
+    monitor = spec.monitor(engine=engine)
     for row in range(question.ticks):
-        for attempt in monitor.step_ns(row, {name: c[row] for name, c in columns.items()}):
-            if attempt.verdict is Verdict.FAIL:
-                return attempt.decided
-    return None
+        yield monitor.step_ns(row, {name: column[row] for name, column in columns.items()})
+
+
+def _compare_compiled(workload: Workload, cases: Sequence[_Case]) -> Agreement:
+    """Whether the compiled monitor decides at each row what the one of the engine `auto` does."""
+    count: Counter[str] = Counter()
+    try:
+        for case in cases:
+            rows = (_stepped(case.question, engine) for engine in ("auto", "c"))
+            for ours, compiled in zip(*(map(_outcomes, own) for own in rows), strict=True):
+                count["compared"] += 1
+                count["equal"] += ours == compiled
+                count["false"] += any(verdict is Verdict.FAIL for *_, verdict in ours)
+    except RvmonError as error:
+        remark = str(error).splitlines()[0]
+        return Agreement(COMPILED, workload.name, workload.form, remark=remark)
+    return Agreement(
+        COMPILED, workload.name, workload.form, count["equal"], count["compared"], count["false"]
+    )
+
+
+def _outcomes(attempts: Sequence[Attempt]) -> list[tuple[int, int, int | None, Verdict]]:
+    return [(a.number, a.triggered, a.decided, a.verdict) for a in attempts]
 
 
 def _bound(workload: Workload) -> int:

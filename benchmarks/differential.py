@@ -48,7 +48,7 @@ def run_part(
         each=options.traces,
         online_every=options.online_every,
         shrunk=0 if options.fail_fast else options.show,
-        silent=("c",),
+        silent=("c rows",),
     )
 
 

@@ -48,7 +48,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
     "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "codegen/runtime/alone.py"),
-    "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in"),
+    "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/online_c.py"),
     "network": (
         "dataflow/alone.py",
         "dataflow/at_end.py",
@@ -73,6 +73,7 @@ RELATED = {
     "network": ("auto",),
     "python": ("auto", "file"),
     "file": ("python",),
+    "c": ("c rows",),
 }
 """By engine, others that have files in common with it, but run other parts of them."""
 

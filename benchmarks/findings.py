@@ -38,9 +38,14 @@ GOALS = (
     Goal("online, one step from Python", "online", "rvmon step", "reelay", "past", 5),
     Goal("online, one step from Python", "online", "rvmon step", "rtamt", "past", 200),
     Goal("online, one step from Python", "online", "rvmon step", "mstlo", "future", 5),
+    Goal("online, one step, generated C", "online", "rvmon step, C", "reelay", "past", 5),
+    Goal("online, one step, generated C", "online", "rvmon step, C", "rtamt", "past", 200),
+    Goal("online, one step, generated C", "online", "rvmon step, C", "mstlo", "future", 5),
     Goal("online, only what changed", "online", "rvmon step, changes", "reelay", "past", 5),
     Goal("robot, 20 Hz and 1 kHz", "robot", "rvmon step", "reelay", "past", 5),
     Goal("robot, 20 Hz and 1 kHz", "robot", "rvmon step", "mstlo", "future", 5),
+    Goal("robot, generated C", "robot", "rvmon step, C", "reelay", "past", 5),
+    Goal("robot, generated C", "robot", "rvmon step, C", "mstlo", "future", 5),
     Goal(
         "100 monitors on one stream", "many", "rvmon step", "reelay", "past", 50, ("100 monitors",)
     ),
@@ -48,6 +53,15 @@ GOALS = (
         "100 monitors, only what changed",
         "many",
         "rvmon step, changes",
+        "reelay",
+        "past",
+        50,
+        ("100 monitors",),
+    ),
+    Goal(
+        "100 monitors, generated C",
+        "many",
+        "rvmon step, C",
         "reelay",
         "past",
         50,
@@ -99,10 +113,12 @@ class Quoted:
 
 
 QUOTED = (
-    Quoted("10 monitors", "many", "rvmon step", "R2U2 C", (550, 550), 5, ("10 monitors",)),
-    Quoted("100 monitors", "many", "rvmon step", "R2U2 C", (5_100, 5_100), 5, ("100 monitors",)),
-    Quoted(
-        "1000 monitors", "many", "rvmon step", "R2U2 C", (48_700, 48_700), 5, ("1000 monitors",)
+    *(
+        Quoted(
+            f"{many} monitors", "many", form, "R2U2 C", (figure, figure), 5, (f"{many} monitors",)
+        )
+        for many, figure in ((10, 550), (100, 5_100), (1000, 48_700))
+        for form in ("rvmon step", "rvmon step, C")
     ),
     Quoted("batch in memory", "batch", "rvmon evaluate, C", "R2U2 C", (37, 195), 10),
     Quoted("whole process, CSV", "process", "rvmon build, csv", "R2U2 C", (107, 179), 2),

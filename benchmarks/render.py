@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from benchmarks.agreement import Agreement
+from benchmarks.agreement import COMPILED, Agreement
 from benchmarks.findings import ATTEMPT_BYTES, FLATNESS, GOALS, QUOTED, Findings, Goal
 from benchmarks.measure import Figure, Result
 
@@ -114,16 +114,14 @@ def _pairs(findings: Findings, goal: Goal) -> _Pairs:
 
 def _alike(agreements: Sequence[Agreement], result: Result, ours: Figure, peer: Figure) -> bool:
     """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
+    here = [a for a in agreements if a.form == result.form and a.name == result.name and a.compared]
     name = peer.label.split()[0].rstrip(",")
-    checked = [
-        a
-        for a in agreements
-        if a.label == name and a.form == result.form and a.name == result.name and a.compared
-    ]
+    sides = [name, COMPILED] if ours.label == COMPILED else [name]
+    checked = [[a for a in here if a.label == side] for side in sides]
     whole = ours.rows == peer.rows == result.rows
     if whole and result.form == "past" and ours.violated != peer.violated:
         return False
-    return bool(checked) and all(a.equal == a.compared for a in checked)
+    return all(checked) and all(a.equal == a.compared for side in checked for a in side)
 
 
 def _goals(findings: Findings) -> Iterator[str]:
