@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from benchmarks.agreement import Agreement, Referee
+from benchmarks.agreement import COMPILED, Agreement, Referee
 from benchmarks.measure import Figure
 from benchmarks.workload import Workload
 
@@ -46,7 +46,9 @@ def check(peer: Played, ns_per_row: float) -> tuple[Agreement, list[str]]:
     timed = Figure("rtamt", ROWS, ns_per_row, ns_per_row, ns_per_row, (None,))
     said: list[str] = []
     with Referee({"rtamt": peer}, 2, SECONDS, said.append) as referee:
-        [found] = referee.check(workload, [timed])
+        compiled, found = referee.check(workload, [timed])
+    assert compiled.label == COMPILED
+    assert compiled.equal == compiled.compared > 0 or compiled.remark
     return found, said
 
 

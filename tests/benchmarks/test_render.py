@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from benchmarks.agreement import Agreement
+from benchmarks.agreement import COMPILED, Agreement
 from benchmarks.attempts import OpenAttempts
 from benchmarks.findings import Findings
 from benchmarks.measure import Figure, Result
@@ -43,6 +43,18 @@ def test_no_ratio_without_agreement() -> None:
     for agreements in ((), (replace(ALIKE, equal=299),)):
         page = render(replace(FINDINGS, agreements=agreements))
         assert "not measured" in line(page, STEP)
+
+
+def test_compiled_monitors_have_to_agree_with_ours_too() -> None:
+    """The ratio of a compiled monitor wants that it was compared with ours, and was the same."""
+    compiled = replace(RESULT, figures=(replace(OURS, label=COMPILED), REELAY))
+    own = replace(ALIKE, label=COMPILED)
+    start = f"| online, one step, generated C | {COMPILED} |"
+    for agreements in ((ALIKE,), (ALIKE, replace(own, equal=299))):
+        page = render(replace(FINDINGS, results=(compiled,), agreements=agreements))
+        assert "not measured" in line(page, start)
+    page = render(replace(FINDINGS, results=(compiled,), agreements=(ALIKE, own)))
+    assert "| 9.0× (9.0× to 9.0×) | ≥ 5.0× | yes |" in line(page, start)
 
 
 def test_no_ratio_with_other_violation() -> None:
