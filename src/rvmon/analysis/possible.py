@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.letters import combinations_of
-from rvmon.analysis.regions import after_edge, row_of
+from rvmon.analysis.regions import Regions, row_of
 from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.location import FAILED, PASSED
+from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.state import FALSE, TRUE, State
-from rvmon.spec.checked import CheckedSpec, EndPolicy
+from rvmon.spec.checked import CheckedSpec, EndPolicy, TimeModel
+
+_STARTED = -1
+"""In the place of a region: of a clock that was started at this position."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +61,8 @@ def possible(
     if not first:
         return Possible(trigger=False)
     width = len(propositions)
-    reach = _Reach(automaton)
+    gap = {TimeModel.HELD: 1, TimeModel.CLOCKED: spec.period, TimeModel.SAMPLED: None}[spec.time]
+    reach = _Reach(automaton, gap)
     reach.run(
         {automaton_letter(automaton, v[:width]) for v in first},
         {automaton_letter(automaton, v[:width]) for v in found.vectors},
@@ -79,7 +84,14 @@ def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
 
 
 class _Reach:
-    """All rows of an automaton that runs can come to, time passing at will.
+    """All rows of an automaton that runs can come to.
+
+    Of a clock that was started at the position of a step the age is known; of others, between which
+    cuts it lies.
+
+    Args:
+        automaton: explored.
+        gap: ticks from position to position; `None`: time passes at will.
 
     Attributes:
         rows: of undecided locations.
@@ -87,8 +99,9 @@ class _Reach:
         passed: whether one can pass.
     """
 
-    def __init__(self, automaton: Automaton) -> None:
+    def __init__(self, automaton: Automaton, gap: int | None) -> None:
         self.automaton = automaton
+        self.gap = gap
         self.rows: set[int] = set()
         self.failed = False
         self.passed = False
@@ -98,23 +111,34 @@ class _Reach:
         waiting = list(self._step(self.automaton.initial, (), first))
         seen = set(waiting)
         while waiting:
-            location, regions = waiting.pop()
-            for later in self._later(location, regions):
-                row = row_of(self.automaton, location, later)
-                self.rows.add(row)
-                self.failed |= self.automaton.time_values[row] == FALSE
-                self.passed |= self.automaton.time_values[row] == TRUE
+            location, clocks = waiting.pop()
+            self._visit(location, tuple(max(clock, 0) for clock in clocks))
+            cuts = self.automaton.locations[location].cuts
+            for later in product(*map(self._later, clocks, cuts)):
+                self._visit(location, later)
                 for reached in self._step(location, later, letters):
                     if reached not in seen:
                         seen.add(reached)
                         waiting.append(reached)
 
-    def _later(self, location: int, regions: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
-        cuts = self.automaton.locations[location].cuts
-        return product(*(range(r, len(own) + 1) for r, own in zip(regions, cuts, strict=True)))
+    def _visit(self, location: int, regions: Regions) -> None:
+        row = row_of(self.automaton, location, regions)
+        self.rows.add(row)
+        self.failed |= self.automaton.time_values[row] == FALSE
+        self.passed |= self.automaton.time_values[row] == TRUE
+
+    def _later(self, clock: int, cuts: tuple[int, ...]) -> range:
+        """The regions in which a clock may be at the next position."""
+        if self.gap is None:
+            return range(max(clock, 0), len(cuts) + 1)
+        if clock == _STARTED:
+            region = bisect_right(cuts, self.gap)
+            return range(region, region + 1)
+        low, high = _ages(clock, cuts)
+        return _regions(cuts, low + self.gap, None if high is None else high + self.gap)
 
     def _step(
-        self, location: int, regions: tuple[int, ...], letters: Iterable[int]
+        self, location: int, regions: Regions, letters: Iterable[int]
     ) -> Iterator[tuple[int, tuple[int, ...]]]:
         automaton = self.automaton
         row = row_of(automaton, location, regions)
@@ -127,4 +151,35 @@ class _Reach:
                 self.failed |= target == FAILED
                 self.passed |= target == PASSED
                 continue
-            yield target, after_edge(automaton, location, regions, edge)
+            ours = automaton.locations[location].cuts
+            theirs = automaton.locations[target].cuts
+            kept = (
+                self._kept(source, regions, ours, cuts)
+                for source, cuts in zip(automaton.sources[edge], theirs, strict=True)
+            )
+            for clocks in product(*kept):
+                yield target, clocks
+
+    def _kept(
+        self,
+        source: int,
+        regions: Regions,
+        ours: tuple[tuple[int, ...], ...],
+        cuts: tuple[int, ...],
+    ) -> Iterable[int]:
+        """What may be known of a clock behind an edge, whose cuts are others."""
+        if source == NOW:
+            return (_STARTED,)
+        return _regions(cuts, *_ages(regions[source], ours[source]))
+
+
+def _ages(region: int, cuts: tuple[int, ...]) -> tuple[int, int | None]:
+    """The least and the greatest age in a region."""
+    low = cuts[region - 1] if region else 0
+    return low, cuts[region] - 1 if region < len(cuts) else None
+
+
+def _regions(cuts: tuple[int, ...], low: int, high: int | None) -> range:
+    """The regions of the ages from one to another."""
+    last = len(cuts) if high is None else bisect_right(cuts, high)
+    return range(bisect_right(cuts, low), last + 1)

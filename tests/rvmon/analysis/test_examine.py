@@ -6,12 +6,16 @@ import pytest
 
 import rvmon
 from rvmon.analysis.choices import choices_of
+from rvmon.analysis.possible import possible
 from rvmon.cli import main
 from rvmon.explain.analysed import analyse
 from rvmon.explain.example import Budget
 from rvmon.explain.search import shortest_examples
 from rvmon.monitor import compile_spec
+from rvmon.spec.checked import TimeModel
 from rvmon.testing import build
+from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec
 
@@ -83,6 +87,43 @@ def test_known_answers():
     assert found.possible["R10"].fail is False
     assert found.possible["R11"].pass_ is False
     assert not found.undecided
+
+
+@pytest.mark.parametrize(
+    ("time", "owed", "passes"),
+    [
+        ("held", "for 1 s v", False),  # v ends, and what was owed at its last instant fails
+        ("held", "for 1 s w", True),
+        ("held", "within 1 s not v", True),
+        ("sampled every 100 ms", "for 1 s v", False),
+        ("sampled every 1 s", "for 900 ms v", True),  # nothing is owed between positions
+        ("sampled", "for 1 s v", True),  # so much time may lie between two samples
+    ],
+)
+def test_a_clock_that_is_started_at_every_position(time, owed, passes):
+    """How much time goes by between positions counts for what can come of an episode."""
+    text = f"time {time}\nsignal v, w : bool\nrequirement R\n  whenever v\n  then {owed}\n"
+    assert analysis_of(text).examination.possible["R"].pass_ is passes
+
+
+@pytest.mark.parametrize("model", list(TimeModel))
+def test_what_cannot_be_is_never_seen(model):
+    """Random requirements: none passes, or fails, of which that was ruled out."""
+    dice = random.Random(model.value)
+    claims = 0
+    for _ in range(150):
+        spec = random_spec(dice, Profile(time=model, requirements=1, depth=3, numbers=False))
+        [one] = compile_spec(spec).requirements.values()
+        can = possible(spec, one.obligation.trigger, one.automaton, one.requirement.at_end)
+        ruled_out = {"P"} if can.pass_ is False else set()
+        ruled_out |= {"F"} if can.fail is False else set()
+        claims += len(ruled_out)
+        for _ in range(15 if ruled_out else 0):
+            case = random_trace(dice, spec, TraceProfile())
+            report = evaluate(spec, case.samples, advances=case.advances, end=case.end)
+            seen = {attempt.verdict.value for attempt in report.attempts}
+            assert not seen & ruled_out, (show_spec(spec), case)
+    assert claims > 5
 
 
 def test_timelines_trigger_what_conflicts():
