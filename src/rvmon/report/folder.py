@@ -14,6 +14,8 @@ def made(folder: str | Path) -> Path:
         RvmonError: that is not possible; the message says why.
     """
     path = Path(folder)
+    if path.exists() and not path.is_dir():
+        raise RvmonError(f"error: cannot write to {path}: it is a file: name a folder")
     probe = path / ".rvmon-writes-here"
     try:
         path.mkdir(parents=True, exist_ok=True)

@@ -153,7 +153,7 @@ def test_a_folder_that_cannot_be_written_to_is_told_first(demo, capsys):
         (["run", "--spec", "gone.rv"], "gone.rv"),
         (["run", "--tests", "0"], "at least 1"),
         (["run", "--tests", "many"], "at least 1"),
-        (["run", "--out", __file__], "cannot write to"),
+        (["run", "--out", __file__], "it is a file: name a folder"),
         (["fly"], "invalid choice"),
     ],
 )
