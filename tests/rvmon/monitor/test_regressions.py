@@ -10,6 +10,16 @@ from rvmon.testing.differential import disagreements
 from rvmon.testing.forms import FORMS, Maker
 from rvmon.trace.sample import Sample
 
+WITHOUT_COMPILER = shutil.which("gcc") is None
+ONLINE = [
+    pytest.param(form, marks=pytest.mark.skipif(WITHOUT_COMPILER, reason="no C compiler"))
+    if form == "c"
+    else form
+    for form in FORMS
+    if form not in ("file", "c rows")
+]
+"""Forms that are told one thing after the other."""
+
 CASES = {
     "a row met younger later leads on younger": (
         "held",
@@ -143,7 +153,7 @@ def cache(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", CASES)
 def test_forms_agree_with_the_law(name, form):
     """Each form gives the oracle's verdicts and decision instants, if it judges such a spec."""
-    if form == "c" and shutil.which("gcc") is None:
+    if form.startswith("c") and WITHOUT_COMPILER:
         pytest.skip("no gcc")
     time, requirement, samples, end = CASES[name]
     spec = rvmon.loads(
@@ -158,7 +168,7 @@ def test_forms_agree_with_the_law(name, form):
 @pytest.mark.parametrize("form", FORMS)
 def test_a_window_opens_between_samples_that_change_nothing(form):
     """In sampled time, `advance` into a window is no position; the sample after it is one."""
-    if form == "c" and shutil.which("gcc") is None:
+    if form.startswith("c") and WITHOUT_COMPILER:
         pytest.skip("no gcc")
     spec = rvmon.loads(
         "spec s\ntime sampled\nsignal p, q, r : bool\n"
@@ -169,7 +179,7 @@ def test_a_window_opens_between_samples_that_change_nothing(form):
     assert not disagreements(case, Maker(form))
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+@pytest.mark.parametrize("form", ONLINE)
 @pytest.mark.parametrize("steps", [(3, 8), (3, 6, 8), (6, 8)])
 def test_time_comes_to_a_tick_of_the_clock_and_passes_it(form, steps):
     """What a tick decides, to which time had come before, is told when time has passed it."""
@@ -181,7 +191,7 @@ def test_time_comes_to_a_tick_of_the_clock_and_passes_it(form, steps):
     assert not disagreements(case, Maker(form), online=True)
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+@pytest.mark.parametrize("form", ONLINE)
 def test_one_deadline_after_the_other_passes_without_a_sample(form):
     """Each attempt is decided by the `advance` that passes its deadline."""
     spec = rvmon.loads(
@@ -192,7 +202,7 @@ def test_one_deadline_after_the_other_passes_without_a_sample(form):
     assert not disagreements(Case(spec.checked, told, 20), Maker(form), online=True)
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+@pytest.mark.parametrize("form", ONLINE)
 @pytest.mark.parametrize("count", [0, 65])
 def test_no_source_and_many(form, count):
     """What no source feeds is unknown; samples may hold more names than are looked at in a row."""
@@ -212,7 +222,7 @@ def test_no_source_and_many(form, count):
 @pytest.mark.parametrize("sources", ["g", "h", "gh", ""])
 def test_two_events_of_which_one_has_no_source(form, time, sources):
     """A comparison over two events is false while one surely does not occur, else unknown."""
-    if form == "c" and shutil.which("gcc") is None:
+    if form.startswith("c") and WITHOUT_COMPILER:
         pytest.skip("no gcc")
     spec = rvmon.loads(
         f"spec s\ntime {time}\nevent g(k: int)\nevent h(m: real)\n"
@@ -225,10 +235,10 @@ def test_two_events_of_which_one_has_no_source(form, time, sources):
         for t, values in told
     ]
     case = Case(spec.checked, tuple(samples), 12, frozenset(sources))
-    assert not disagreements(case, Maker(form), online=form != "c")
+    assert not disagreements(case, Maker(form), online=form != "c rows")
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("file", "c")])
+@pytest.mark.parametrize("form", ONLINE)
 @pytest.mark.parametrize(
     ("time", "requirement", "samples"),
     [
