@@ -85,7 +85,7 @@ def nearest_miss(
     seen = {part: truths[state] for part, state in states.items()}
     misses = [_miss(parts, seen) for parts in options]
     best = min(misses, key=lambda miss: len(miss.missing))
-    return _sentence(best, seen, end)
+    return _sentence(best, seen, samples[0].t, end)
 
 
 def read_as_values(spec: CheckedSpec, requirement: Requirement) -> frozenset[str] | None:
@@ -153,12 +153,12 @@ def _holds(spans: Spans, t: int) -> bool:
     return place > 0 and t <= spans[place - 1][1]
 
 
-def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], end: int) -> str:
+def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], start: int, end: int) -> str:
     if not miss.missing:
         when = "" if miss.at is None else f" at {format_ticks(miss.at)}"
         return f"its trigger came true{when} out of the unknown, which is no edge"
     if miss.at is None:
-        return "; ".join(_apart(miss.parts, seen, end))
+        return "; ".join(_apart(miss.parts, seen, start, end))
     at = miss.at
     rest = miss.there[0]
     for part in miss.there[1:]:
@@ -169,13 +169,18 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], end: int) -> str:
     return f"{_listed(miss.missing)} {while_}, as first at {format_ticks(at)}"
 
 
-def _apart(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth], end: int) -> Iterator[str]:
+def _apart(
+    parts: tuple[Formula, ...], seen: Mapping[Formula, Truth], start: int, end: int
+) -> Iterator[str]:
     """What is to be said of parts of which none was ever true."""
     groups: dict[str, list[Formula]] = {}
     for part in parts:
         word = "never true"
-        if seen[part].may[0][0] <= end:
+        low, high = seen[part].may[0]
+        if low <= start and high >= end:
             word = "never known"
+        elif low <= end:
+            word = "never known to be true"
         elif isinstance(part, EventAtom):
             word = "never occurred"
         groups.setdefault(word, []).append(part)

@@ -28,6 +28,12 @@ CASES = {
     ),
     "an event that never occurred": ("e", [(0, {"a": True})], "`e` never occurred"),
     "a level that was never true": ("a", [(0, {"a": False})], "`a` never true"),
+    "a level that was false, then unknown": (
+        "a",
+        [(0, {"a": False}), (5, {"a": None})],
+        "`a` never known to be true",
+    ),
+    "a level that was unknown throughout": ("a", [(0, {"a": None})], "`a` never known"),
     "an input that never came": (
         "e and a",
         [(0, {"b": True})],
