@@ -129,11 +129,11 @@ def test_strings_in_a_parquet_file_are_refused(tmp_path):
 
 @pytest.mark.parametrize("trace", [{"t": np.array([0.0])}, [(0.0, {})], "nowhere.csv"])
 def test_an_unknown_engine_is_told_which_there_are(trace):
-    """The engine `c` judges recordings: it stands in the list."""
+    """The engine `c` judges recordings and is stepped: it stands in both lists."""
     spec = spec_of("signal x : real", "always x < 5")
     with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
         spec.evaluate(trace, engine="nope")
-    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network$"):
+    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
         spec.monitor(engine="nope")
 
 
