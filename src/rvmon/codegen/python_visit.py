@@ -140,8 +140,7 @@ class VisitWriter:
         yield from self._concluded([*self._concerns(triggers=triggers)], triggers=triggers)
         if timed or not self.calm:
             yield from indented(self._alarm())
-        yield "    if self.news:"
-        yield "        return self.clerk.told()"
+        yield from indented(self._news())
         if timed:
             yield "else:"
             yield from indented(self._alarm())
@@ -163,9 +162,13 @@ class VisitWriter:
     def told(self) -> Iterator[str]:
         """Return what was decided."""
         yield from self.done()
-        yield "if self.news:"
-        yield "    return self.clerk.told()"
+        yield from self._news()
         yield "return ()"
+
+    def _news(self) -> Iterator[str]:
+        yield "if self.news:"
+        yield "    self.news = False"
+        yield "    return self.clerk.told()"
 
     def _concerns(self, *, triggers: bool = True) -> Iterator[str]:
         """If none of these holds, a position is not to be judged."""

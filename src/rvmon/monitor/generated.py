@@ -78,6 +78,7 @@ class GeneratedLanes(Lanes):
         other: Step,
     ) -> None:
         self.other = other
+        self.told = ledger.flush
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
         self.alone = not forms.others
@@ -93,13 +94,6 @@ class GeneratedLanes(Lanes):
                 unit.rules[index] = HostedRule(index, one, forms.plan, unit, ledger)
                 unit.restless |= 1 << index
                 unit.active |= 1 << index
-
-    # What the unit calls.
-
-    def told(self) -> Sequence[Attempt]:
-        """The records of what was decided since the last call."""
-        self.unit.news = False
-        return self.ledger.flush()
 
     # What the monitor calls.
 
@@ -125,8 +119,9 @@ class GeneratedLanes(Lanes):
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, from the instant before."""
-        self.unit.reach(t)
-        self.unit.set_alarm()
+        if t >= self.unit.wake:
+            self.unit.reach(t)
+            self.unit.set_alarm()
         super().reach(t)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
@@ -186,7 +181,9 @@ class GeneratedMonitor(Monitor):
         self._forms = forms
         self._unit = forms.unit(forms.machines, absent)
         super().__init__(compiled, requirements, engine, settle, sources)
-        if not forms.others and self._intake is None:
+        self._by_unit = not forms.others and self._intake is None
+        """Whether the unit alone takes samples as they come."""
+        if self._by_unit:
             self.__dict__["step_ns"] = self._unit.step
 
     def _make_lanes(self) -> Lanes:
@@ -228,9 +225,13 @@ class GeneratedMonitor(Monitor):
     def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
         """See `Monitor.advance_ns`."""
         self._see()
-        decided = super().advance_ns(t_ns)
         unit = self._unit
-        unit.news = False
+        decided: Sequence[Attempt] = ()
+        if self._by_unit and type(t_ns) is int and unit.after < t_ns < unit.wake:
+            self._reached = t_ns  # nothing happens up to then
+        else:
+            decided = super().advance_ns(t_ns)
+            unit.news = False
         if self._reached is not None:
             unit.after = self._floor = max(unit.after, self._reached - 1)
         return decided

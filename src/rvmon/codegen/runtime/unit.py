@@ -300,6 +300,8 @@ class Unit(Nodes):
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`, positions there included, without a further sample."""
+        if limit < self.wake or self.began is None:
+            return
         while True:
             position = self.next_position()
             stop = min(position - 1, limit)
