@@ -93,9 +93,9 @@ class VisitWriter:
         given = "self.dirty | self.fading" if self.momentary else "self.dirty"
         yield "def visit(self, t):"
         yield '    """Move to the position at `t`."""'
-        yield "    if self.origin is None:"
-        yield "        self.start(t)"
-        yield "        return"
+        yield "    first = self.origin is None"
+        yield "    if first:"
+        yield "        self.enter(t)"
         yield f"    dirty = {given}"
         yield f"    before = self.before = {self.preceding()}"
         if self.sparse():
@@ -108,6 +108,10 @@ class VisitWriter:
         yield from indented(at_hand(nodes, "before", held), 2)
         yield from indented(nodes, 2)
         yield "        self.dirty = 0"
+        yield "    if first:"
+        yield f"        letters, triggers = 0, {(1 << len(self.plan.rules)) - 1}"
+        yield "        # What nodes were before was at no instant."
+        yield "        self.until[:] = [None] * len(self.until)"
         if self.momentary:
             yield "    self.fading = fading"
         yield from indented(self.judged())

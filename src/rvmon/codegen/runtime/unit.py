@@ -103,20 +103,14 @@ class Unit(Nodes):
 
     # Positions.
 
-    def start(self, t: int) -> None:
-        """Move to the first position, at `t`."""
+    def enter(self, t: int) -> None:
+        """Go to just before the first position, at `t`, where all nodes are to be evaluated."""
         if self.began is None:
             self.began = t
-        self.origin = self.position = t
-        self.before = t - (self.GAP or 1)
+        self.origin = t
+        self.position = t - (self.GAP or 1)
         self.since[:] = [t] * self.NODES
-        self.ring(t)
-        _, _, self.fading = self.evaluate(t, self.KEPT)
-        # What nodes were before the first position was at no instant.
-        self.until[:] = [None] * len(self.until)
-        self.dirty = 0
-        self.conclude(t, 0, (1 << len(self.rules)) - 1)
-        self.set_alarm()
+        self.dirty = self.KEPT
 
     def evaluate(self, t: int, dirty: int) -> tuple[int, int, int]:
         """Evaluate nodes and what depends on them.
