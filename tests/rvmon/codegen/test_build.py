@@ -4,6 +4,7 @@ import json
 import random
 import shutil
 import struct
+import subprocess
 
 import pytest
 
@@ -237,3 +238,24 @@ def test_csv_that_is_unusual_is_read_as_rvmon_run_does(program, tmp_path, capsys
     assert (done.returncode, done.stderr) == (code, "")
     assert told(done.stdout) == expected
     assert len(expected["R1"][2]) == 1
+
+
+def test_a_gap_that_starts_many_attempts(tmp_path, capsys, monkeypatch):
+    """The room for open attempts grows also between two samples; so does that of columns."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "echo.rv").write_text(
+        "spec echo\nsignal p, q : bool\n"
+        "requirement R1\n  upon once[1 s, 1 s] p\n  then within 1 h q\n"
+    )
+    knocks = [10 * burst + n / 1000 for burst in range(22) for n in range(100)]
+    rows = [f"{t:.3f},{int(n % 2 == 0)}," for n, t in enumerate(knocks)]
+    trace = tmp_path / "echo.csv"
+    trace.write_text("\n".join(["t,p,q", "-9,0,0", *rows, "300,,1", ""]))
+    assert main(["build", str(tmp_path / "echo.rv"), "-o", str(tmp_path / "echo")]) == 0
+    done = subprocess.run([tmp_path / "echo", trace], capture_output=True, check=True)  # noqa: S603
+    assert json.loads(done.stdout)["requirements"]["R1"]["counts"]["P"] == 22 * 50
+    capsys.readouterr()
+    command = ["run", str(tmp_path / "echo.rv"), str(trace), "--engine", "c", "--format", "json"]
+    assert main([*command, "--until", "301"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["requirements"]["R1"]["counts"]["P"] == 22 * 50
