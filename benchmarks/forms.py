@@ -187,7 +187,8 @@ def main(argv: list[str]) -> int:
                     "generated": online(spec, given, "python"),
                     "file": alone(spec, given),
                     "columns": batch(spec, given, "auto"),
-                    "c": batch(spec, given, "c"),
+                    "c": online(spec, given, "c"),
+                    "c columns": batch(spec, given, "c"),
                     "program": program(text, given, Path(folder)),
                 }
                 show(
@@ -217,7 +218,11 @@ def many(options: argparse.Namespace) -> None:
             now[n] ^= flip
             samples.append((t * 50_000_000, {f"s{n}": now[n]}))
         given = Stream(np.zeros(0, np.int64), {}, samples)
-        forms = {"generated": online(spec, given, "python"), "file": alone(spec, given)}
+        forms = {
+            "generated": online(spec, given, "python"),
+            "file": alone(spec, given),
+            "c": online(spec, given, "c"),
+        }
         show(f"{count} requirements, one concerned", measure(forms, options.rounds), options.rows)
 
 

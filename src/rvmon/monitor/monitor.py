@@ -178,13 +178,18 @@ class Monitor:
             t_ns = self._taken_time(t_ns)
         for sample in () if self._intake is None else self._intake.close():
             self._judge(sample.t, sample.values)
+        self._report = self._conclude(t_ns)
+        return self._report
+
+    def _conclude(self, t_ns: int | None) -> Report:
+        """Judge the run that ends, all samples of which were taken."""
         end = self._end(t_ns)
         if end is not None:
             reached = end if self._reached is None else max(end, self._reached)
             self._lanes.through(end)
             self._lanes.finish(end, reached)
         self._ledger.flush()
-        self._report = report_of(
+        return report_of(
             [compiled.requirement.id for compiled in self._requirements],
             self._ledger.attempts,
             health=self._health.report(
@@ -193,7 +198,6 @@ class Monitor:
             origin=self._health.began or 0,
             end=end,
         )
-        return self._report
 
     def _end(self, t: int | None) -> int | None:
         """The last instant of the trace; `None` if there was no sample."""

@@ -110,14 +110,7 @@ class CompiledMonitor(Monitor):
         self._see()
         return super().advance_ns(t_ns)
 
-    def finish_ns(self, t_ns: int | None = None) -> Report:
-        """See `Monitor.finish_ns`."""
-        if self._report is not None:
-            return self._report
-        if t_ns is not None:
-            t_ns = self._taken_time(t_ns)
-        for sample in () if self._intake is None else self._intake.close():
-            self._judge(sample.t, sample.values)
+    def _conclude(self, t_ns: int | None) -> Report:
         import numpy as np
 
         from rvmon.codegen.c_batch import RECORD, Told
@@ -132,8 +125,7 @@ class CompiledMonitor(Monitor):
             counts=np.array(self._core.counts(), np.int64).reshape(-1, 3),
             end=None if end == NOT_YET else end,
         )
-        self._report = report_of_records(self._ids, told, origin=self._health.began or 0)
-        return self._report
+        return report_of_records(self._ids, told, origin=self._health.began or 0)
 
     def snapshot(self) -> bytes:
         """Refused: what C holds cannot be checked when it comes back.
