@@ -66,8 +66,11 @@ def both(spec, samples, end=None, **how):
     fast, slow = spec.monitor(engine="c", **how), spec.monitor(engine="automaton", **how)
     found = []
     for t, values in samples:
+        due = fast.next_due
         mine, other = fast.step_ns(t, values), slow.step_ns(t, values)
         assert told(mine) == told(other)
+        if how.get("settle") != "next" and (due is None or t < due):
+            assert all(attempt.decided >= t for attempt in mine), "time decided what was not due"
         assert told(sorted(fast.open, key=order)) == told(sorted(slow.open, key=order))
         found += told(mine)
     mine, other = fast.finish_ns(end), slow.finish_ns(end)
