@@ -44,11 +44,12 @@ _ROOTS = {NumericOp.SQRT: "sqrt", NumericOp.HYPOT: "length"}
 """Functions that `<math.h>` has, or that need it."""
 
 
-def uses_library(plan: Plan) -> bool:
+def uses_library(plan: Plan, names: Names) -> bool:
     """Whether some expression needs `<math.h>`."""
     return any(
-        f"{name}(" in "".join(node_body(plan, Names(plan), place))
+        f"{name}(" in line
         for place in range(len(plan.graph.nodes))
+        for line in node_body(plan, names, place)
         for name in _ROOTS.values()
     )
 

@@ -82,7 +82,7 @@ class _Writer:
             "GAP": str(self.plan.gap or 0),
             "REPEATING": str(int(any(map(repeats, self.plan.rules)))),
             "NAMES": "\n".join(self._constants()),
-            "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
+            "INCLUDES": "#include <math.h>\n" if uses_library(self.plan, self.names) else "",
         }
         source = "".join(template(part) for part in _PARTS)
         return CFiles(
