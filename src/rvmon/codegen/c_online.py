@@ -38,6 +38,10 @@ _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
 FAST = ("-O3", "-fno-math-errno", NATIVE)
 """Of a monitor that is worth the time that the compiler takes."""
 
+_SHARED = ("-shared", "-fPIC", "-fvisibility=hidden")
+"""All modules call their functions alike; where names are shared (`sys.setdlopenflags`), one would
+call those of another."""
+
 NEVER = (1 << 63) - 1
 """The instant of what does not happen."""
 
@@ -165,7 +169,7 @@ def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
     made = c_files(named)
     name = f"{made.prefix}_online.c"
     texts = {**made.texts, name: online_source(named), "python.txt": sys.version}
-    flags = [*(FAST if optimised else ("-O0",)), "-shared", "-fPIC", "-I", _headers()]
+    flags = [*(FAST if optimised else ("-O0",)), *_SHARED, "-I", _headers()]
     type_ = loaded(texts, [name], EXTENSION_SUFFIXES[0], flags, _type_in)
     return OnlineLibrary(plan, Names(plan), whole_limits(plan), type_)
 

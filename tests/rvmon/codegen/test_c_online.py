@@ -32,8 +32,21 @@ requirement R2 "b"
 
 BARE = "spec bare\nevent f\nrequirement R1\n  upon f\n  then within 1 s f\n"
 
+WAITING = """
+spec waiting
+signal p, q : bool
+requirement R1
+  upon p
+  then within 1 h q
+requirement R2
+  upon p
+  then within 2 h q
+"""
+
 RUN = """
+import gc
 import random
+import sys
 import rvmon
 from pathlib import Path
 spec = rvmon.loads(Path("spec.rv").read_text())
@@ -61,6 +74,27 @@ for run in range(3):
     monitor.reset()
 assert refused > 1000 and len(kept) > 100
 print(len(kept))
+
+waiting = rvmon.loads(Path("waiting.rv").read_text()).monitor(engine="c")
+meanwhile = []
+
+def collector_steps(phase, _):
+    # A step in the midst of a step of the same monitor, so that its records move.
+    if not meanwhile:
+        meanwhile.append(t)
+        for n in range(5000):
+            waiting.step_ns(t + 2 + n, {"p": n % 2 == 0, "q": n % 2 == 1})
+
+t = 0
+for _ in range(3000):
+    t += 1
+    waiting.step_ns(t, {"p": t % 2 == 1, "q": False})
+gc.collect()
+gc.callbacks.append(collector_steps)
+gc.set_threshold(500)  # the step alone makes 3,000 attempts
+told = [(a.requirement, a.number, a.decided) for a in waiting.step_ns(t + 1, {"q": True})]
+assert meanwhile or sys.version_info >= (3, 12)  # which collect after the call
+assert told == [(r, n, t + 1) for r in ("R1", "R2") for n in range(1, 1501)]
 """
 
 
@@ -94,6 +128,7 @@ def test_it_compiles_strictly(text, nodes, tmp_path, monkeypatch):
 def test_it_runs_clean(tmp_path):
     """No finding of the sanitizers on samples of all kinds, most of them wrong."""
     (tmp_path / "spec.rv").write_text(SPEC.format(name="odd"))
+    (tmp_path / "waiting.rv").write_text(WAITING)
     (tmp_path / "run.py").write_text(RUN)
     flags = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined"
     command = ["gcc", "-print-file-name=libasan.so"]
@@ -151,6 +186,22 @@ def test_a_file_that_was_cut_off_is_made_anew(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "second"))
     rvmon.loads(BARE).monitor(engine="c")
     assert broken.stat().st_size == whole.stat().st_size
+
+
+def test_modules_that_share_names(tmp_path, monkeypatch):
+    """Each monitor runs its own code even where a program lets all modules see each other's."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr("rvmon.codegen.c_online.FAST", ("-O0",))
+    before = sys.getdlopenflags()
+    try:
+        sys.setdlopenflags(before | os.RTLD_GLOBAL)
+        rvmon.loads("spec one\nsignal p : bool\nrequirement R1\n  always p\n").monitor(engine="c")
+        monitor = rvmon.loads(WAITING).monitor(engine="c")
+    finally:
+        sys.setdlopenflags(before)
+    monitor.step(0.0, {"p": True})
+    decided = monitor.step(1.0, {"q": True})
+    assert [(a.requirement, a.verdict) for a in decided] == [("R1", "P"), ("R2", "P")]
 
 
 def test_no_compiler(monkeypatch):
