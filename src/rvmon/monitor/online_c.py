@@ -73,7 +73,10 @@ class CompiledMonitor(Monitor):
         return super().step_ns(t_ns, values)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
-        self._core.take(t, {name: self._plain(name, value, t) for name, value in values.items()})
+        # C takes `str` alone, no subclasses of it, such as members of an enumeration.
+        self._core.take(
+            t, {str.__str__(name): self._plain(name, value, t) for name, value in values.items()}
+        )
 
     def _plain(self, name: str, value: Value, t: int) -> Value:
         """A value as C takes it.
@@ -88,7 +91,7 @@ class CompiledMonitor(Monitor):
         if isinstance(value, Mapping):
             for field, scalar in value.items():
                 self._expect_exact(f"{name}.{field}", scalar, t)
-            return dict(value)
+            return {str.__str__(field): scalar for field, scalar in value.items()}
         self._expect_exact(name, value, t)
         return value
 

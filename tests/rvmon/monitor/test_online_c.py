@@ -8,6 +8,7 @@ import sysconfig
 import weakref
 from collections import deque
 from dataclasses import replace
+from enum import StrEnum
 from itertools import starmap
 
 import numpy as np
@@ -137,6 +138,24 @@ class Row(dict):
 def test_any_mapping(spec, kind):
     """Mappings of other types are looked through as dictionaries are."""
     both(spec, [(0, kind(FIRST)), (S, kind({"p": True})), (2 * S, kind({"q": True}))])
+
+
+class Name(StrEnum):
+    """Names that are strings, though not plain ones."""
+
+    P = "p"
+    PICK = "pick"
+    ID = "id"
+
+
+def test_names_of_an_enumeration(spec):
+    """Names of signals, events and fields may be instances of a subclass of `str`."""
+    samples = [
+        (S, {Name.P: True}),
+        (2 * S, {Name.PICK: {Name.ID: 3}}),
+        (3 * S, {np.str_("q"): True}),
+    ]
+    assert both(spec, [(0, FIRST), *samples]) == [("R1", 1, S, 3 * S, "P")]
 
 
 def test_names_in_any_order(spec):
@@ -295,6 +314,15 @@ def test_open_attempts_beyond_any_number():
     assert decided == [("R1", n, t, 300 * S, "P") for n, t in enumerate(starts, 1)]
 
 
+def test_decided_at_once_by_several_requirements():
+    """What a gap decides comes in the order of instants, whichever requirement it is of."""
+    texts = [f"requirement R{n}\n  upon p\n  then within {n} s q\n" for n in range(1, 10)]
+    spec = rvmon.loads("spec gap\nsignal p, q : bool\n" + "".join(texts))
+    samples = [(t, {"p": row["p"], "q": False}) for t, row in knocks(0, 40)]
+    decided = both(spec, [(-S, {"p": False}), *samples, (20 * S, {})])
+    assert len(decided) == 9 * 40
+
+
 def test_more_stretches_than_there_is_room_for():
     """Where a past operator has to remember too much it says so, and goes on saying so."""
     monitor = rvmon.loads(ECHO).monitor(engine="c")
@@ -303,8 +331,9 @@ def test_more_stretches_than_there_is_room_for():
         deque(starmap(monitor.step_ns, rows))
     with pytest.raises(RvmonError, match="not enough room"):
         monitor.step_ns(50 * S, {})
-    with pytest.raises(RvmonError, match="not enough room"):
-        monitor.finish()
+    for call in (monitor.finish, lambda: monitor.step_ns(60 * S, {}), monitor.finish):
+        with pytest.raises(RvmonError, match="not enough room"):
+            call()
 
 
 def test_a_monitor_is_freed(spec):
