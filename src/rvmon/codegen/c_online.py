@@ -65,7 +65,8 @@ def _no_details(attempt: Attempt, _: None) -> Mapping[str, Any]:
 class Core(Protocol):
     """The compiled monitor: what `online_type.c.in` lists."""
 
-    step: Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
+    step: Callable[[float, Mapping[str, Any]], Sequence[Attempt]]
+    step_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 
     def take(self, t: int, values: dict[str, Any], /) -> None:
         """Judge a sample that is in order, of plain values."""
@@ -118,13 +119,15 @@ class OnlineLibrary:
         self,
         absent: frozenset[str],
         *,
-        look_closer: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
+        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]],
+        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
     ) -> Core:
         """Begin a run.
 
         Args:
             absent: the names without a source.
-            look_closer: judges the samples that are not plain values in a `dict`.
+            look_closer: judges the samples that are not plain values in a `dict`, at seconds.
+            look_closer_ns: the same at ticks.
         """
         plan, names = self.plan, self.names
         called = (*plan.signals, *plan.events)
@@ -140,7 +143,7 @@ class OnlineLibrary:
             tuple(_labels(names, type_) for type_ in _field_types(plan, names)),
             {name: names.number(name) for name in called if name not in absent},
             bytes(name in absent for name in called),
-            look_closer,
+            (look_closer, look_closer_ns),
             RvmonError,
             (
                 Attempt,

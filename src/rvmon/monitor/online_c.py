@@ -43,10 +43,11 @@ class CompiledMonitor(Monitor):
         absent = frozenset() if sources is None else frozenset(names - sources)
         self._library = library
         self._ids = [one.requirement.id for one in requirements]
-        self._core = library.core(absent, look_closer=self.step_slowly)
+        self._core = library.core(absent, look_closer=super().step, look_closer_ns=self.step_slowly)
         super().__init__(compiled, requirements, "c", settle, sources)
         if self._intake is None:
-            self.__dict__["step_ns"] = self._core.step
+            self.__dict__["step"] = self._core.step
+            self.__dict__["step_ns"] = self._core.step_ns
 
     def _make_lanes(self) -> Lanes:
         return Lanes(self._compiled.checked, (), "auto", self._sources, self._ledger)

@@ -27,6 +27,13 @@ TICKS_PER_UNIT = {
 """Units of duration, each as a whole number of ticks."""
 
 
+_FAR = 4e9
+"""Seconds within `TIME_LIMIT`."""
+
+_SURE = 0.4999
+"""So near to a whole number, a product of a fraction and 1e9 is rounded as the exact one is."""
+
+
 def ticks_of_seconds(seconds: float | Fraction) -> int:
     """Round seconds to the nearest tick, once.
 
@@ -39,6 +46,12 @@ def ticks_of_seconds(seconds: float | Fraction) -> int:
     >>> ticks_of_seconds(0.1)
     100000000
     """
+    if seconds.__class__ is float and -_FAR < seconds < _FAR:
+        whole = int(seconds)
+        part = (seconds - whole) * 1e9  # the difference is exact, the product nearly
+        rest = round(part)
+        if -_SURE < part - rest < _SURE:
+            return whole * TICKS_PER_SECOND + rest
     if type(seconds) not in (float, int, Fraction):
         seconds = _plain(seconds)
     if isinstance(seconds, float) and not math.isfinite(seconds):

@@ -9,6 +9,7 @@ import weakref
 from collections import deque
 from dataclasses import replace
 from enum import StrEnum
+from fractions import Fraction
 from itertools import starmap
 
 import numpy as np
@@ -219,6 +220,27 @@ def test_a_wrong_call(spec):
     with pytest.raises(TypeError, match="unexpected"):
         monitor.step_ns(0, {}, other=1)
     assert monitor.step_ns(t_ns=0, values=FIRST) == ()
+
+
+@pytest.mark.parametrize(
+    "seconds",
+    [
+        *(0.1, 1e-9, 0.3e-9, 0.5e-9, 2**-10, 3 * 2**-10, 1 - 2**-53, 86400.000000001, 1.7e9 + 0.1),
+        *(-0.1, -1e-9, -(2**-10), -1.5, -1.7e9 - 0.1, -0.0, 1, -3, 4.4e9, -4.4e9, 4.7e9, -1e300),
+        *(math.nan, math.inf, np.float64(0.1), np.float32(0.1), np.int64(7), Fraction(1, 3), "1"),
+    ],
+)
+def test_seconds_are_rounded_as_by_every_monitor(spec, seconds):
+    """The same tick, or the same refusal, whatever the time is."""
+    found = []
+    for engine in ("c", "auto"):
+        monitor = spec.monitor(engine=engine)
+        monitor.step_ns(-(1 << 62) + 1, FIRST)
+        try:
+            found.append(told(monitor.step(seconds, {"speed": 3.0})))
+        except TraceError as error:
+            found.append(str(error))
+    assert found[0] == found[1] != []
 
 
 def test_advance_finish_reset(spec):

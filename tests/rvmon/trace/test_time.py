@@ -3,6 +3,8 @@
 from fractions import Fraction
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rvmon.errors import TraceError
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
@@ -27,3 +29,19 @@ def test_very_many_digits_are_refused(read):
     """An integer that Python would not write out is out of range like any other."""
     with pytest.raises(TraceError, match=r"time beyond 10\*\*30 n?s is out of range"):
         read(10**5000)
+
+
+@given(
+    st.one_of(
+        st.floats(-4.6e9, 4.6e9),
+        st.floats(-1e-6, 1e-6),
+        # Halves of a tick, and what stands right beside them.
+        st.tuples(st.integers(-(2**42), 2**42), st.sampled_from([-1, 0, 1])).map(
+            lambda pair: pair[0] * 2.0**-10 * (1 + pair[1] * 2.0**-52)
+        ),
+        st.integers(-(2**62) // 10, 2**62 // 10).map(lambda n: (n + 0.5) / 1e9),
+    )
+)
+def test_seconds_are_rounded_once(seconds):
+    """Floats give the tick nearest to what they stand for exactly, the even one of two."""
+    assert ticks_of_seconds(seconds) == round(Fraction(seconds) * 1_000_000_000)
