@@ -95,11 +95,13 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
                 raise UnknownNameError(f"no requirement `{name}`: there are {known}")
         chosen = [one for one in chosen if one.requirement.id in names]
     if compiled.checked.max_delay is not None:
-        raise RvmonError("generated code cannot sort samples: leave out `max delay`")
+        raise RvmonError(
+            "generated code cannot sort samples: leave out `max delay`, or use the engine `auto`"
+        )
     for one in chosen:
         if reason := _beyond(one):
             raise RvmonError(
                 f"{one.requirement.id} {reason}; generated code cannot judge it: "
-                "leave it out with --only, or use `rvmon run`"
+                "leave it out (`only`, --only), or use the engine `auto`"
             )
     return plan_requirements(compiled, chosen, explained=False)
