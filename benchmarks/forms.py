@@ -91,7 +91,7 @@ def online(spec: rvmon.Spec, given: Stream, engine: str) -> Form:
 def alone(spec: rvmon.Spec, given: Stream) -> Form:
     """The file that `rvmon compile --to python` writes."""
     namespace: dict[str, Any] = {"__name__": "generated_monitor"}
-    exec(compile(python_file(spec.plan()), "generated", "exec"), namespace)  # noqa: S102
+    exec(compile(python_file(spec.plan()), "generated", "exec"), namespace)  # noqa: S102 - our own source
 
     def once() -> tuple[float, Any]:
         monitor = namespace["SpecMonitor"]()

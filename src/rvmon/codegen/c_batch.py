@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,13 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.codegen.c_build import NATIVE, loaded
-from rvmon.codegen.c_exact import whole_limits
+from rvmon.codegen.c_exact import too_large, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.plan import Plan
-from rvmon.errors import RvmonError, TraceError
-from rvmon.trace.time import format_ticks
+from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -244,14 +242,6 @@ def _expect_exact(
         return
     row = int(np.flatnonzero((values < -limit) | (values > limit))[0])
     raise too_large(name, int(values[row]), limit, int(times[row]))
-
-
-def too_large(name: str, value: int, limit: int, t: int) -> TraceError:
-    """The error that a whole number of a sample is beyond what doubles compute with exactly."""
-    return TraceError(
-        f"sample at {format_ticks(t)}: `{name}` is {reprlib.repr(value)}, but compiled monitors "
-        f"compute with doubles, here exactly up to {limit} only: use the engine `auto`"
-    )
 
 
 def _laid(values: NDArray[Any] | None, kind: np.dtype[Any]) -> NDArray[Any] | None:

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.codegen.c_batch import NO, UNKNOWN, YES, Column, too_large
+from rvmon.codegen.c_batch import NO, UNKNOWN, YES, Column
+from rvmon.codegen.c_exact import several_payloads, too_large
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
-from rvmon.errors import TraceError
 from rvmon.trace.sample import Sample, Value
-from rvmon.trace.time import format_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,10 +66,7 @@ class _Columns:
     def set_event(self, event: str, row: int, value: Value, t: int) -> None:
         if isinstance(value, tuple):
             if len(value) > 1:
-                raise TraceError(
-                    f"sample at {format_ticks(t)}: {len(value)} payloads of `{event}`: compiled "
-                    "monitors take one at an instant"
-                )
+                raise several_payloads(event, len(value), t)
             value = value[0] if value else False
         self.states[event][row] = UNKNOWN if value is None else NO if value is False else YES
         if isinstance(value, Mapping):

@@ -1,13 +1,15 @@
-"""How large whole numbers may be, so that doubles compute with them as Python does."""
+"""What compiled monitors take: whole numbers that doubles compute with as Python does."""
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from typing import assert_never
 
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import operands
+from rvmon.errors import TraceError
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
@@ -20,7 +22,7 @@ from rvmon.spec.checked import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 
 EXACT = 1 << 53
 """Up to this magnitude doubles hold all whole numbers."""
@@ -42,6 +44,22 @@ def whole_limits(plan: Plan) -> Mapping[str, int]:
             if name is not None:
                 limits[name] = min(limits[name], limit)
     return limits
+
+
+def too_large(name: str, value: int, limit: int, t: int) -> TraceError:
+    """The error that a whole number of a sample is beyond what doubles compute with exactly."""
+    return TraceError(
+        f"sample at {format_ticks(t)}: `{name}` is {reprlib.repr(value)}, but compiled monitors "
+        f"compute with doubles, here exactly up to {limit} only: use the engine `auto`"
+    )
+
+
+def several_payloads(event: str, count: int, t: int) -> TraceError:
+    """The error that an instant has more payloads of an event than compiled monitors take."""
+    return TraceError(
+        f"sample at {format_ticks(t)}: {count} payloads of `{event}`: compiled monitors take one "
+        "at an instant"
+    )
 
 
 def _compared(plan: Plan) -> Iterator[Numeric]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from rvmon.codegen.c_exact import several_payloads, too_large
 from rvmon.codegen.c_online import NEVER, NOT_YET, OnlineLibrary, online_library
-from rvmon.errors import SnapshotError, TraceError
+from rvmon.errors import SnapshotError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import plan_alone
 from rvmon.trace.sample import Value
-from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
@@ -99,8 +99,6 @@ class CompiledMonitor(Monitor):
     def _expect_exact(self, name: str, value: object, t: int) -> None:
         limit = self._library.limits.get(name)
         if limit is not None and isinstance(value, int) and abs(value) > limit:
-            from rvmon.codegen.c_batch import too_large
-
             raise too_large(name, value, limit, t)
 
     def _flush(self) -> Sequence[Attempt]:
@@ -154,14 +152,6 @@ class CompiledMonitor(Monitor):
             return None
         found = self._core.next_due()
         return max(found, self._reached + 1) if found < NEVER else None
-
-
-def several_payloads(event: str, count: int, t: int) -> TraceError:
-    """The error that an instant has more payloads of an event than compiled monitors take."""
-    return TraceError(
-        f"sample at {format_ticks(t)}: {count} payloads of `{event}`: compiled monitors take one "
-        "at an instant"
-    )
 
 
 def compiled_monitor(

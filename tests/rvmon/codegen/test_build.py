@@ -117,6 +117,16 @@ def told(text: str) -> dict:
     }
 
 
+def said_alike(program, trace, capsys):
+    """What program and `rvmon run` both say of a recording."""
+    code = main(["run", str(program.spec), str(trace), "--format", "json"])
+    expected = told(capsys.readouterr().out)
+    done = program.judge(str(trace))
+    assert (done.returncode, done.stderr) == (code, "")
+    assert told(done.stdout) == expected
+    return expected
+
+
 @pytest.mark.parametrize(("ending", "text"), [(".csv", csv_text), (".jsonl", json_text)])
 @pytest.mark.parametrize("seed", range(4))
 def test_it_says_what_rvmon_run_says(program, tmp_path, capsys, ending, text, seed):
@@ -211,11 +221,7 @@ def test_json_that_says_a_thing_twice_or_otherwise(program, tmp_path, capsys, li
     """What a line says of one event in several ways counts as `rvmon run` counts it."""
     trace = tmp_path / "a.jsonl"
     trace.write_text(line + '\n{"t":3,"arm":{"speed":0.5}}\n', encoding="utf-8")
-    code = main(["run", str(program.spec), str(trace), "--format", "json"])
-    expected = told(capsys.readouterr().out)
-    done = program.judge(str(trace))
-    assert (done.returncode, done.stderr) == (code, "")
-    assert told(done.stdout) == expected
+    said_alike(program, trace, capsys)
 
 
 @pytest.mark.parametrize(
@@ -232,12 +238,7 @@ def test_csv_that_is_unusual_is_read_as_rvmon_run_does(program, tmp_path, capsys
     """Blank lines, marks of byte order, space and quotes within cells."""
     trace = tmp_path / "a.csv"
     trace.write_text(text, encoding="utf-8")
-    code = main(["run", str(program.spec), str(trace), "--format", "json"])
-    expected = told(capsys.readouterr().out)
-    done = program.judge(str(trace))
-    assert (done.returncode, done.stderr) == (code, "")
-    assert told(done.stdout) == expected
-    assert len(expected["R1"][2]) == 1
+    assert len(said_alike(program, trace, capsys)["R1"][2]) == 1
 
 
 def test_a_gap_that_starts_many_attempts(tmp_path, capsys, monkeypatch):
