@@ -2,101 +2,299 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
-from rvmon.errors import RvmonError
 from rvmon.spec.checked import (
     Bound,
     BoundAtom,
+    Compare,
     FieldValue,
     Mode,
     Requirement,
+    SignalAtom,
 )
 from rvmon.testing.kleene import Truth, conjunction, disjunction, negation
-from rvmon.testing.numbers import known_scalar, number
-from rvmon.testing.pulse import is_pulse
-from rvmon.testing.truths import Truths
+from rvmon.testing.numbers import is_born, known_scalar, number
+from rvmon.testing.truths import Rest, Truths
+from rvmon.testing.walk import subformulas
 from rvmon.testing.word import EventState, Letter, Word
 from rvmon.trace.sample import Payload, Scalar
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Start:
     """One attempt at its trigger.
 
     Attributes:
-        word: the trace as this instance of the requirement sees it.
-        position: of the trigger.
+        view: the requirement on the trace as this instance of it sees it.
+        position: of the trigger; of an attempt in doubt, the first at which there may be one.
+        owes: the positions at which something is owed; of a `whenever`, of its episode.
         captured: values of `let` and `for each`.
-        stop: the position at which the episode of a `whenever` ends; `None` if none is known.
+        blurred: by name of a `let`, the position from which on its value is taken for unknown.
+        stop: the first position that is none of its own, where it is over; `None` if none is known.
+        sure: the first of its positions at which the trigger is TRUE; `None`: it is in doubt.
     """
 
-    word: Word
+    view: View
     position: int
+    owes: Sequence[int]
     captured: Mapping[str, Scalar]
+    blurred: Mapping[str, int]
     stop: int | None = None
+    sure: int | None = None
+
+    @property
+    def word(self) -> Word:
+        """The trace as this instance sees it."""
+        return self.view.word
+
+    @property
+    def triggered(self) -> int:
+        """The instant of the trigger, ticks."""
+        return self.word.letters[self.position].instant
+
+    def captured_at(self, position: int) -> Mapping[str, Scalar]:
+        """The captured values by which it is judged what is owed at a position."""
+        if not self.blurred:
+            return self.captured
+        return {
+            name: None if self.blurred.get(name, position + 1) <= position else value
+            for name, value in self.captured.items()
+        }
+
+    def restarted(self, position: int) -> Start:
+        """What goes on of the episode as a new attempt."""
+        return replace(
+            self,
+            position=position,
+            owes=[k for k in self.owes if k >= position],
+            captured=self.captured_at(position),
+            sure=self.view.first_true(k for k in self.owes if k >= position),
+        )
 
 
-def starts(requirement: Requirement, word: Word) -> list[Start]:
-    """All attempts of a requirement on a word, in order of trigger.
+class View:
+    """A requirement on a word, or an instance of it, and the truth of its formulas there.
 
-    Raises:
-        RvmonError: the requirement's `pulse` is not what its trigger's syntax says.
-
-    Source: SEMANTICS, section 3; decision record 1 (Triggers, `whenever`, `for each`).
+    Args:
+        requirement: as checked.
+        word: the trace as it sees it.
+        captured: the value of its `for each`.
+        first: no attempt starts before this position.
+        doubted: whether it is not known that there is such an instance.
     """
-    if is_pulse(requirement.trigger) != requirement.pulse:
-        raise RvmonError(f"requirement {requirement.id}: its trigger's class is not its syntax's")
-    found = [
-        replace(start, captured={**instance.captured, **_captures(requirement, instance, start)})
-        for instance in _instances(requirement, word)
-        for start in _starts(requirement, instance)
-    ]
-    return sorted(found, key=lambda start: start.position)
+
+    def __init__(
+        self,
+        requirement: Requirement,
+        word: Word,
+        captured: Mapping[str, Scalar] | None = None,
+        first: int = 0,
+        *,
+        doubted: bool = False,
+    ) -> None:
+        self.requirement = requirement
+        self.word = word
+        self.captured = captured or {}
+        self.first = first
+        self.doubted = doubted
+        self._readings: dict[Rest, Readings] = {}
+
+    def readings(self, rest: Rest = Rest.UNKNOWN) -> Readings:
+        """The truth of formulas under an assumption on what is not known yet."""
+        return self._readings.setdefault(rest, Readings(self.word, rest))
+
+    @cached_property
+    def trigger(self) -> Sequence[Truth]:
+        """Of the trigger, at each position; what is not born is FALSE for it."""
+        if is_upon_end(self.requirement):
+            return [Truth.FALSE for _ in self.word.letters]
+        return [Truth.FALSE if one is Truth.UNBORN else one for one in self._trigger]
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the trigger was ever TRUE or FALSE."""
+        if is_upon_end(self.requirement):
+            return bool(self.word.letters)
+        return any(one in (Truth.TRUE, Truth.FALSE) for one in self._trigger)
+
+    @cached_property
+    def _trigger(self) -> Sequence[Truth]:
+        truths = Truths(self.word, self.captured)
+        return [truths.state(self.requirement.trigger, k) for k in range(len(self.word.letters))]
+
+    def edge(self, k: int) -> Truth:
+        """Whether an attempt `upon` the trigger starts at a position."""
+        now = self.trigger[k]
+        if self.requirement.pulse:
+            return now
+        return conjunction([now, negation(self.trigger[k - 1]) if k else Truth.TRUE])
+
+    def stretch(self, k: int) -> tuple[Sequence[int], int | None]:
+        """The positions from `k` on at which the trigger is not FALSE, and the one behind them."""
+        later = (j for j in range(k, len(self.trigger)) if self.trigger[j] is Truth.FALSE)
+        stop = next(later, None)
+        return range(k, len(self.trigger) if stop is None else stop), stop
+
+    def begin(self, position: int, owes: Sequence[int], stop: int | None) -> Start:
+        """An attempt that captures its values at a position."""
+        captured = self._captures(position)
+        hidden = (k for k in owes if self.doubted or self.edge(k) is Truth.UNKNOWN)
+        blurred: dict[str, int] = {}
+        for k in hidden if self.requirement.captures else ():
+            here = self._captures(k)
+            for capture in self.requirement.captures:
+                value = here[capture.name]
+                if value is None or value != captured[capture.name]:
+                    blurred.setdefault(capture.name, k)
+        return Start(self, position, owes, captured, blurred, stop, self.first_true(owes))
+
+    def first_true(self, positions: Iterable[int]) -> int | None:
+        """The first of some positions at which the trigger is surely TRUE."""
+        if self.doubted:
+            return None
+        return next((k for k in positions if self.trigger[k] is Truth.TRUE), None)
+
+    def _captures(self, position: int) -> dict[str, Scalar]:
+        letter = self.word.letters[position]
+        payloads = {
+            event: state.occurrences[-1].payload
+            for event, state in letter.events.items()
+            if state.occurrences
+        }
+        captured: dict[str, Scalar] = dict(self.captured)
+        for capture in self.requirement.captures:
+            captured[capture.name] = number(capture.value, letter, payloads, captured)
+        return captured
+
+    def is_unborn(self, position: int) -> bool:
+        """Whether something that the consequent reads has had no value by a position."""
+        letter = self.word.letters[position]
+        for part in subformulas(self.requirement.consequent):
+            if isinstance(part, SignalAtom) and not letter.signals[part.name].born:
+                return True
+            if isinstance(part, Compare) and not is_born(part, letter):
+                return True
+        return False
 
 
-def obligation(requirement: Requirement, start: Start, truths: Truths) -> Truth:
-    """The truth of what an attempt owes, after the prefix that `truths` speaks of.
+class Readings:
+    """The truth of formulas on a word by captured values; what is asked for often is kept.
 
-    Source: SEMANTICS, section 3; decision record 1 (`whenever`).
+    Args:
+        word: the trace.
+        rest: what is assumed of what is not known yet.
     """
-    if requirement.mode is Mode.UPON or is_upon_end(requirement):
-        return truths.truth(requirement.consequent, start.position)
+
+    def __init__(self, word: Word, rest: Rest) -> None:
+        self._word = word
+        self._rest = rest
+        self._reached = word.reached
+        self._made: dict[tuple[object, ...], Truths] = {}
+
+    def reach(self, reached: int) -> None:
+        """Speak of the prefix that is known at an instant; instants may only grow."""
+        self._reached = reached
+        for truths in self._made.values():
+            truths.reach(reached)
+
+    def of(self, captured: Mapping[str, Scalar], *, favour: bool = False) -> Truths:
+        """The truths under captured values."""
+        key = (favour, *((name, type(value), value) for name, value in captured.items()))
+        found = self._made.get(key)
+        if found is None:
+            found = self._made[key] = Truths(self._word, captured, self._rest, favour=favour)
+            found.reach(self._reached)
+        return found
+
+
+def obligation(start: Start, readings: Readings) -> Truth:
+    """The truth of what an attempt owes, after the prefix that the readings speak of.
+
+    Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, `whenever`); decision record 4.
+    """
+    requirement, view = start.view.requirement, start.view
+    if is_upon_end(requirement):
+        return readings.of(start.captured).truth(requirement.consequent, start.position)
+    truths = readings.of(start.captured)
     ended = start.stop is not None and start.stop < truths.known
-    last = start.stop if ended and start.stop is not None else truths.known
-    owed = [_implication(requirement, truths, k) for k in range(start.position, last)]
-    return conjunction([*owed, Truth.TRUE if ended else truths.release_rest(opened=True)])
+    owed = [_owed(start, readings, k) for k in start.owes if k < truths.known]
+    if requirement.mode is Mode.UPON and start.sure is not None:
+        return owed[0]
+    rest = Truth.TRUE if ended else truths.release_rest(opened=True)
+    if rest is Truth.FALSE and any(view.trigger[k] is Truth.UNKNOWN for k in start.owes):
+        rest = Truth.UNKNOWN  # the episode may have been over before
+    value = conjunction([*owed, rest])
+    if value is Truth.FALSE and start.sure is None:
+        return Truth.UNKNOWN
+    if value is Truth.TRUE and counts_in_favour(requirement):
+        last = start.stop if ended and start.stop is not None else truths.known - 1
+        return Truth.UNKNOWN if view.is_unborn(last) else value
+    return value
 
 
-def _implication(requirement: Requirement, truths: Truths, k: int) -> Truth:
-    trigger = truths.truth(requirement.trigger, k, positive=False)
-    return disjunction([negation(trigger), truths.truth(requirement.consequent, k)])
+def _owed(start: Start, readings: Readings, k: int) -> Truth:
+    requirement = start.view.requirement
+    truths = readings.of(start.captured_at(k), favour=counts_in_favour(requirement))
+    consequent = truths.truth(requirement.consequent, k)
+    if requirement.mode is Mode.UPON:
+        return consequent
+    return disjunction([negation(start.view.trigger[k]), consequent])
 
 
-@dataclass(frozen=True, slots=True)
-class _Instance:
-    """A requirement for one value of its `for each`; `first` is where that occurred first."""
-
-    word: Word
-    captured: Mapping[str, Scalar]
-    first: int = 0
+def counts_in_favour(requirement: Requirement) -> bool:
+    """Whether what is not born counts in favour: in the episodes of a level `whenever`."""
+    return requirement.mode is Mode.WHENEVER and not requirement.pulse
 
 
-def _instances(requirement: Requirement, word: Word) -> Iterator[_Instance]:
+def starts_upon(view: View) -> list[Start]:
+    """The attempts of a requirement `upon` a trigger, those in doubt included."""
+    if is_upon_end(view.requirement):
+        last = len(view.word.letters) - 1
+        if last < 0:
+            return []
+        return [replace(view.begin(last, [last], None), sure=last)]
+    found = []
+    edges = [view.edge(k) for k in range(len(view.trigger))]
+    k = view.first
+    while k < len(edges):
+        owes, stop = view.stretch(k)
+        sure = [] if view.doubted else [j for j in owes if edges[j] is Truth.TRUE]
+        found += [view.begin(j, [j], j + 1) for j in sure]
+        hidden = [j for j in owes if edges[j] is not Truth.FALSE and j not in sure]
+        if hidden:
+            one = view.begin(hidden[0], hidden, stop)
+            found.append(replace(one, sure=None))
+        k = (owes[-1] if owes else k) + 1
+    return found
+
+
+def views(requirement: Requirement, word: Word) -> list[View]:
+    """The instances of a requirement on a word: of `for each` one per value, else one.
+
+    That of occurrences whose value is unknown comes first; it is doubted.
+
+    Source: SEMANTICS, section 3 (Doubt); decision record 1 (`for each`).
+    """
     each = requirement.for_each
     if each is None:
-        yield _Instance(word, {})
-        return
+        return [View(requirement, word)]
     first_at: dict[Scalar, int] = {}
     for position, letter in enumerate(word.letters):
         for occurrence in letter.events[each.value.event].occurrences:
-            value = _field(occurrence.payload, each.value)
-            if value is not None:
-                first_at.setdefault(value, position)
-    for value, first in first_at.items():
-        letters = tuple(_only(letter, each.value, value) for letter in word.letters)
-        yield _Instance(replace(word, letters=letters), {each.name: value}, first)
+            first_at.setdefault(_field(occurrence.payload, each.value), position)
+    return [
+        View(
+            requirement,
+            replace(word, letters=tuple(_only(one, each.value, value) for one in word.letters)),
+            {each.name: value},
+            first_at.get(value, len(word.letters)),
+            doubted=value is None,
+        )
+        for value in (None, *(value for value in first_at if value is not None))
+    ]
 
 
 def _field(payload: Payload, field: FieldValue) -> Scalar:
@@ -116,47 +314,6 @@ def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
     )
     state = EventState(updated=bool(kept), occurrences=kept)
     return replace(letter, events={**letter.events, field.event: state})
-
-
-def _starts(requirement: Requirement, instance: _Instance) -> Iterator[Start]:
-    word = instance.word
-    if is_upon_end(requirement):
-        if word.letters:
-            yield Start(word, len(word.letters) - 1, {})
-        return
-    truths = Truths(word, instance.captured)
-    trigger = [truths.truth(requirement.trigger, k) for k in range(truths.known)]
-    running_to = 0
-    for k, value in enumerate(trigger):
-        edge = requirement.pulse or _rises(trigger, k)
-        if value is not Truth.TRUE or not edge or k < max(instance.first, running_to):
-            continue
-        stop = None
-        if requirement.mode is Mode.WHENEVER:
-            later = (j for j in range(k, len(trigger)) if trigger[j] is Truth.FALSE)
-            stop = next(later, None)
-            running_to = len(trigger) if stop is None else stop
-        yield Start(word, k, {}, stop)
-
-
-def _rises(trigger: list[Truth], k: int) -> bool:
-    """Whether the trigger was false at the position before, or never known so far."""
-    if k and trigger[k - 1] is Truth.FALSE:
-        return True
-    return all(value is Truth.UNKNOWN for value in trigger[:k])
-
-
-def _captures(requirement: Requirement, instance: _Instance, start: Start) -> dict[str, Scalar]:
-    letter = instance.word.letters[start.position]
-    payloads = {
-        event: state.occurrences[-1].payload
-        for event, state in letter.events.items()
-        if state.occurrences
-    }
-    captured: dict[str, Scalar] = dict(instance.captured)
-    for capture in requirement.captures:
-        captured[capture.name] = number(capture.value, letter, payloads, captured)
-    return captured
 
 
 def is_upon_end(requirement: Requirement) -> bool:

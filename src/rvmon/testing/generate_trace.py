@@ -48,9 +48,10 @@ def random_trace(dice: Dice, spec: CheckedSpec, profile: TraceProfile) -> Case:
         names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(dice, 20))
     # Some sensors fail often: what was known before they did then matters, above all to instances
     # that begin later.
-    often = 40 if any(one.for_each for one in spec.requirements.values()) else 10
+    often = 40 if any(one.for_each for one in spec.requirements.values()) else 25
     unknown = (30 if chance(dice, often) else 5) if profile.unknowns else 0
-    values = _Values(spec, numbers, names, unknown, _several(spec))
+    late = {name: dice.randint(1, 5) for name in spec.signals if chance(dice, 20)}
+    values = _Values(spec, numbers, names, unknown, _several(spec), late)
     time = start = pick(dice, (0, 1, 5, -3))
     actions: list[Sample | int] = []
     for index in range(dice.randint(0 if chance(dice, 5) else 1, profile.samples)):
@@ -61,7 +62,7 @@ def random_trace(dice: Dice, spec: CheckedSpec, profile: TraceProfile) -> Case:
             time += gap
         if time - start > profile.span:
             break
-        actions.append(Sample(time, values.sample(dice, first=index == 0)))
+        actions.append(Sample(time, values.sample(dice, index)))
     if profile.advances and chance(dice, 25):
         time += _gap(dice, gaps)
         actions.append(time)
@@ -117,19 +118,29 @@ def _several(spec: CheckedSpec) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class _Values:
-    """How to draw the values of one sample; `unknown` per cent of them are not known."""
+    """How to draw the values of one sample; `unknown` per cent of them are not known.
+
+    Signals that are `late` have nothing to say before so many samples, or that it is not known.
+    """
 
     spec: CheckedSpec
     numbers: Sequence[int | float]
     names: frozenset[str] | None
     unknown: int
     several: frozenset[str]
+    late: Mapping[str, int]
 
-    def sample(self, dice: Dice, *, first: bool) -> dict[str, Value]:
-        """Random updates; most signals get a value in the first sample."""
+    def sample(self, dice: Dice, index: int) -> dict[str, Value]:
+        """Random updates; most signals get a value in the first sample that may bring one."""
         values: dict[str, Value] = {}
         for name, signal in self.spec.signals.items():
-            if self._has_source(name) and chance(dice, 85 if first else 35):
+            first = self.late.get(name, 0)
+            if not self._has_source(name):
+                continue
+            if index < first:
+                if self.unknown and chance(dice, 10):
+                    values[name] = None
+            elif chance(dice, 85 if index == first else 35):
                 values[name] = self._scalar(dice, signal.type)
         for name, event in self.spec.events.items():
             if self._has_source(name) and chance(dice, 30):

@@ -1,4 +1,4 @@
-"""Kleene's three truth values."""
+"""Kleene's three truth values, and the fourth of what is not there yet."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ from enum import IntEnum
 
 
 class Truth(IntEnum):
-    """Ordered, so that `and` is the least and `or` the greatest of its operands."""
+    """The truth of a formula at a position."""
 
     FALSE = 0
     UNKNOWN = 1
     TRUE = 2
+    UNBORN = 3
+    """Of the present and past only: it speaks of signals that have had no value so far."""
 
 
-_NEGATION = (Truth.TRUE, Truth.UNKNOWN, Truth.FALSE)
+_NEGATION = (Truth.TRUE, Truth.UNKNOWN, Truth.FALSE, Truth.UNBORN)
 
 
 def negation(value: Truth) -> Truth:
@@ -27,13 +29,22 @@ def negation(value: Truth) -> Truth:
 
 
 def conjunction(values: Iterable[Truth]) -> Truth:
-    """TRUE if all are, FALSE if any is; of nothing TRUE."""
-    return min(values, default=Truth.TRUE)
+    """FALSE if any is, else UNKNOWN if any is, else UNBORN if any is; of nothing TRUE.
+
+    >>> conjunction([Truth.UNBORN, Truth.TRUE]).name, conjunction([Truth.UNBORN, Truth.UNKNOWN]).name
+    ('UNBORN', 'UNKNOWN')
+    """
+    return _first(values, (Truth.FALSE, Truth.UNKNOWN, Truth.UNBORN), Truth.TRUE)
 
 
 def disjunction(values: Iterable[Truth]) -> Truth:
-    """TRUE if any is, FALSE if all are; of nothing FALSE."""
-    return max(values, default=Truth.FALSE)
+    """TRUE if any is, else UNKNOWN if any is, else UNBORN if any is; of nothing FALSE."""
+    return _first(values, (Truth.TRUE, Truth.UNKNOWN, Truth.UNBORN), Truth.FALSE)
+
+
+def _first(values: Iterable[Truth], order: Iterable[Truth], default: Truth) -> Truth:
+    seen = set(values)
+    return next((value for value in order if value in seen), default)
 
 
 def truth_of(value: bool) -> Truth:

@@ -21,6 +21,7 @@ from rvmon.spec.checked import (
     UpdateValue,
 )
 from rvmon.testing.kleene import Truth, conjunction, disjunction, truth_of
+from rvmon.testing.walk import parts_of
 from rvmon.testing.word import Letter
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -31,12 +32,15 @@ def compare(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar])
 
     Of several occurrences (or pairs of occurrences of two events) one has to satisfy it.
 
-    Source: SEMANTICS, section 1 (Unknown).
+    Source: SEMANTICS, section 1 (Unknown, Birth).
     """
     events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
     choices = product(*(letter.events[event].occurrences for event in events))
+    born = is_born(comparison, letter)
 
     def holds(payloads: Mapping[str, Payload]) -> Truth:
+        if not born:
+            return Truth.UNBORN
         left = number(comparison.left, letter, payloads, captured)
         right = number(comparison.right, letter, payloads, captured)
         if left is None or right is None:
@@ -51,6 +55,18 @@ def compare(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar])
             ]
         )
         for choice in choices
+    )
+
+
+def is_born(comparison: Compare, letter: Letter) -> bool:
+    """Whether all signals of a comparison have had what it reads of them."""
+    return all(
+        letter.signals[part.name].moved
+        if isinstance(part, UpdateValue)
+        else letter.signals[part.name].born
+        for side in (comparison.left, comparison.right)
+        for part in parts_of(side)
+        if isinstance(part, SignalValue | UpdateValue)
     )
 
 

@@ -8,7 +8,6 @@ shares no code with them. Traces have to be short: every tick of held time is a 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 from rvmon.errors import TraceError
@@ -17,12 +16,13 @@ from rvmon.spec.checked import (
     EndPolicy,
     Requirement,
 )
-from rvmon.testing.attempts import Start, is_upon_end, obligation, starts
+from rvmon.testing.attempts import Start, is_upon_end, obligation
+from rvmon.testing.follow import Followed, Followings, follow
 from rvmon.testing.kleene import Truth
-from rvmon.testing.truths import Rest, Truths
+from rvmon.testing.truths import Rest
 from rvmon.testing.word import Word
 from rvmon.testing.wording import word_of
-from rvmon.trace.sample import Sample, Scalar, Trace, Value
+from rvmon.trace.sample import Sample, Trace, Value
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
@@ -65,7 +65,7 @@ def evaluate(
 
     Cost: without bound on purpose; some milliseconds for a dozen samples within forty ticks.
 
-    Source: SEMANTICS, sections 1 to 3; decision record 1.
+    Source: SEMANTICS, sections 1 to 3; decision records 1 and 4.
     """
     checked = spec if isinstance(spec, CheckedSpec) else spec.checked
     if isinstance(samples, Trace):
@@ -73,22 +73,14 @@ def evaluate(
         names = samples.names if names is None else names
     listed = [entry if isinstance(entry, Sample) else Sample(*entry) for entry in samples]
     word = word_of(checked, listed, end=end, advances=advances, names=names)
-    followed = follow(checked, word, listed)
-    return report_on(checked, followed, origin=listed[0].t if listed else 0, end=word.end)
+    followings = judge_views(checked, word, listed)
+    return report_on(checked, followings, origin=listed[0].t if listed else 0, end=word.end)
 
 
-@dataclass(frozen=True, slots=True)
-class Followed:
-    """One attempt, and the first instant at which the prefix decides it, with its truth then."""
-
-    start: Start
-    decided: tuple[int, Truth] | None
-
-
-def follow(
+def judge_views(
     spec: CheckedSpec, word: Word, samples: Sequence[Sample]
-) -> dict[str, Sequence[Followed]]:
-    """The attempts of each requirement on a word, in order of trigger.
+) -> dict[str, Followings]:
+    """What is judged of each requirement on a word, with its attempts.
 
     Args:
         spec: gives the requirements.
@@ -97,83 +89,63 @@ def follow(
 
     Raises:
         TraceError: two payloads of an event, though not every requirement is a `for each`.
+        RvmonError: a requirement's `pulse` is not what its trigger's syntax says.
     """
     _refuse_double_payloads(spec.requirements.values(), samples)
-    found: dict[str, Sequence[Followed]] = {}
-    for name, requirement in spec.requirements.items():
-        begun = starts(requirement, word)
-        decisions = _decisions(requirement, word, begun)
-        found[name] = [Followed(*pair) for pair in zip(begun, decisions, strict=True)]
-    return found
+    return {name: follow(one, word) for name, one in spec.requirements.items()}
 
 
 def report_on(
-    spec: CheckedSpec, followed: Mapping[str, Sequence[Followed]], *, origin: int, end: int | None
+    spec: CheckedSpec, followings: Mapping[str, Followings], *, origin: int, end: int | None
 ) -> Report:
     """The report on attempts that were followed to the end of the trace.
 
     Args:
         spec: gives the requirements.
-        followed: by requirement, from `follow`.
+        followings: by requirement, from `judge_views`.
         origin: the instant of the first sample.
         end: the last instant whose letter is known.
     """
     attempts = [
-        _record(spec.requirements[name], one.start, number, one.decided)
-        for name, begun in followed.items()
-        for number, one in enumerate(begun, start=1)
+        record
+        for one in followings.values()
+        for followed in one.attempts
+        if (record := _record(followed)) is not None
     ]
-    return report_of(tuple(spec.requirements), attempts, origin=origin, end=end)
+    untold = [name for name, one in followings.items() if not one.is_told]
+    return report_of(tuple(spec.requirements), attempts, untold=untold, origin=origin, end=end)
 
 
-def _decisions(
-    requirement: Requirement, word: Word, begun: Sequence[Start]
-) -> list[tuple[int, Truth] | None]:
-    """For each attempt the first instant at which its truth is not UNKNOWN, and that truth."""
-    found: list[tuple[int, Truth] | None] = [None] * len(begun)
-    if not begun:
-        return found
-    # Attempts with the same word and captured values share what they remember.
-    shared: dict[tuple[int, tuple[tuple[str, Scalar], ...]], Truths] = {}
-    keys = [(id(start.word), tuple(start.captured.items())) for start in begun]
-    for start, key in zip(begun, keys, strict=True):
-        shared.setdefault(key, Truths(start.word, start.captured))
-    first = word.letters[begun[0].position].instant
-    for reached in range(first, word.reached + 1):
-        for truths in shared.values():
-            truths.reach(reached)
-        for n, start in enumerate(begun):
-            if found[n] is None and word.letters[start.position].instant <= reached:
-                truth = obligation(requirement, start, shared[keys[n]])
-                if truth is not Truth.UNKNOWN:
-                    found[n] = (reached, truth)
-    return found
-
-
-def _record(
-    requirement: Requirement, start: Start, number: int, decided: tuple[int, Truth] | None
-) -> Attempt:
-    triggered = start.word.letters[start.position].instant
+def _record(followed: Followed) -> Attempt | None:
+    """The record of an attempt; of one in doubt whose obligation was met there is none."""
+    start = followed.start
+    requirement = start.view.requirement
+    triggered = start.triggered
     end = start.word.end
     assert end is not None, "a word with positions has an end"  # noqa: S101
     instant: int | None
-    if decided is not None:
-        instant, truth = decided
+    if followed.decided is not None:
+        instant, truth = followed.decided
         verdict = Verdict.PASS if truth is Truth.TRUE else Verdict.FAIL
         decision = Decision.PREFIX
     else:
         verdict, decision = _settle(requirement, start)
         instant = None if verdict is Verdict.INCONCLUSIVE else end
+    if start.sure is None:
+        if verdict is Verdict.PASS:
+            return None
+        verdict, decision, instant = Verdict.INCONCLUSIVE, Decision.OPEN, None
     if is_upon_end(requirement):
         triggered = end
         instant = None if instant is None else end
     return Attempt(
         requirement.id,
-        number,
+        followed.number if start.sure is not None else followed.doubtful_number,
         triggered,
         instant,
         verdict,
         decision,
+        in_doubt=start.sure is None,
         captured=dict(start.captured),
     )
 
@@ -181,11 +153,11 @@ def _record(
 def _settle(requirement: Requirement, start: Start) -> tuple[Verdict, Decision]:
     """What becomes of an undecided attempt at the end of the trace.
 
-    Source: SEMANTICS, section 3 (The end); decision record 1 (The end, Policies).
+    Source: SEMANTICS, section 3 (The end, Doubt); decision records 1 (The end, Policies) and 4.
     """
 
     def under(rest: Rest) -> Truth:
-        return obligation(requirement, start, Truths(start.word, start.captured, rest))
+        return obligation(start, start.view.readings(rest))
 
     open_ = (Verdict.INCONCLUSIVE, Decision.OPEN)
     match requirement.at_end:
@@ -200,7 +172,7 @@ def _settle(requirement: Requirement, start: Start) -> tuple[Verdict, Decision]:
             failed = under(Rest.STRONG) is Truth.FALSE
             return (Verdict.FAIL, Decision.POLICY) if failed else open_
         case EndPolicy.PASS | EndPolicy.FAIL:
-            if Truth.UNKNOWN in (under(Rest.WEAK), under(Rest.STRONG)):
+            if start.sure is None or Truth.UNKNOWN in (under(Rest.WEAK), under(Rest.STRONG)):
                 return open_
             passed = requirement.at_end is EndPolicy.PASS
             return (Verdict.PASS if passed else Verdict.FAIL), Decision.POLICY

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from enum import Enum, auto
-from typing import assert_never
+from typing import Protocol, assert_never
 
 from rvmon.spec.checked import (
     Binary,
@@ -24,6 +24,7 @@ from rvmon.spec.checked import (
 )
 from rvmon.testing.kleene import Truth, conjunction, disjunction, negation, truth_of
 from rvmon.testing.numbers import compare
+from rvmon.testing.walk import is_proposition
 from rvmon.testing.word import Letter, Word
 from rvmon.trace.sample import Scalar
 
@@ -56,19 +57,27 @@ class Truths:
         word: the trace.
         captured: values of `let` and `for each`.
         rest: what is assumed of what is not known yet.
+        favour: whether a proposition that is not born counts in favour, or else as unknown.
 
-    Source: SEMANTICS, section 2; decision record 1.
+    Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
 
     def __init__(
-        self, word: Word, captured: Mapping[str, Scalar], rest: Rest = Rest.UNKNOWN
+        self,
+        word: Word,
+        captured: Mapping[str, Scalar],
+        rest: Rest = Rest.UNKNOWN,
+        *,
+        favour: bool = False,
     ) -> None:
         self._letters = word.letters
         self._end = word.end
         self._captured = captured
         self._rest = rest
+        self._favour = favour
         self._settled: dict[tuple[int, int, bool], Truth] = {}
         self._pending: dict[tuple[int, int, bool], Truth] = {}
+        self._states: dict[tuple[int, int], Truth] = {}
         self._reached = word.reached
         self._known = 0
         self.reach(word.reached)
@@ -88,13 +97,13 @@ class Truths:
         return self._known
 
     def truth(self, formula: Formula, i: int, *, positive: bool = True) -> Truth:
-        """The truth of a formula at a known position.
+        """The truth of what is owed, at a known position: never UNBORN.
 
         Args:
             formula: any.
             i: the position.
-            positive: whether an even number of negations stands above the formula; it matters
-                for the rest of its operators only.
+            positive: whether an even number of negations stands above the formula; it matters for
+                the rest of its operators, and for what counts in favour.
         """
         key = (id(formula), i, positive)
         value = self._settled.get(key)
@@ -104,6 +113,51 @@ class Truths:
             value = self._truth(formula, i, positive)
             (self._pending if value is Truth.UNKNOWN else self._settled)[key] = value
         return value
+
+    def _truth(self, formula: Formula, i: int, positive: bool) -> Truth:
+        if is_proposition(formula):
+            value = self.state(formula, i)
+            if value is not Truth.UNBORN:
+                return value
+            return truth_of(positive) if self._favour else Truth.UNKNOWN
+
+        def sub(part: Formula, k: int, same: bool = True) -> Truth:
+            return self.truth(part, k, positive=positive is same)
+
+        return self._composed(formula, i, positive, sub)
+
+    def state(self, formula: Formula, i: int) -> Truth:
+        """The truth of a formula of the present and past at a position; it may be UNBORN."""
+        key = (id(formula), i)
+        value = self._states.get(key)
+        if value is None:
+            value = self._states[key] = self._state(formula, i)
+        return value
+
+    def _state(self, formula: Formula, i: int) -> Truth:
+        letter = self._letters[i]
+        match formula:
+            case Constant(value=value):
+                return truth_of(value)
+            case SignalAtom(name=name):
+                held = letter.signals[name]
+                if held.value is None:
+                    return Truth.UNKNOWN if held.born else Truth.UNBORN
+                return truth_of(bool(held.value))
+            case EventAtom(name=name):
+                return disjunction(o.truth for o in letter.events[name].occurrences)
+            case Compare():
+                return compare(formula, letter, self._captured)
+            case ProbeAtom(probe=probe, name=name):
+                return _probe(probe, name, letter)
+            case BoundAtom(bound=bound):
+                if bound is Bound.END:
+                    raise ValueError("`end` stands alone as a trigger, never inside a formula")
+                return truth_of(i == 0)
+            case Unary() | Binary():
+                return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
+            case _:
+                assert_never(formula)
 
     def release_rest(self, opened: bool) -> Truth:
         """What the rest of an unbounded `R` counts as; `opened`: whether its window has."""
@@ -121,39 +175,24 @@ class Truths:
         """What the rest of any other pending operator counts as."""
         return self.release_rest(opened=False)
 
-    def _truth(self, formula: Formula, i: int, positive: bool) -> Truth:
-        letter = self._letters[i]
+    def _composed(self, formula: Formula, i: int, positive: bool, sub: Sub) -> Truth:
+        """The truth of an operator, from that of its operands at positions."""
         match formula:
-            case Constant(value=value):
-                return truth_of(value)
-            case SignalAtom(name=name):
-                held = letter.signals[name].value
-                return Truth.UNKNOWN if held is None else truth_of(bool(held))
-            case EventAtom(name=name):
-                return disjunction(o.truth for o in letter.events[name].occurrences)
-            case Compare():
-                return compare(formula, letter, self._captured)
-            case ProbeAtom(probe=probe, name=name):
-                return _probe(probe, name, letter)
-            case BoundAtom(bound=bound):
-                if bound is Bound.END:
-                    raise ValueError("`end` stands alone as a trigger, never inside a formula")
-                return truth_of(i == 0)
             case Unary():
-                return self._unary(formula, i, positive)
+                return self._unary(formula, i, positive, sub)
             case Binary():
-                return self._binary(formula, i, positive)
+                return self._binary(formula, i, positive, sub)
             case _:
-                assert_never(formula)
+                raise AssertionError("atoms are not composed")
 
-    def _unary(self, formula: Unary, i: int, positive: bool) -> Truth:
+    def _unary(self, formula: Unary, i: int, positive: bool, sub: Sub) -> Truth:
         interval = formula.interval or EVER
 
         def operand(k: int) -> Truth:
-            return self.truth(formula.operand, k, positive=positive)
+            return sub(formula.operand, k)
 
         def negated(k: int) -> Truth:
-            return negation(self.truth(formula.operand, k, positive=not positive))
+            return negation(sub(formula.operand, k, False))
 
         match formula.op:
             case UnaryOp.NOT:
@@ -171,33 +210,30 @@ class Truths:
             case UnaryOp.HISTORICALLY:
                 return self._historically(operand, i, interval)
             case UnaryOp.HELD:
-                start, now = self._letters[0].instant, self._letters[i].instant
-                long_enough = interval.high is not None and now - start >= interval.high
-                whole = self._historically(operand, i, interval)
-                return conjunction([truth_of(long_enough), whole])
+                return self._held(operand, i, interval)
             case UnaryOp.RISE:  # φ and not previous φ
-                before = negated(i - 1) if i else Truth.TRUE
+                before = _born_or_true(negated(i - 1)) if i else Truth.TRUE
                 return conjunction([operand(i), before])
             case UnaryOp.FALL:  # not φ and previous φ
-                before = operand(i - 1) if i else Truth.FALSE
+                before = _born_or_false(operand(i - 1)) if i else Truth.FALSE
                 return conjunction([negated(i), before])
             case _:
                 assert_never(formula.op)
 
-    def _binary(self, formula: Binary, i: int, positive: bool) -> Truth:
+    def _binary(self, formula: Binary, i: int, positive: bool, sub: Sub) -> Truth:
         interval = formula.interval or EVER
 
         def left(k: int) -> Truth:
-            return self.truth(formula.left, k, positive=positive)
+            return sub(formula.left, k)
 
         def right(k: int) -> Truth:
-            return self.truth(formula.right, k, positive=positive)
+            return sub(formula.right, k)
 
         def not_left(k: int) -> Truth:
-            return negation(self.truth(formula.left, k, positive=not positive))
+            return negation(sub(formula.left, k, False))
 
         def not_right(k: int) -> Truth:
-            return negation(self.truth(formula.right, k, positive=not positive))
+            return negation(sub(formula.right, k, False))
 
         match formula.op:
             case BinaryOp.AND:
@@ -277,23 +313,51 @@ class Truths:
         return value if over else disjunction([value, conjunction([so_far, rest])])
 
     def _since(self, left: Operand, right: Operand, i: int, interval: Interval) -> Truth:
-        """Some position of the window had `right`, and all after it, up to `i`, have `left`."""
+        """Some position of the window had `right`, and all after it, up to `i`, have `left`.
+
+        Positions at which an operand is not born are passed over; if `right` is at none of the
+        window, the whole is not.
+        """
         now = self._letters[i].instant
         value, so_far = Truth.FALSE, Truth.TRUE
+        unborn = 0
+        born = False
         for j in range(i, -1, -1):
             if _within(now - self._letters[j].instant, interval):
-                value = disjunction([value, conjunction([so_far, right(j)])])
-            so_far = conjunction([so_far, left(j)])
-            if value is Truth.TRUE or so_far is Truth.FALSE:
-                break
-        return value
+                there = right(j)
+                if there is Truth.UNBORN:
+                    unborn += 1
+                else:
+                    born = True
+                    value = disjunction([value, conjunction([so_far, there])])
+            so_far = conjunction([so_far, _born_or_true(left(j))])
+            if value is Truth.TRUE or (born and so_far is Truth.FALSE):
+                return value
+        return Truth.UNBORN if unborn and not born else value
 
     def _historically(self, operand: Operand, i: int, interval: Interval) -> Truth:
         return negation(self._since(_true, _not(operand), i, interval))
 
+    def _held(self, operand: Operand, i: int, interval: Interval) -> Truth:
+        """All positions of the window had it, which has to lie behind its birth whole."""
+        start, now = self._letters[0].instant, self._letters[i].instant
+        window = [k for k in range(i + 1) if _within(now - self._letters[k].instant, interval)]
+        values = [operand(k) for k in window]
+        if window and all(value is Truth.UNBORN for value in values):
+            return Truth.UNBORN
+        long_enough = interval.high is not None and now - start >= interval.high
+        return conjunction([truth_of(long_enough), *(_born_or_false(value) for value in values)])
+
 
 Operand = Callable[[int], Truth]
 """The truth of an operand at a position."""
+
+
+class Sub(Protocol):
+    """The truth of an operand at a position; `same`: no negation stands between."""
+
+    def __call__(self, part: Formula, k: int, same: bool = True, /) -> Truth:
+        """Work it out."""
 
 
 def _true(_: int) -> Truth:
@@ -306,6 +370,14 @@ def _false(_: int) -> Truth:
 
 def _not(operand: Operand) -> Operand:
     return lambda k: negation(operand(k))
+
+
+def _born_or_true(value: Truth) -> Truth:
+    return Truth.TRUE if value is Truth.UNBORN else value
+
+
+def _born_or_false(value: Truth) -> Truth:
+    return Truth.FALSE if value is Truth.UNBORN else value
 
 
 def _within(distance: int, interval: Interval) -> bool:

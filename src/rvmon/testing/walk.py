@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.spec.checked import Arithmetic, Binary, Compare, Formula, Interval, Numeric, Unary
+from rvmon.spec.checked import (
+    Arithmetic,
+    Binary,
+    BinaryOp,
+    Compare,
+    Formula,
+    Interval,
+    Numeric,
+    Unary,
+    UnaryOp,
+)
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:
@@ -18,6 +28,30 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
             yield from subformulas(right)
         case _:
             return
+
+
+_FUTURE = {
+    *(UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS),
+    *(BinaryOp.UNTIL, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE),
+}
+
+_BOOLEAN = {
+    *(UnaryOp.NOT, BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES, BinaryOp.IFF, BinaryOp.XOR),
+}
+
+
+def speaks_of_future(formula: Formula) -> bool:
+    """Whether a formula speaks of later positions."""
+    return any(
+        isinstance(part, Unary | Binary) and part.op in _FUTURE for part in subformulas(formula)
+    )
+
+
+def is_proposition(formula: Formula) -> bool:
+    """Whether it is read off the trace so far, and no combination of what is."""
+    if isinstance(formula, Unary | Binary):
+        return formula.op not in _BOOLEAN and not speaks_of_future(formula)
+    return True
 
 
 def intervals(formula: Formula) -> Iterator[Interval]:

@@ -27,6 +27,8 @@ class SignalState:
         changed: whether an update to another value does.
         last: the last update so far.
         before: the one before that.
+        born: whether an update has brought a known value so far.
+        moved: whether one came after the first that did.
     """
 
     value: Scalar = None
@@ -34,6 +36,8 @@ class SignalState:
     changed: Truth = Truth.FALSE
     last: Update | None = None
     before: Update | None = None
+    born: bool = False
+    moved: bool = False
 
 
 @dataclass(frozen=True, slots=True)

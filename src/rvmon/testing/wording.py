@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
+from itertools import dropwhile, pairwise
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.spec.checked import CheckedSpec, TimeModel
@@ -128,12 +128,15 @@ def _signal(
     pairs = list(pairwise(updates))
     last = updates[-1]
     stale = stale_after is not None and instant > last.t + stale_after
+    since_birth = list(dropwhile(lambda update: update.value is None, updates))
     return SignalState(
         value=None if stale else last.value,
         updated=count > 0,
         changed=disjunction(_differ(a, b) for a, b in pairs[max(len(updates) - 1 - count, 0) :]),
         last=last,
         before=updates[-2] if len(updates) > 1 else None,
+        born=bool(since_birth),
+        moved=len(since_birth) > 1,
     )
 
 

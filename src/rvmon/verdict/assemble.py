@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
@@ -17,6 +17,7 @@ def report_of(
     attempts: Iterable[Attempt],
     *,
     health: Sequence[Health] = (),
+    untold: Collection[str] = (),
     trace: str = "",
     origin: int = 0,
     end: int | None = None,
@@ -27,6 +28,8 @@ def report_of(
         requirements: all ids that were judged, in the order of the file.
         attempts: of these requirements, in any order.
         health: findings about the input.
+        untold: the ids of those whose trigger was never true or false: without attempts, they are
+            inconclusive.
         trace: name of the recording.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the trace, ticks.
@@ -40,16 +43,18 @@ def report_of(
     """
     rank = {name: index for index, name in enumerate(requirements)}
 
-    def order(attempt: Attempt) -> tuple[bool, int, int, int]:
-        decided = attempt.decided
-        return (decided is None, decided or 0, rank[attempt.requirement], attempt.number)
+    def order(attempt: Attempt) -> tuple[bool, int, int, bool, int]:
+        decided, place = attempt.decided, rank[attempt.requirement]
+        return (decided is None, decided or 0, place, attempt.in_doubt, attempt.number)
 
     ordered = tuple(sorted(attempts, key=order))
     by_requirement: dict[str, list[Verdict]] = {name: [] for name in requirements}
     for attempt in ordered:
         by_requirement[attempt.requirement].append(attempt.verdict)
     return Report(
-        verdicts={name: fold(seen) for name, seen in by_requirement.items()},
+        verdicts={
+            name: fold(seen, told=name not in untold) for name, seen in by_requirement.items()
+        },
         attempts=ordered,
         counts={
             name: {verdict: seen.count(verdict) for verdict in _ATTEMPT_VERDICTS}

@@ -73,8 +73,10 @@ class Attempt(_Later):
 
     Attributes:
         requirement: its id.
-        number: from 1, in order of trigger, per requirement.
-        triggered: instant of the trigger, ticks.
+        number: from 1 per requirement, in the order in which triggers became certain; attempts in
+            doubt have numbers of their own, in the order of their starts.
+        triggered: instant of the trigger, ticks; of an attempt in doubt, the first at which there
+            may have been one.
         decided: the first instant at which the prefix left one value; the end of the trace
             for what the end rule or a policy settled; `None` for `I`.
         verdict: `P`, `F` or `I` (undecided).
@@ -88,6 +90,7 @@ class Attempt(_Later):
         captured: values captured by `let` and `for each`.
         blame: what failed, for `F`.
         forecast: `P` or `F` if no continuation can change that any more, though undecided.
+        in_doubt: whether it is not known that there was a trigger: it is `I`, or undecided.
         robustness: how far from the other verdict at least, in SI units, where somebody measured.
     """
 
@@ -106,6 +109,16 @@ class Attempt(_Later):
     blame: Blame | None = None
     forecast: Verdict | None = None
     robustness: float | None = None
+    in_doubt: bool = False
+
+    @property
+    def name(self) -> str:
+        """How people name it.
+
+        >>> Attempt("R1", 2, 0, None, Verdict.INCONCLUSIVE, Decision.OPEN, in_doubt=True).name
+        'R1?2'
+        """
+        return f"{self.requirement}{'?' if self.in_doubt else '#'}{self.number}"
 
     def __str__(self) -> str:
         """One line for people.
@@ -116,7 +129,8 @@ class Attempt(_Later):
         when = f"triggered at {format_ticks(self.triggered)}"
         if self.decided is not None:
             when = f"at {format_ticks(self.decided)}"
-        told = f"{self.requirement} #{self.number} {self.verdict.name} {when}"
+        mark = "?" if self.in_doubt else "#"
+        told = f"{self.requirement} {mark}{self.number} {self.verdict.name} {when}"
         return f"{told}: {self.reason}" if self.reason else told
 
 
@@ -161,6 +175,7 @@ def decided_attempt(
     made.decided = decided
     made.verdict = verdict
     made.decision = _PREFIX
+    made.in_doubt = False
     made._details = details
     made._noted = noted
     made.__class__ = Attempt

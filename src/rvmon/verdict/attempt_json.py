@@ -24,7 +24,7 @@ def record(attempt: Attempt) -> dict[str, object]:
     shown: dict[str, object] = {}
     for name in _NAMES:
         value = getattr(attempt, name)
-        if name in _ALWAYS or value not in (None, "", {}):
+        if name in _ALWAYS or (value not in (None, "", {}) and value is not False):
             shown[name] = value
     return shown
 

@@ -20,6 +20,7 @@ from rvmon.verdict.verdict import Verdict
 
 class _AttemptsJson(msgspec.Struct):
     attempts: list[dict[str, Any]]
+    verdict: Verdict
     nearest_miss: str = ""
 
 
@@ -106,6 +107,11 @@ def decode(text: str | bytes) -> Report:
         tuple(document.requirements),
         attempts,
         health=document.health,
+        untold=[
+            name
+            for name, entry in document.requirements.items()
+            if entry.verdict is Verdict.INCONCLUSIVE
+        ],
         trace=document.trace,
         origin=document.origin,
         end=document.end,

@@ -15,8 +15,13 @@ class Verdict(StrEnum):
     INCONCLUSIVE = "I"
 
 
-def fold(verdicts: Iterable[Verdict]) -> Verdict:
+def fold(verdicts: Iterable[Verdict], *, told: bool = True) -> Verdict:
     """The verdict of a requirement on a run, from the verdicts of its attempts.
+
+    Args:
+        verdicts: of its attempts.
+        told: whether its trigger was ever true or false; if not, that there are no attempts says
+            nothing.
 
     Source: SEMANTICS, section 3.
 
@@ -27,4 +32,4 @@ def fold(verdicts: Iterable[Verdict]) -> Verdict:
     for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
         if verdict in seen:
             return verdict
-    return Verdict.NOT_TRIGGERED
+    return Verdict.NOT_TRIGGERED if told else Verdict.INCONCLUSIVE
