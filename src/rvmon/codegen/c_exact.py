@@ -8,8 +8,8 @@ from math import prod
 from typing import assert_never
 
 from rvmon.codegen.plan import Plan
-from rvmon.dataflow.numbers import operands
 from rvmon.errors import TraceError
+from rvmon.formula.numeric import operands
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,

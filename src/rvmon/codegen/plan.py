@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
@@ -23,6 +23,13 @@ class PlannedRule:
         automaton: judges its attempts; `None` if there is none, which only a monitor in this
             process can do without.
         in_runs: whether its open attempts are kept in runs.
+        again: of a `whenever`, not FALSE where an episode goes on after a failure; `None`: nothing
+            is asked.
+        unborn: of a level `whenever`, TRUE while something of its consequent had no value.
+        told: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
+        hidden: judges the attempts in doubt `upon` the trigger; `None` if there are none. Its own
+            trigger is UNKNOWN where an attempt in doubt starts, if none runs; it runs until that
+            is FALSE.
         noted: the formulas of which a record of a decision notes the values; `None`: no records
             are kept.
     """
@@ -32,7 +39,20 @@ class PlannedRule:
     alphabet: Alphabet
     automaton: Automaton | None
     in_runs: bool = False
+    again: State | None = None
+    unborn: State | None = None
+    told: State | None = None
+    hidden: PlannedRule | None = None
     noted: tuple[State, ...] | None = None
+
+    @property
+    def states(self) -> Iterator[State]:
+        """The state formulas that are asked for their values."""
+        named = (self.trigger, self.again, self.unborn, self.told)
+        yield from (state for state in named if state is not None)
+        yield from self.alphabet.propositions
+        if self.hidden is not None:
+            yield from self.hidden.states
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rvmon.codegen.plan import Plan, PlannedRule, Uses
 from rvmon.dataflow.graph import Graph, graph_of
-from rvmon.dataflow.numbers import operands
+from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf
 from rvmon.spec.checked import CheckedSpec, Compare, Probe, ProbeAtom, TimeModel, UpdateValue
 
@@ -18,9 +18,7 @@ def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
         spec: they belong to.
         rules: in the order of the file.
     """
-    triggers = [rule.trigger for rule in rules if rule.trigger is not None]
-    owed = [state for rule in rules for state in rule.alphabet.propositions]
-    graph = graph_of([*triggers, *owed])
+    graph = graph_of(state for rule in rules for state in rule.states)
     gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
     uses = {name: _uses(graph, name) for name in graph.by_name}
     return Plan(spec, tuple(rules), graph, gap, tuple(spec.signals), tuple(spec.events), uses)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import deepcopy
 from heapq import heappop, heappush
 from typing import assert_never
 
+from rvmon.dataflow.doubt import Doubt
 from rvmon.dataflow.graph import Graph
 from rvmon.dataflow.inputs import NEVER, Inputs, Reported
-from rvmon.dataflow.leaves import Evaluate, evaluator
+from rvmon.dataflow.leaves import Evaluate, before_birth, evaluator
 from rvmon.dataflow.since import Previous, Since
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf, State, StateOp
-from rvmon.spec.checked import ProbeAtom
+from rvmon.spec.checked import Compare, ProbeAtom, SignalAtom
 from rvmon.trace.sample import Scalar
 
 
@@ -52,7 +54,7 @@ class Flow:
         self._fading: list[int] = []
         self._wakes: dict[int, int] = {}
         self._left = True
-        self.memory: dict[int, Since | Previous] = {}
+        self.memory: dict[int, Since | Previous | Doubt] = {}
         self._momentary = frozenset(
             place
             for place, reads in graph.reads.items()
@@ -75,7 +77,9 @@ class Flow:
             self._dirty.update(self.graph.by_name.get(name, ()))
 
     def fork(self, graph: Graph, captured: Mapping[str, Scalar], *, occurring: bool) -> Flow:
-        """A flow at the same position for another graph, which must not remember anything.
+        """A flow at the same position for another graph.
+
+        It must not remember anything but by nodes that this one has, too.
 
         Args:
             graph: of the new flow.
@@ -86,9 +90,21 @@ class Flow:
         if self.origin is not None:
             made.origin = self.origin
             made._dirty.update(range(len(graph.nodes)))
+            for place in graph.stateful:
+                made._take_memory(place, self)
             made._left = not occurring
             made.evaluate(self.position)
         return made
+
+    def _take_memory(self, place: int, other: Flow) -> None:
+        """Remember by a node what another flow does."""
+        state = self.graph.nodes[place]
+        theirs = other.graph.index[state]
+        if theirs in other.memory:
+            for name in type(self.memory[place]).__slots__:
+                setattr(self.memory[place], name, deepcopy(getattr(other.memory[theirs], name)))
+        if theirs in other._wakes:
+            self._wakes[place] = other._wakes[theirs]
 
     def _leave(self) -> None:
         if self._left:
@@ -173,6 +189,11 @@ class Flow:
                 return lambda _: min([values[operand] for operand in operands])
             case StateOp.OR:
                 return lambda _: max([values[operand] for operand in operands])
+            case StateOp.SURE:
+                (operand,) = operands
+                return lambda _: TRUE if values[operand] == TRUE else FALSE
+            case StateOp.DOUBT:
+                return self._doubt(place, state)
             case StateOp.PREVIOUS:
                 return self._previous(place)
             case StateOp.SINCE:
@@ -182,6 +203,9 @@ class Flow:
 
     def _leaf(self, place: int, leaf: Leaf) -> Evaluate:
         read = evaluator(leaf, self.inputs, self.captured, lambda: self.origin)
+        unborn = self.graph.nodes[place].unborn
+        if isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN:
+            return before_birth(leaf, read, self.inputs, unborn)
         if not isinstance(leaf, Elapsed):
             return read
 
@@ -203,6 +227,18 @@ class Flow:
             return value
 
         return previous
+
+    def _doubt(self, place: int, state: State) -> Evaluate:
+        node = self.memory[place] = Doubt(state.pulse, state.every, self.gap or 1)
+        (operand,) = self.graph.operands[place]
+        values = self.values
+
+        def doubt(t: int) -> int:
+            value = node.step(t, values[operand])
+            self._set_wake(place, node.wake)
+            return value
+
+        return doubt
 
     def _since(self, place: int, state: State) -> Evaluate:
         node = self.memory[place] = Since(state.low, state.high, self.gap or 1)

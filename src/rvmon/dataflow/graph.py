@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from rvmon.dataflow.leaves import Reads, captured_names, reads
-from rvmon.formula.state import Elapsed, State, StateOp
-from rvmon.spec.checked import Constant
+from rvmon.formula.state import Elapsed, Shown, State, StateOp
 from rvmon.spec.printer import format_formula
 
 
@@ -43,7 +42,7 @@ def leaf_texts(graph: Graph) -> tuple[tuple[State, str], ...]:
     return tuple(
         (state, format_formula(state.leaf))
         for state in graph.nodes
-        if state.leaf is not None and not isinstance(state.leaf, Elapsed | Constant)
+        if isinstance(state.leaf, Shown)
     )
 
 
@@ -79,7 +78,7 @@ def graph_of(roots: Iterable[State]) -> Graph:
                 varies.add(place)
         elif varies.intersection(operands[place]):
             varies.add(place)
-        if state.op in (StateOp.PREVIOUS, StateOp.SINCE):
+        if state.op in (StateOp.PREVIOUS, StateOp.SINCE, StateOp.DOUBT):
             remembers |= place in varies
             stateful.append(place)
         elif isinstance(state.leaf, Elapsed):

@@ -20,6 +20,7 @@ class Slot:
 
     Attributes:
         value: as seen now; `None` if unknown, also because it is stale.
+        births: 0 before the first known value, 1 from then on, 2 from the update after that on.
         updates: how often it was updated, counted to two.
         first_at: the instant of the first update, which may belong to a position still to come;
             `None` before it.
@@ -35,6 +36,7 @@ class Slot:
         "at",
         "before",
         "before_at",
+        "births",
         "first_at",
         "last",
         "stale_after",
@@ -45,6 +47,7 @@ class Slot:
 
     def __init__(self, stale_after: int | None) -> None:
         self.value: Scalar = None
+        self.births = 0
         self.updates = 0
         self.first_at: int | None = None
         self.last: Scalar = None
@@ -65,6 +68,8 @@ class Slot:
         """Take an update, a scalar; returns whether it is one with another value (Kleene)."""
         if value != value:
             value = None
+        if self.births < 2 and (self.births or value is not None):
+            self.births += 1
         first = not self.updates
         self.before, self.before_at = self.last, self.at
         self.last, self.at, self.value = value, t, value

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, assert_never
 
 from rvmon.dataflow.inputs import Inputs, Slot, payloads_of
 from rvmon.dataflow.numbers import COMPARE, captured_of, events_of, inputs_of, reader
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf
+from rvmon.formula.numeric import signals_of
+from rvmon.formula.state import FALSE, TRUE, UNBORN, UNKNOWN, Elapsed, Leaf, Lost, Missing, Unborn
 from rvmon.spec.checked import (
     BoundAtom,
     Compare,
@@ -43,8 +44,12 @@ class Reads:
 def reads(leaf: Leaf) -> Reads:
     """What a leaf depends on."""
     match leaf:
-        case Constant() | Elapsed():
+        case Constant() | Elapsed() | Lost():
             return Reads()
+        case Unborn(signals=signals):
+            return Reads(frozenset(name for name, _ in signals))
+        case Missing(atom=atom):
+            return reads(atom)
         case BoundAtom():
             return Reads(momentary=True)
         case SignalAtom(name=name):
@@ -81,6 +86,12 @@ def evaluator(
         case Constant(value=value):
             truth = TRUE if value else FALSE
             return lambda _: truth
+        case Lost():
+            return lambda _: UNKNOWN
+        case Unborn(signals=signals):
+            return lambda _: TRUE if is_unborn(inputs, signals) else FALSE
+        case Missing(atom=atom):
+            return _missing(atom, inputs, captured, origin)
         case Elapsed(duration=duration):
             return lambda t: TRUE if t - (origin() or 0) >= duration else FALSE
         case BoundAtom():
@@ -96,6 +107,48 @@ def evaluator(
             return _compare(leaf, inputs, captured)
         case _:
             assert_never(leaf)
+
+
+def is_unborn(inputs: Inputs, signals: Iterable[tuple[str, bool]]) -> bool:
+    """Whether some signal has not had what is read of it; see `rvmon.formula.state.Unborn`."""
+    return any(inputs.slots[name].births <= moved for name, moved in signals)
+
+
+def before_birth(
+    atom: SignalAtom | Compare, read: Evaluate, inputs: Inputs, unborn: int
+) -> Evaluate:
+    """A reading of an atom over signals that is `unborn` where they are."""
+    signals = tuple(signals_of(atom).items())
+    if not signals:
+        return read
+    events = events_of(atom.left, atom.right) if isinstance(atom, Compare) else ()
+
+    def reading(t: int) -> int:
+        value = read(t)
+        if value != UNKNOWN or not is_unborn(inputs, signals):
+            return value
+        # An occurrence that is unknown leaves it unknown, born or not.
+        return UNKNOWN if any(_is_uncertain(inputs, event) for event in events) else unborn
+
+    return reading
+
+
+def _is_uncertain(inputs: Inputs, event: str) -> bool:
+    reports = inputs.occurrences.get(event, ())
+    return event in inputs.absent or any(
+        payload is None for value in reports for payload in payloads_of(value)
+    )
+
+
+def _missing(
+    atom: SignalAtom | Compare,
+    inputs: Inputs,
+    captured: Mapping[str, Scalar],
+    origin: Callable[[], int | None],
+) -> Evaluate:
+    read = before_birth(atom, evaluator(atom, inputs, captured, origin), inputs, UNBORN)
+    kinds = {FALSE: FALSE, UNKNOWN: UNKNOWN, TRUE: FALSE, UNBORN: TRUE}
+    return lambda t: kinds[read(t)]
 
 
 def _probe(probe: Probe, name: str, inputs: Inputs) -> Evaluate:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, assert_never
 
 from rvmon.dataflow.inputs import Inputs, Slot
+from rvmon.formula.numeric import operands
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
@@ -120,16 +121,6 @@ def _finite(operation: Callable[..., float], values: list[Scalar]) -> float | No
         return result if math.isfinite(result) else None
     except (ValueError, OverflowError, ZeroDivisionError):
         return None
-
-
-def operands(expression: Numeric) -> Iterator[Numeric]:
-    """What an expression is made of, without the operations."""
-    match expression:
-        case Arithmetic(args=args):
-            for arg in args:
-                yield from operands(arg)
-        case _:
-            yield expression
 
 
 def inputs_of(*expressions: Numeric) -> frozenset[str]:

@@ -12,7 +12,7 @@ from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.explain.cubes import ANY, Cube, cubes_of
 from rvmon.formula.core import Core, Literal, Sense
 from rvmon.formula.residual import Clause
-from rvmon.formula.state import FALSE, TRUE, Elapsed, State
+from rvmon.formula.state import FALSE, TRUE, Shown, State
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Constant, Mode, Requirement
 from rvmon.spec.printer import format_duration, format_formula
@@ -216,7 +216,7 @@ def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
             text = format_formula(formula)
             texts.setdefault(node.proposition, _negated(text) if negative else text)
     for number, state in enumerate(compiled.alphabet.propositions, 1):
-        if state.leaf is not None and not isinstance(state.leaf, Elapsed):
+        if isinstance(state.leaf, Shown):
             texts[state] = format_formula(state.leaf)
         texts.setdefault(state, f"proposition {number}")
     return texts

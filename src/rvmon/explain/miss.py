@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from typing import assert_never
 
 from rvmon.dataflow.graph import graph_of
-from rvmon.dataflow.numbers import operands
 from rvmon.explain.log import Truth, state_truths
 from rvmon.explain.spans import Spans
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.formula.state import Elapsed, Leaf, State
+from rvmon.formula.numeric import operands
+from rvmon.formula.state import Elapsed, Leaf, Lost, Missing, State, Unborn
 from rvmon.spec.checked import (
     Binary,
     BinaryOp,
@@ -116,8 +116,12 @@ def _is_of_values(leaf: Leaf) -> bool:
             return all(isinstance(part, SignalValue | Literal) for part in parts)
         case ProbeAtom(probe=probe):
             return probe is Probe.KNOWN
-        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed():
+        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed() | Unborn():
             return True
+        case Missing(atom=atom):
+            return _is_of_values(atom)
+        case Lost():
+            return False
         case _:
             assert_never(leaf)
 

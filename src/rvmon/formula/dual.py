@@ -19,7 +19,7 @@ from rvmon.formula.core import (
 )
 from rvmon.formula.factory import Factory
 from rvmon.formula.residual import FAILS, HOLDS, Atom, Residual, both, either
-from rvmon.formula.state import State, StateOp
+from rvmon.formula.state import Missing, State, StateOp, Unborn
 
 
 class Duals:
@@ -100,7 +100,11 @@ class Duals:
                 conjunction = (state.op is StateOp.AND) is positive
                 join = self._factory.all_of if conjunction else self._factory.any_of
                 return join(self._state(arg, positive) for arg in state.args)
-            case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE:
+            case StateOp.SURE:  # nothing is unknown
+                return self._state(state.args[0], positive)
+            case StateOp.LEAF if isinstance(state.leaf, Unborn | Missing):
+                return self._factory.constant(not positive)
+            case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT:
                 return self._factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
             case _:
                 assert_never(state.op)

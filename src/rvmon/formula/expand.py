@@ -77,7 +77,7 @@ class _Expanding:
         match state.op:
             case StateOp.LEAF if isinstance(state.leaf, ConstantLeaf):
                 return factory.constant(state.leaf.value is positive)
-            case StateOp.LEAF:
+            case StateOp.LEAF | StateOp.SURE | StateOp.DOUBT:
                 return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
             case StateOp.NOT:
                 return self.state(state.args[0], not positive)

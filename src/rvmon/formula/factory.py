@@ -23,7 +23,7 @@ from rvmon.formula.core import (
     Since,
     Until,
 )
-from rvmon.formula.state import Leaf, State, StateOp
+from rvmon.formula.state import UNKNOWN, Leaf, Lost, State, StateOp
 from rvmon.spec.checked import Constant as ConstantLeaf
 
 
@@ -37,6 +37,7 @@ class Factory:
         self.false: Core = self._core(Constant, False)
         self.state_true = self.leaf(ConstantLeaf(True))
         self.state_false = self.leaf(ConstantLeaf(False))
+        self.unknown = self.leaf(Lost())
 
     def _next_id(self) -> int:
         self._count += 1
@@ -49,18 +50,17 @@ class Factory:
         op: StateOp,
         args: tuple[State, ...] = (),
         leaf: Leaf | None = None,
-        low: int = 0,
-        high: int | None = None,
+        **fields: Any,
     ) -> State:
-        key = (op, args, leaf, low, high)
+        key = (op, args, leaf, *fields.items())
         found = self._known.get(key)
         if found is None:
-            found = self._known[key] = State(self._next_id(), op, args, leaf, low, high)
+            found = self._known[key] = State(self._next_id(), op, args, leaf, **fields)
         return cast(State, found)
 
-    def leaf(self, leaf: Leaf) -> State:
-        """What is read off the input."""
-        return self._state(StateOp.LEAF, leaf=leaf)
+    def leaf(self, leaf: Leaf, unborn: int = UNKNOWN) -> State:
+        """What is read off the input; `unborn` is its truth before the birth of its signals."""
+        return self._state(StateOp.LEAF, leaf=leaf, unborn=unborn)
 
     def negation(self, arg: State) -> State:
         """Not `arg`; double negation is dropped."""
@@ -96,6 +96,16 @@ class Factory:
     def since(self, left: State, right: State, low: int, high: int | None) -> State:
         """`left S[low, high] right`."""
         return self._state(StateOp.SINCE, (left, right), low=low, high=high)
+
+    def sure(self, arg: State) -> State:
+        """`arg` is TRUE, two-valued."""
+        if arg in (self.state_true, self.state_false) or arg.op is StateOp.SURE:
+            return arg
+        return self._state(StateOp.SURE, (arg,))
+
+    def doubt(self, arg: State, *, pulse: bool, every: bool) -> State:
+        """Whether a trigger may have been hidden; see `StateOp.DOUBT`."""
+        return self._state(StateOp.DOUBT, (arg,), pulse=pulse, every=every)
 
     # Core formulas.
 

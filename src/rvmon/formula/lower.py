@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import assert_never
 
 from rvmon.errors import RvmonError
-from rvmon.formula.core import Core, Sense
+from rvmon.formula.core import And, Core, Literal, Next, Or, Previous, Release, Sense, Since, Until
+from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.factory import Factory
-from rvmon.formula.state import Elapsed, State
+from rvmon.formula.four import Four, Reader
+from rvmon.formula.numeric import signals_of
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp, Unborn
 from rvmon.spec.checked import (
     Atom,
     Binary,
@@ -18,10 +21,10 @@ from rvmon.spec.checked import (
     BoundAtom,
     Compare,
     Constant,
-    EventAtom,
     Formula,
     Interval,
     Mode,
+    Probe,
     ProbeAtom,
     Requirement,
     SignalAtom,
@@ -57,14 +60,27 @@ class Obligation:
     """A requirement in core form.
 
     Attributes:
-        trigger: starts an attempt; `None` where it is the end of the trace.
+        trigger: starts an attempt; `None` where it is the end of the trace. What is not born is
+            FALSE for it.
         owed: what an attempt owes from its trigger on; of an episode, all that it owes.
         origins: for explanations, where the parts of `owed` come from.
+        again: of an episode, not FALSE where what is owed has not failed at once: there it goes on
+            after a failure; `None` where no state formula says so.
+        unborn: of an episode, where something of its consequent had no value yet.
+        told: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
+        hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN where one may
+            start; `None` if the trigger is never unknown.
+        doubted: the same where it is not known whether there is such an instance at all.
     """
 
     trigger: State | None
     owed: Core
     origins: Mapping[Core, Origin]
+    again: State | None = None
+    unborn: State | None = None
+    told: State | None = None
+    hidden: Obligation | None = None
+    doubted: Obligation | None = None
 
 
 def has_future(formula: Formula) -> bool:
@@ -89,107 +105,152 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
     Raises:
         UnmonitorableError: the trigger speaks of the future.
     """
-    lowering = _Lowering(factory, period)
+    favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
+    lowering = _Lowering(factory, period, favour)
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
-            trigger = None
-        case formula:
-            trigger = lowering.state(formula)
+            return Obligation(None, lowering.core(requirement.consequent, True), lowering.origins)
+        case formula if has_future(formula):
+            raise UnmonitorableError("its trigger speaks of the future")
+    four = lowering.reader.four(requirement.trigger)
+    trigger = four.read(FALSE)
+    told = _told(four, factory)
+    if requirement.mode is Mode.WHENEVER:
+        parts = _flat(requirement.consequent, True, False)
+        implied = lowering.join_signed(parts, False, [factory.negation(trigger)])
+        owed = lowering.episode(trigger, implied, requirement.consequent)
+        ahead = lowering.core(requirement.consequent, True)
+        again = None if _looks_back(ahead) else _at_once(ahead, factory)
+        unborn = _unborn(requirement.consequent, factory) if favour else None
+        return Obligation(trigger, owed, lowering.origins, again, unborn, told)
     owed = lowering.core(requirement.consequent, True)
-    if requirement.mode is Mode.WHENEVER and trigger is not None:
-        # (θ -> ψ) W "θ is known to be false"; where that holds, θ -> ψ does.
-        over = factory.literal(trigger, Sense.KNOWN_FALSE)
-        implied = lowering.join([requirement.trigger], False, [requirement.consequent], True)
-        owed = factory.release(over, implied, 0, None)
-        for node in (implied, owed):
-            lowering.origins[node] = Origin(requirement.consequent, True)
-    return Obligation(trigger, owed, lowering.origins)
+
+    def hidden(every: bool) -> Obligation:
+        doubt = factory.doubt(trigger, pulse=requirement.pulse, every=every)
+        here = factory.state_any([factory.negation(doubt), factory.sure(doubt)])
+        either = factory.any_of([factory.literal(here, Sense.TRUE), owed])
+        whole = lowering.episode(doubt, either, requirement.consequent)
+        return Obligation(doubt, whole, lowering.origins)
+
+    return Obligation(
+        trigger,
+        owed,
+        lowering.origins,
+        told=told,
+        hidden=hidden(False) if _may_be_unknown(trigger) else None,
+        doubted=hidden(True) if requirement.for_each is not None else None,
+    )
+
+
+def _told(trigger: Four, factory: Factory) -> State | None:
+    """TRUE as soon as a trigger was TRUE or FALSE; `None` if it is from the first position on."""
+    if not _may_be_unknown(trigger.missing):
+        return None
+    known = factory.sure(factory.negation(trigger.missing))
+    return factory.since(factory.state_true, known, 0, None)
+
+
+def _may_be_unknown(state: State) -> bool:
+    match state.leaf:
+        case None:
+            return state.op is not StateOp.SURE and any(map(_may_be_unknown, state.args))
+        case Constant() | BoundAtom() | Elapsed() | Unborn():
+            return False
+        case ProbeAtom(probe=probe):
+            return probe is Probe.CHANGED
+        case _:
+            return True
+
+
+def _unborn(consequent: Formula, factory: Factory) -> State | None:
+    """Where something that a consequent reads had no value yet; `None` if it reads no signal."""
+    found: dict[str, bool] = {}
+    for atom in _atoms(consequent):
+        if isinstance(atom, SignalAtom | Compare):
+            for name, moved in signals_of(atom).items():
+                found[name] = found.get(name, False) or moved
+    return factory.leaf(Unborn(tuple(sorted(found.items())))) if found else None
+
+
+def _atoms(formula: Formula) -> Iterator[Atom]:
+    match formula:
+        case Unary(operand=operand):
+            yield from _atoms(operand)
+        case Binary(left=left, right=right):
+            yield from _atoms(left)
+            yield from _atoms(right)
+        case atom:
+            yield atom
+
+
+def _looks_back(core: Core) -> bool:
+    match core:
+        case Since() | Previous():
+            return True
+        case And(args=args) | Or(args=args):
+            return any(map(_looks_back, args))
+        case Until(left=left, right=right) | Release(left=left, right=right):
+            return _looks_back(left) or _looks_back(right)
+        case Next(operand=operand):
+            return _looks_back(operand)
+        case Literal() | CoreConstant():
+            return False
+        case _:
+            assert_never(core)
+
+
+def _at_once(core: Core, factory: Factory) -> State:
+    """A state formula that is FALSE where a position alone makes what is owed there FALSE.
+
+    The windows of all that has to be kept up are taken to open at once.
+
+    Source: SEMANTICS, section 3 (After a failure).
+    """
+
+    def of(part: Core) -> State:
+        return _at_once(part, factory)
+
+    match core:
+        case CoreConstant(value=value):
+            return factory.state_true if value else factory.state_false
+        case Literal(proposition=proposition, sense=sense):
+            return proposition if sense is Sense.TRUE else factory.negation(proposition)
+        case And(args=args):
+            return factory.state_all(map(of, args))
+        case Or(args=args):
+            return factory.state_any(map(of, args))
+        case Next():
+            return factory.state_true
+        case Until(left=left, right=right, low=low):
+            return of(left) if low else factory.state_any([of(left), of(right)])
+        case Release(right=right):
+            return of(right)
+        case Since() | Previous():
+            raise AssertionError("what looks back is asked otherwise")
+        case _:
+            assert_never(core)
 
 
 class _Lowering:
-    def __init__(self, factory: Factory, period: int | None) -> None:
+    def __init__(self, factory: Factory, period: int | None, favour: bool) -> None:
         self.factory = factory
-        self.period = period
+        self.reader = Reader(factory, period)
+        self.favour = favour
         self.origins: dict[Core, Origin] = {}
 
-    # Present and past.
+    def state(self, formula: Formula, positive: bool) -> State:
+        """A state formula that is owed, or whose negation is."""
+        if not self.favour:
+            return self.reader.literal(formula, UNKNOWN)
+        return self.reader.literal(formula, TRUE if positive else FALSE)
 
-    def state(self, formula: Formula) -> State:
-        factory = self.factory
-        match formula:
-            case Unary(op=op, operand=operand, interval=interval):
-                if op in _FUTURE:
-                    raise UnmonitorableError("its trigger speaks of the future")
-                return self._state_unary(op, self.state(operand), interval)
-            case Binary(op=op, left=left, right=right, interval=interval):
-                if op in _FUTURE:
-                    raise UnmonitorableError("its trigger speaks of the future")
-                return self._state_binary(op, self.state(left), self.state(right), interval)
-            case Constant(value=value):
-                return factory.state_true if value else factory.state_false
-            case _:
-                return factory.leaf(_without_span(formula))
-
-    def _state_unary(self, op: UnaryOp, arg: State, interval: Interval | None) -> State:
-        factory = self.factory
-        match op:
-            case UnaryOp.NOT:
-                return factory.negation(arg)
-            case UnaryOp.PREVIOUS:
-                return factory.previous(arg)
-            case UnaryOp.ONCE:
-                return self._since(factory.state_true, arg, interval)
-            case UnaryOp.HISTORICALLY:
-                return self._historically(arg, interval)
-            case UnaryOp.RISE:
-                return factory.state_all([arg, factory.negation(factory.previous(arg))])
-            case UnaryOp.FALL:
-                return factory.state_all([factory.negation(arg), factory.previous(arg)])
-            case UnaryOp.HELD:
-                duration = interval.high if interval and interval.high else 0
-                elapsed = factory.leaf(Elapsed(duration))
-                return factory.state_all([self._historically(arg, interval), elapsed])
-            case UnaryOp.NEXT | UnaryOp.EVENTUALLY | UnaryOp.ALWAYS:
-                raise AssertionError("future operators were sorted out")
-            case _:
-                assert_never(op)
-
-    def _historically(self, arg: State, interval: Interval | None) -> State:
-        factory = self.factory
-        return factory.negation(self._since(factory.state_true, factory.negation(arg), interval))
-
-    def _since(self, left: State, right: State, interval: Interval | None) -> State:
-        low, high = (interval.low, interval.high) if interval else (0, None)
-        if self.period:
-            low = -(-low // self.period) * self.period
-            high = None if high is None else high // self.period * self.period
-        if high is not None and low > high:
-            return self.factory.state_false
-        return self.factory.since(left, right, low, high)
-
-    def _state_binary(
-        self, op: BinaryOp, left: State, right: State, interval: Interval | None
-    ) -> State:
-        factory = self.factory
-        negation = factory.negation
-        match op:
-            case BinaryOp.AND:
-                return factory.state_all([left, right])
-            case BinaryOp.OR:
-                return factory.state_any([left, right])
-            case BinaryOp.IMPLIES:
-                return factory.state_any([negation(left), right])
-            case BinaryOp.IFF | BinaryOp.XOR:
-                other = right if op is BinaryOp.IFF else negation(right)
-                both = factory.state_all([left, other])
-                neither = factory.state_all([negation(left), negation(other)])
-                return factory.state_any([both, neither])
-            case BinaryOp.SINCE:
-                return self._since(left, right, interval)
-            case BinaryOp.UNTIL | BinaryOp.RELEASE | BinaryOp.WEAK_UNTIL | BinaryOp.STRONG_RELEASE:
-                raise AssertionError("future operators were sorted out")
-            case _:
-                assert_never(op)
+    def episode(self, trigger: State, implied: Core, consequent: Formula) -> Core:
+        """What is implied, up to where the trigger is known to be false; there nothing is."""
+        over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
+        owed = self.factory.release(over, implied, 0, None)
+        for node in (implied, owed):
+            self.origins[node] = Origin(consequent, True)
+        return owed
 
     # Future.
 
@@ -198,7 +259,7 @@ class _Lowering:
             made = self._core_future(formula, positive)
         else:
             sense = Sense.TRUE if positive else Sense.FALSE
-            made = self.factory.literal(self.state(formula), sense)
+            made = self.factory.literal(self.state(formula, positive), sense)
         self.origins.setdefault(made, Origin(formula, positive))
         return made
 
@@ -297,25 +358,22 @@ class _Lowering:
         args = [*_flat(left, left_sign, conjunction), *_flat(right, right_sign, conjunction)]
         return self.join_signed(args, conjunction)
 
-    def join(
-        self, left: Iterable[Formula], left_sign: bool, right: Iterable[Formula], right_sign: bool
+    def join_signed(
+        self, args: list[tuple[Formula, bool]], conjunction: bool, beside: Sequence[State] = ()
     ) -> Core:
-        """One of all operands, each with its sign."""
-        args = [part for f in left for part in _flat(f, left_sign, False)]
-        args += [part for f in right for part in _flat(f, right_sign, False)]
-        return self.join_signed(args, False)
-
-    def join_signed(self, args: list[tuple[Formula, bool]], conjunction: bool) -> Core:
+        """All operands, each with its sign, or one of them; `beside` are further ones."""
         factory = self.factory
         present = [(f, sign) for f, sign in args if not has_future(f)]
         parts = [self.core(f, sign) for f, sign in args if has_future(f)]
-        if present:
+        if present or beside:
             states = [
-                self.state(f) if sign else factory.negation(self.state(f)) for f, sign in present
+                self.state(f, sign) if sign else factory.negation(self.state(f, sign))
+                for f, sign in present
             ]
-            whole = (factory.state_all if conjunction else factory.state_any)(states)
+            whole = (factory.state_all if conjunction else factory.state_any)([*beside, *states])
             literal = factory.literal(whole, Sense.TRUE)
-            self.origins.setdefault(literal, Origin(_spelled(present, conjunction), True))
+            if present:
+                self.origins.setdefault(literal, Origin(_spelled(present, conjunction), True))
             parts.append(literal)
         return (factory.all_of if conjunction else factory.any_of)(parts)
 
@@ -344,13 +402,3 @@ def _spelled(parts: list[tuple[Formula, bool]], conjunction: bool) -> Formula:
         span = whole.span.to(part.span) if whole.span and part.span else None
         whole = Binary(op, whole, part, span=span)
     return whole
-
-
-def _without_span(atom: Atom) -> SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom:
-    match atom:
-        case Constant():
-            raise AssertionError("constants are no leaves")
-        case SignalAtom() | EventAtom() | Compare() | ProbeAtom() | BoundAtom():
-            return replace(atom, span=None)
-        case _:
-            assert_never(atom)

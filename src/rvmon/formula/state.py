@@ -10,6 +10,9 @@ from rvmon.spec.checked import BoundAtom, Compare, Constant, EventAtom, ProbeAto
 FALSE, UNKNOWN, TRUE = 0, 1, 2
 """Kleene's truth values: `and` is the minimum, `or` the maximum, `not` is 2 − x."""
 
+UNBORN = 3
+"""In the place of the truth of an atom that is not born; no state formula has it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Elapsed:
@@ -18,12 +21,41 @@ class Elapsed:
     duration: int
 
 
-Leaf = Constant | SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom | Elapsed
+@dataclass(frozen=True, slots=True)
+class Unborn:
+    """Some signal has had no known value yet; two-valued.
+
+    Attributes:
+        signals: by name, whether an update after the first known value is asked for, too.
+    """
+
+    signals: tuple[tuple[str, bool], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """An atom over signals is not born (TRUE), or what it reads was lost (UNKNOWN)."""
+
+    atom: SignalAtom | Compare
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """Unknown, whatever the input."""
+
+
+Knowledge = Lost | Unborn | Missing
+"""What speaks of what is known, not of what is there."""
+
+Shown = SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
+"""What has a name in a spec."""
+
+Leaf = Knowledge | Shown | Constant | Elapsed
 """What is read off the input; spans are dropped, so that equal leaves are one."""
 
 
 class StateOp(Enum):
-    """Operators of state formulas, the least set that expresses all of SEMANTICS 2."""
+    """Operators of state formulas, the least set that expresses all of SEMANTICS 1 to 3."""
 
     LEAF = "leaf"
     NOT = "not"
@@ -31,6 +63,11 @@ class StateOp(Enum):
     OR = "or"
     PREVIOUS = "previous"
     SINCE = "since"
+    SURE = "sure"
+    """Two-valued: the operand is TRUE."""
+    DOUBT = "doubt"
+    """Whether a trigger may have been hidden: UNKNOWN at each position at which an attempt may
+    start, or not; TRUE at the others of a stretch behind the first of these; else FALSE."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +81,9 @@ class State:
         leaf: what a `LEAF` reads.
         low: of `SINCE`, the least distance in ticks.
         high: of `SINCE`, the greatest distance; `None` if unbounded.
-        text: as in the spec.
+        unborn: of a `LEAF` over signals, the truth that it has before their birth.
+        pulse: of `DOUBT`, whether the trigger starts an attempt wherever it is true.
+        every: of `DOUBT`, whether no trigger is sure.
     """
 
     id: int
@@ -53,3 +92,6 @@ class State:
     leaf: Leaf | None = None
     low: int = 0
     high: int | None = None
+    unborn: int = UNKNOWN
+    pulse: bool = False
+    every: bool = False

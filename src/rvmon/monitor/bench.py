@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from rvmon.automaton.machine import INFINITY, Token
 from rvmon.dataflow.flow import Flow
@@ -12,6 +12,9 @@ from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TIME_LIMIT, format_ticks
+
+if TYPE_CHECKING:
+    from rvmon.monitor.episode import Episode
 
 
 class Open:
@@ -24,9 +27,26 @@ class Open:
         better: of the run that takes it for the better; `None` as long as both are the same.
         seen: the values of the judge's leaves at the trigger.
         doubt: when and why the two runs parted; empty if they did not.
+        sure: whether its trigger was TRUE; else it is in doubt.
+        doubtful_number: as `number`, if its trigger was not TRUE at first.
+        clouded: whether its trigger was unknown while it ran.
+        void: whether it cannot pass, since its episode was over before all was born.
+        episode: that it is an attempt of.
     """
 
-    __slots__ = ("better", "doubt", "number", "seen", "token", "triggered")
+    __slots__ = (
+        "better",
+        "clouded",
+        "doubt",
+        "doubtful_number",
+        "episode",
+        "number",
+        "seen",
+        "sure",
+        "token",
+        "triggered",
+        "void",
+    )
 
     def __init__(self, triggered: int, token: Token, seen: tuple[int, ...]) -> None:
         self.number = 0
@@ -35,6 +55,11 @@ class Open:
         self.better: Token | None = None
         self.seen = seen
         self.doubt = ""
+        self.sure = False
+        self.doubtful_number = 0
+        self.clouded = False
+        self.void = False
+        self.episode: Episode | None = None
 
 
 class Clerk(Protocol):
@@ -83,8 +108,12 @@ class Bench(ABC):
         self.position = -TIME_LIMIT
 
     @abstractmethod
-    def begin(self, t: int, triggered: int) -> Open:
-        """Start an attempt at the position `t`, which the flow is at."""
+    def new_attempt(self, t: int, triggered: int) -> Open:
+        """An attempt at the position `t`, which the flow is at; it is not driven yet."""
+
+    @abstractmethod
+    def begin(self, attempt: Open, t: int) -> None:
+        """Drive an attempt from the position `t` on, which the flow is at."""
 
     @abstractmethod
     def visit(self, t: int) -> None:

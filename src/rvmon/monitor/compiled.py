@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -26,7 +26,7 @@ from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import Obligation, UnmonitorableError, lower
 from rvmon.formula.state import State
 from rvmon.monitor.wording import Words
-from rvmon.spec.checked import CheckedSpec, Compare, Requirement, TimeModel
+from rvmon.spec.checked import CheckedSpec, Compare, Mode, Requirement, TimeModel
 
 RUN_BYTES = 20
 """Of an attempt in a run: the instant of its trigger, its number, what was seen."""
@@ -100,6 +100,7 @@ class CompiledRequirement:
         factory: Factory,
         gap: int | None,
     ) -> None:
+        self._factory = factory
         self.rank = rank
         self.gap = gap
         self.requirement = requirement
@@ -167,6 +168,21 @@ class CompiledRequirement:
         )
 
     @cached_property
+    def hidden(self) -> CompiledRequirement | None:
+        """What judges its attempts in doubt; `None` if there are none."""
+        return self._beside(self.obligation.hidden)
+
+    @cached_property
+    def doubted(self) -> CompiledRequirement | None:
+        """The same where no trigger is sure."""
+        return self._beside(self.obligation.doubted)
+
+    def _beside(self, obligation: Obligation | None) -> CompiledRequirement | None:
+        if obligation is None:
+            return None
+        return CompiledRequirement(self.rank, self.requirement, obligation, self._factory, self.gap)
+
+    @cached_property
     def _table(self) -> TableMachine | None:
         return None if self.automaton is None else TableMachine(self.automaton)
 
@@ -229,9 +245,26 @@ class CompiledRequirement:
     @cached_property
     def shared_graph(self) -> Graph:
         """The state formulas of all its attempts: with `let`, only those of the trigger."""
-        trigger = [] if self.obligation.trigger is None else [self.obligation.trigger]
-        owed = () if self.requirement.captures else self.alphabet.propositions
-        return graph_of([*trigger, *owed])
+        return graph_of(self._shared)
+
+    @property
+    def _shared(self) -> Iterator[State]:
+        obligation = self.obligation
+        yield from (one for one in (obligation.trigger, obligation.told) if one is not None)
+        if not self.requirement.captures:
+            yield from self._own
+        for beside in (self.hidden, self.doubted):
+            if beside is not None:
+                yield from beside._shared
+
+    @property
+    def _own(self) -> Iterator[State]:
+        """The state formulas of an attempt."""
+        obligation = self.obligation
+        yield from self.alphabet.propositions
+        yield from (one for one in (obligation.again, obligation.unborn) if one is not None)
+        if self.requirement.mode is Mode.WHENEVER and obligation.trigger is not None:
+            yield obligation.trigger
 
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:
@@ -267,7 +300,7 @@ class CompiledRequirement:
     @cached_property
     def consequent_graph(self) -> Graph:
         """The propositions of what it owes."""
-        return graph_of(self.alphabet.propositions)
+        return graph_of(self._own)
 
 
 class CompiledSpec:

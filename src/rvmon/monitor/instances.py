@@ -12,12 +12,12 @@ from rvmon.trace.sample import Payload, Scalar, Value
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """One value of a `for each`.
+    """One value of a `for each`, or whatever value those occurrences have that do not tell it.
 
     Attributes:
-        rank: from 1, in order of first occurrence.
+        rank: from 1, in order of first occurrence; 0 where the value is not known.
         source: the field that the value came from.
-        value: the value.
+        value: the value; `None` if it is not known.
         first: the instant of the first occurrence of the value.
     """
 
@@ -28,12 +28,10 @@ class Instance:
 
 
 def values_in(source: FieldValue, values: Mapping[str, Value]) -> list[Scalar]:
-    """The known values of the field in a sample, in order."""
+    """The values of the field in a sample, in order; `None` is an unknown one."""
     found: list[Scalar] = []
     for payload in payloads_of(values.get(source.event, False)):
-        value = None if payload is None else _known(payload, source.field)
-        if value is not None:
-            found.append(value)
+        found.append(None if payload is None else _known(payload, source.field))
     return found
 
 

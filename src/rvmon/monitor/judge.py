@@ -48,16 +48,18 @@ class Judge(Bench):
             sum([weights[values[place]] for place, weights in self._better]),
         )
 
-    def begin(self, t: int, triggered: int) -> Open:
-        """Start an attempt at the position `t`, which the flow is at."""
+    def new_attempt(self, t: int, triggered: int) -> Open:
+        """See `Bench`."""
+        return Open(triggered, self.machine.start, self.seen)
+
+    def begin(self, attempt: Open, t: int) -> None:
+        """See `Bench`."""
         if self.position < t:
             self.visit(t)
-        attempt = Open(triggered, self.machine.start, self.seen)
         due = self._drive(attempt, self._stepping(t))
         if due is not None:
             self.attempts.append(attempt)
             self.due = min(self.due, due)
-        return attempt
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, which the flow is at."""

@@ -12,10 +12,13 @@ from dataclasses import dataclass
 from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Reported
+from rvmon.formula.state import TRUE
 from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.episode import Episode
 from rvmon.monitor.trigger import Trigger
 from rvmon.trace.sample import Scalar
+from rvmon.trace.time import TIME_LIMIT
 
 
 @dataclass(slots=True, eq=False)
@@ -27,11 +30,13 @@ class Starter:
         place: of the trigger's formula in the flow; −1 if there is none.
         start: starts an attempt; takes the position, which the flow is at, and the instant of the
             trigger (they differ only at the end of a trace).
+        since: nothing starts before this instant.
     """
 
     trigger: Trigger | None
     place: int
     start: Callable[[int, int], None]
+    since: int = -TIME_LIMIT
 
 
 class Lane:
@@ -41,6 +46,7 @@ class Lane:
         flow: evaluates the propositions of its judges.
         judges: of the requirements in it, in the order of the file.
         starters: the same.
+        episodes: of those that start again after a failure.
         waiting: samples whose position has not come yet.
         made_for: the requirement of an instance or of a captured attempt, with its values.
     """
@@ -52,10 +58,15 @@ class Lane:
         self.made_for = made_for
         self.judges: list[Bench] = []
         self.starters: list[Starter] = []
+        self.episodes: list[Episode] = []
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
         nodes = flow.graph.nodes
         self._judges_at: list[list[Bench]] = [[] for _ in nodes]
         self._starters_at: list[list[Starter]] = [[] for _ in nodes]
+        self._expected: list[CompiledRequirement] = []
+        self._looking: list[list[Episode]] = [[] for _ in nodes]
+        self._going_on: list[list[Episode]] = [[] for _ in nodes]
+        self._failed: dict[Episode, None] = {}
         self._restless: dict[Bench, None] = {}
         self._repeating: dict[Starter, None] = {}
         self._soonest = INFINITY
@@ -75,22 +86,60 @@ class Lane:
         if starter.trigger is not None:
             self._starters_at[starter.place].append(starter)
 
+    def expect(self, compiled: CompiledRequirement) -> None:
+        """Have it seen whether the trigger of a requirement is ever true or false."""
+        self._expected.append(compiled)
+
+    @property
+    def told(self) -> Iterable[str]:
+        """The requirements of which it was."""
+        values, index = self.flow.values, self.flow.graph.index
+        for compiled in self._expected if self.flow.origin is not None else ():
+            told = compiled.obligation.told
+            if told is None or values[index[told]] == TRUE:
+                yield compiled.requirement.id
+
+    def add_episode(self, episode: Episode) -> None:
+        """Have a requirement's episodes followed."""
+        self.episodes.append(episode)
+        self._looking[episode.place].append(episode)
+        if episode.again >= 0:
+            self._going_on[episode.again].append(episode)
+        episode.resume = lambda failed: self._failed.update({failed: None})
+
     @property
     def is_idle(self) -> bool:
         """Whether nothing is open in it and nothing will start, as in that of a decided attempt."""
         judged = bool(self.judges) and not any(judge.attempts for judge in self.judges)
-        return judged and not self.starters
+        running = any(episode.is_running for episode in self.episodes)
+        return judged and not self.starters and not running
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`, positions there included, without a further sample."""
         while True:
-            position = min(self._awaited, self.flow.next_change)
-            if self._repeating and self.flow.gap is not None:
-                position = min(position, self.flow.position + self.flow.gap)
-            self._pass_to(min(position - 1, limit))
+            position = min(self._awaited, self.flow.next_change, self._next_start)
+            until = min(position - 1, limit)
+            # What fails may be followed by another attempt at once.
+            stop = min(until, self._soonest) if self.episodes else until
+            self._pass_to(stop)
+            if stop < until or self._next_start < position:
+                continue
             if position > limit:
                 return
             self._visit(position)
+
+    @property
+    def _next_start(self) -> int:
+        """The next position at which an attempt may start though nothing changes."""
+        gap, found = self.flow.gap, INFINITY
+        if gap is None:
+            return found
+        for starter in self._repeating:
+            found = min(found, max(self.flow.position + gap, -(-starter.since // gap) * gap))
+        for episode in self._failed:
+            late = (episode.failed_at or 0) - self.flow.position
+            found = min(found, self.flow.position + max(late // gap + 1, 1) * gap)
+        return found
 
     def _pass_to(self, t: int) -> None:
         if self._soonest > t:
@@ -138,6 +187,9 @@ class Lane:
             self.flow.apply(taken, values)
         self.waiting.clear()
         changed = self.flow.evaluate(t)
+        for place in changed:
+            for episode in self._looking[place]:
+                episode.look(t)
         for judge in self.judges if first else self._concerned(changed, t):
             judge.visit(t)
             self._note(judge)
@@ -148,12 +200,29 @@ class Lane:
             asked.update(dict.fromkeys(self._starters_at[place]))
         for starter in asked:
             self._ask(starter, t)
+        failed, self._failed = self._failed, {}
+        for place in changed:
+            failed.update(dict.fromkeys(self._going_on[place]))
+        for episode in failed:
+            self._go_on(episode, t)
 
-    def begin(self, judge: Bench, t: int, triggered: int) -> Open:
-        """Start an attempt of one of the judges at the position `t`, which the flow is at."""
-        attempt = judge.begin(t, triggered)
+    def _go_on(self, episode: Episode, t: int) -> None:
+        """Follow a failure by another attempt at the position `t`, if it is time for that."""
+        if episode.goes_on(t):
+            episode.begin(t, t)
+            self._note(episode.judge)
+        elif episode.failed_at is not None and t <= episode.failed_at:
+            self._failed[episode] = None
+
+    def begin(self, judge: Bench, attempt: Open, t: int) -> None:
+        """Drive an attempt of one of the judges from the position `t` on, which the flow is at."""
+        judge.begin(attempt, t)
         self._note(judge)
-        return attempt
+
+    def begin_episode(self, episode: Episode, t: int) -> None:
+        """Begin the first attempt of an episode at the position `t`, which the flow is at."""
+        episode.begin(t, t)
+        self._note(episode.judge)
 
     def _concerned(self, changed: Sequence[int], t: int) -> Iterable[Bench]:
         """The judges that have to visit the position at `t`."""
@@ -178,10 +247,11 @@ class Lane:
         else:
             self._repeating.pop(starter, None)
 
-    def drop_episode(self, starter: Starter) -> None:
-        """Take it that no episode of a starter is running, whatever it has seen."""
+    def drop_episode(self, starter: Starter, t: int) -> None:
+        """Take it that no episode of a starter is running, and none was before `t`."""
         if starter.trigger is not None:
             starter.trigger.running = False
+            starter.since = t
             if starter.trigger.repeats:
                 self._repeating[starter] = None
 
@@ -200,4 +270,4 @@ class Lane:
         """The next instant at which time alone can decide an attempt or start one."""
         due = min((judge.next_due for judge in self.judges), default=INFINITY)
         # What changes at an instant is known when that instant has passed.
-        return min(due, self.flow.next_change + 1, self._awaited + 1)
+        return min(due, self.flow.next_change + 1, self._awaited + 1, self._next_start + 1)

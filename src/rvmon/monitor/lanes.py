@@ -9,8 +9,9 @@ from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.dataflow.numbers import reader
-from rvmon.monitor.bench import Bench
+from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.episode import Episode
 from rvmon.monitor.instances import Instance, seen_by, values_in
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.lane import Lane, Starter
@@ -21,6 +22,9 @@ from rvmon.spec.checked import CheckedSpec, ForEach, Mode, Numeric, TimeModel
 from rvmon.trace.sample import Payload, Scalar, Value
 
 Captured = Mapping[str, Scalar]
+
+Start = Callable[[int, int], None]
+"""Starts an attempt; see `rvmon.monitor.lane.Starter`."""
 
 Shape = tuple[
     list[tuple[str, list[tuple[Scalar, int]]]], list[tuple[str, dict[str, Scalar], Scalar, bool]]
@@ -72,6 +76,9 @@ class Lanes:
         self._lanes: list[tuple[Lane, Instance | None]] = [(self.main, None)]
         for compiled in shared:
             self._seat(self.main, compiled, {}, None)
+        self._unopened: dict[str, tuple[Lane, list[Starter], list[Start]]] = {}
+        for compiled, each in self._each:
+            self._make_doubted(compiled, each)
 
     @property
     def all(self) -> Sequence[Lane]:
@@ -168,7 +175,7 @@ class Lanes:
             if starts:
                 self._seat(lane, compiled, captured, instance)
             else:
-                self._judge(compiled, lane, captured)
+                self._judge(compiled, lane, captured, instance)
             self._lanes.append((lane, instance))
 
     # Making lanes.
@@ -176,15 +183,30 @@ class Lanes:
     def _flow(self, graph: Graph, captured: Captured) -> Flow:
         return Flow(graph, Inputs(self.spec, self.sources), self.gap, captured)
 
-    def _judge(self, compiled: CompiledRequirement, lane: Lane, captured: Captured) -> Bench:
+    def _judge(
+        self,
+        compiled: CompiledRequirement,
+        lane: Lane,
+        captured: Captured,
+        instance: Instance | None,
+    ) -> Bench:
         judge = self._new_judge(compiled, lane.flow, captured)
         lane.add_judge(judge)
+        episodic = compiled.requirement.mode is Mode.WHENEVER
+        if episodic and compiled.obligation.trigger is not None:
+            self._follow_episodes(lane, judge, instance)
         return judge
 
     def _new_judge(self, compiled: CompiledRequirement, flow: Flow, captured: Captured) -> Bench:
-        if compiled.engine(self.engine) == "network":
+        # What judges attempts in doubt need not have an automaton where the requirement has.
+        hidden = (
+            compiled.obligation.trigger
+            is not self._by_id[compiled.requirement.id].obligation.trigger
+        )
+        engine = "auto" if hidden and self.engine == "automaton" else self.engine
+        if compiled.engine(engine) == "network":
             return NetworkJudge(compiled, compiled.network_plan, flow, self.ledger, captured)
-        return Judge(compiled, compiled.machine(self.engine), flow, self.ledger, captured)
+        return Judge(compiled, compiled.machine(engine), flow, self.ledger, captured)
 
     def _seat(
         self,
@@ -192,31 +214,97 @@ class Lanes:
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
+    ) -> list[Starter]:
+        """Give a requirement its triggers in a lane, and its judges, unless attempts bring theirs."""
+        doubted = instance is not None and instance.value is None
+        lane.expect(compiled)
+        if compiled.obligation.trigger is None:
+            return [self._starter(lane, compiled, captured, instance, hidden=doubted)]
+        if compiled.requirement.mode is Mode.UPON and doubted:
+            kinds = [compiled.doubted]
+        else:
+            kinds = [compiled, compiled.hidden]
+        return [
+            self._starter(lane, kind, captured, instance, hidden=kind is not compiled)
+            for kind in kinds
+            if kind is not None
+        ]
+
+    def _starter(
+        self,
+        lane: Lane,
+        compiled: CompiledRequirement,
+        captured: Captured,
+        instance: Instance | None,
+        *,
+        hidden: bool,
     ) -> Starter:
-        """Give a requirement its trigger in a lane, and its judge, unless attempts bring theirs."""
-        requirement = compiled.requirement
-        rank = 0 if instance is None else instance.rank
-        start: Callable[[int, int], None]
+        requirement, formula = compiled.requirement, compiled.obligation.trigger
+        start: Start
         if requirement.captures:
 
             def start(t: int, triggered: int) -> None:
                 new, own = self._captured_lane(lane, compiled, captured, instance, t)
-                self.ledger.started(rank, own, new.begin(own, t, triggered))
+                self._begin(new, own, instance, t, triggered, hidden=hidden)
                 self._lanes.append((new, instance))
         else:
-            judge = self._judge(compiled, lane, captured)
+            judge = self._judge(compiled, lane, captured, instance)
 
             def start(t: int, triggered: int) -> None:
-                self.ledger.started(rank, judge, lane.begin(judge, t, triggered))
+                self._begin(lane, judge, instance, t, triggered, hidden=hidden)
 
-        formula = compiled.obligation.trigger
         if formula is None:
             starter = Starter(None, -1, start)
         else:
-            trigger = Trigger(requirement.pulse, requirement.mode is Mode.WHENEVER)
+            episodic = hidden or requirement.mode is Mode.WHENEVER
+            trigger = Trigger(requirement.pulse, episodic, hidden)
             starter = Starter(trigger, lane.flow.graph.index[formula], start)
         lane.add_starter(starter)
         return starter
+
+    def _begin(
+        self,
+        lane: Lane,
+        judge: Bench,
+        instance: Instance | None,
+        t: int,
+        triggered: int,
+        *,
+        hidden: bool,
+    ) -> None:
+        """Start an attempt at the position `t` of a lane."""
+        rank = 0 if instance is None else instance.rank
+        for episode in lane.episodes:
+            if episode.judge is judge:
+                lane.begin_episode(episode, t)
+                return
+        attempt = judge.new_attempt(t, triggered)
+        if hidden:
+            self.ledger.doubtful(rank, judge, attempt)
+        else:
+            attempt.sure = True
+            self.ledger.sure(rank, judge, attempt, triggered)
+        lane.begin(judge, attempt, t)
+
+    def _follow_episodes(self, lane: Lane, judge: Bench, instance: Instance | None) -> None:
+        rank = 0 if instance is None else instance.rank
+        ledger = self.ledger
+
+        def start(attempt: Open) -> None:
+            ledger.doubtful(rank, judge, attempt)
+
+        def sure(attempt: Open, t: int) -> None:
+            ledger.sure(rank, judge, attempt, t)
+
+        doubted = instance is not None and instance.value is None
+        lane.add_episode(Episode(judge, lane.flow, doubted=doubted, start=start, sure=sure))
+
+    def untold(self) -> list[str]:
+        """The requirements whose trigger was never true or false."""
+        told: set[str] = set()
+        for lane in self.all:
+            told.update(lane.told)
+        return [name for name in self._by_id if name not in told]
 
     def _captured_lane(
         self,
@@ -231,14 +319,14 @@ class Lanes:
         for capture in compiled.requirement.captures:
             own[capture.name] = _capture(capture.value, parent.flow, own)
         graph = compiled.consequent_graph
-        if _looks_back(compiled):
+        if _looks_back(compiled, parent.flow.graph):
             lane = Lane(self._flow(graph, own), (compiled, own))
-            judge = self._judge(compiled, lane, own)
+            judge = self._judge(compiled, lane, own, instance)
             self._replay(lane, instance)
             lane.through(t)
         else:
             lane = Lane(parent.flow.fork(graph, own, occurring=True), (compiled, own))
-            judge = self._judge(compiled, lane, own)
+            judge = self._judge(compiled, lane, own, instance)
         return lane, judge
 
     def _replay(self, lane: Lane, instance: Instance | None) -> None:
@@ -253,10 +341,24 @@ class Lanes:
         """Make the instances whose value occurs for the first time in a sample."""
         known = self._instances.setdefault(compiled.requirement.id, {})
         for value in values_in(each.value, values):
-            if value not in known:
+            if value is not None and value not in known:
                 known[value] = instance = Instance(len(known) + 1, each.value, value, t)
                 lane = self._instance_lane(compiled, {each.name: value}, instance, t)
                 self._lanes.append((lane, instance))
+            elif value is None and compiled.requirement.id in self._unopened:
+                _open(*self._unopened.pop(compiled.requirement.id), t)
+
+    def _make_doubted(self, compiled: CompiledRequirement, each: ForEach) -> None:
+        """A lane for the occurrences whose value is not known; nothing starts in it before one."""
+        captured = {each.name: None}
+        instance = Instance(0, each.value, None, 0)
+        lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
+        starters = self._seat(lane, compiled, captured, instance)
+        starts = [starter.start for starter in starters]
+        for starter in starters:
+            starter.start = _never
+        self._unopened[compiled.requirement.id] = (lane, starters, starts)
+        self._lanes.append((lane, instance))
 
     def _instance_lane(
         self, compiled: CompiledRequirement, captured: Captured, instance: Instance, t: int
@@ -265,13 +367,14 @@ class Lanes:
         graph = compiled.shared_graph
         if _needs_history(compiled):
             lane = Lane(self._flow(graph, captured), (compiled, captured))
-            starter = self._seat(lane, compiled, captured, instance)
+            starters = self._seat(lane, compiled, captured, instance)
             # No attempt starts before the value has occurred.
-            start, starter.start = starter.start, _never
+            starts = [starter.start for starter in starters]
+            for starter in starters:
+                starter.start = _never
             self._replay(lane, instance)
             lane.through(t - 1)
-            starter.start = start
-            lane.drop_episode(starter)
+            _open(lane, starters, starts, t)
             return lane
         flow = self.main.flow.fork(graph, captured, occurring=False)
         lane = Lane(flow, (compiled, captured))
@@ -295,7 +398,8 @@ def _capture(value: Numeric, flow: Flow, captured: Captured) -> Scalar:
 def _needs_history(compiled: CompiledRequirement) -> bool:
     """Whether an instance or a captured attempt has to look at what was before it."""
     requirement = compiled.requirement
-    if requirement.captures and _looks_back(compiled):
+    kinds = [one for one in (compiled, compiled.hidden, compiled.doubted) if one is not None]
+    if requirement.captures and any(_looks_back(one, compiled.shared_graph) for one in kinds):
         return True
     remembers = (
         bool(compiled.shared_graph.stateful)
@@ -305,9 +409,19 @@ def _needs_history(compiled: CompiledRequirement) -> bool:
     return requirement.for_each is not None and remembers
 
 
-def _looks_back(compiled: CompiledRequirement) -> bool:
-    """Whether what is owed depends on what was before the trigger."""
-    return bool(compiled.consequent_graph.stateful) or compiled.network_plan.looks_back
+def _looks_back(compiled: CompiledRequirement, parent: Graph) -> bool:
+    """Whether what is owed depends on what was before the trigger, and a lane does not know."""
+    graph = compiled.consequent_graph
+    if compiled.network_plan.looks_back or graph.remembers_captured:
+        return True
+    return any(graph.nodes[place] not in parent.index for place in graph.stateful)
+
+
+def _open(lane: Lane, starters: Sequence[Starter], starts: Sequence[Start], t: int) -> None:
+    """Let attempts start in a lane, from `t` on."""
+    for starter, start in zip(starters, starts, strict=True):
+        starter.start = start
+        lane.drop_episode(starter, t)
 
 
 def _never(t: int, triggered: int) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from operator import itemgetter
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
@@ -27,6 +28,7 @@ class Ledger:
 
     Attributes:
         attempts: all records given out.
+        void: attempts that have met what they owe, but say nothing.
         told: decisions whose records are made: the instant, the place of the requirement in the
             file, the number of the attempt, the record.
     """
@@ -35,15 +37,38 @@ class Ledger:
         self.attempts: list[Attempt] = []
         self._counts: dict[str, int] = {}
         self._started: list[tuple[int, int, Bench, Open]] = []
+        self._doubtful: list[tuple[int, int, Bench, Open]] = []
+        self._doubts: dict[str, int] = {}
+        self.void: list[tuple[Bench, Open]] = []
         self._decided: list[tuple[Bench, Open, Attempt]] = []
         self.told: list[tuple[int, int, int, Attempt]] = []
 
-    def started(self, instance: int, judge: Bench, attempt: Open) -> None:
-        """Take a new attempt, to be numbered by its trigger and the rank of its instance."""
-        self._started.append((attempt.triggered, instance, judge, attempt))
+    def sure(self, instance: int, judge: Bench, attempt: Open, t: int) -> None:
+        """Take an attempt whose trigger was true, at `t` first, to be numbered by that.
+
+        Args:
+            instance: the rank of its instance, which decides between equal instants.
+            judge: of the attempt.
+            attempt: new, or in doubt so far.
+            t: ticks.
+        """
+        self._started.append((t, instance, judge, attempt))
+
+    def doubtful(self, instance: int, judge: Bench, attempt: Open) -> None:
+        """Take a new attempt of which it is not known whether there was a trigger; see `sure`."""
+        self._doubtful.append((attempt.triggered, instance, judge, attempt))
 
     def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """See `rvmon.monitor.bench.Clerk`."""
+        if verdict and attempt.void:
+            self.void.append((judge, attempt))
+            return
+        if not attempt.sure:
+            if not verdict:
+                self.void.append((judge, attempt))
+            return  # if met, triggered or not
+        if attempt.episode is not None and not verdict:
+            attempt.episode.fail(attempt, t)
         upon_end = judge.compiled.obligation.trigger is None
         why = why_decided(judge, attempt, verdict, t, before)
         record = _record(
@@ -59,12 +84,18 @@ class Ledger:
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
         requirement = judge.compiled.requirement
+        episode = attempt.episode
+        runs = episode is not None and episode.current is attempt
+        void = attempt.void or (runs and episode is not None and episode.is_unborn)
+        passes = attempt.better is not None and attempt.better[0] == PASSED
         verdict, decision = settle_at_end(
             requirement.at_end,
-            held=judge.held_at_end(attempt, end, reached),
-            cannot_pass=attempt.token[0] == FAILED,
-            cannot_fail=attempt.better is not None and attempt.better[0] == PASSED,
+            held=not void and judge.held_at_end(attempt, end, reached),
+            cannot_pass=void or attempt.token[0] == FAILED,
+            cannot_fail=passes or not attempt.sure or (runs and attempt.clouded),
         )
+        if verdict is Verdict.PASS and not attempt.sure:
+            return
         now = max(2 * reached, 2 * end + 1)
         why = why_open(judge, attempt, now, end)
         if decision is not Decision.OPEN:
@@ -76,6 +107,21 @@ class Ledger:
             record = replace(record, forecast=outlook(judge, attempt, now))
         self._decided.append((judge, attempt, record))
 
+    def close(self) -> None:
+        """Take the attempts that were void as undecided, which they stay."""
+        for judge, attempt in self.void:
+            self._decided.append((judge, attempt, self._void_record(judge, attempt)))
+        self.void.clear()
+
+    def _void_record(self, judge: Bench, attempt: Open) -> Attempt:
+        why = Explanation("it was over before all that it speaks of had a value")
+        return _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
+
+    @property
+    def void_records(self) -> Sequence[Attempt]:
+        """The records of the attempts that are void by now."""
+        return [self._void_record(judge, attempt) for judge, attempt in self.void]
+
     def open_record(self, judge: Bench, attempt: Open, now: int) -> Attempt:
         """The record of an attempt that is still running; `now` as in `why_open`."""
         why = why_open(judge, attempt, now)
@@ -84,12 +130,14 @@ class Ledger:
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
-        if self._started:
-            self._started.sort(key=lambda entry: entry[:2])
-            for _, _, judge, attempt in self._started:
-                name = judge.compiled.requirement.id
-                attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
-            self._started.clear()
+        for _, _, judge, attempt in sorted(self._started, key=itemgetter(0, 1)):
+            name = judge.compiled.requirement.id
+            attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
+        self._started.clear()
+        for _, _, judge, attempt in sorted(self._doubtful, key=itemgetter(0, 1)):
+            name = judge.compiled.requirement.id
+            attempt.doubtful_number = self._doubts[name] = self._doubts.get(name, 0) + 1
+        self._doubtful.clear()
         if not self._decided:
             if not self.told:
                 return ()
@@ -103,7 +151,7 @@ class Ledger:
         else:
             made = [(rank, record) for _, rank, _, record in self.told]
             made += [
-                (judge.compiled.rank, replace(record, number=attempt.number))
+                (judge.compiled.rank, replace(record, number=_number(attempt)))
                 for judge, attempt, record in self._decided
             ]
             self._decided.clear()
@@ -124,7 +172,7 @@ def _record(
 ) -> Attempt:
     return Attempt(
         judge.compiled.requirement.id,
-        attempt.number,
+        _number(attempt),
         attempt.triggered,
         decided,
         verdict,
@@ -136,7 +184,12 @@ def _record(
         why.owed,
         judge.captured,
         why.blame,
+        in_doubt=not attempt.sure,
     )
+
+
+def _number(attempt: Open) -> int:
+    return attempt.number if attempt.sure else attempt.doubtful_number
 
 
 def values_shown(judge: Bench, seen: tuple[int, ...]) -> dict[str, Scalar]:
@@ -150,5 +203,5 @@ def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scala
     return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
 
 
-def _order(rank: int, record: Attempt) -> tuple[bool, int, int, int]:
-    return (record.decided is None, record.decided or 0, rank, record.number)
+def _order(rank: int, record: Attempt) -> tuple[bool, int, int, bool, int]:
+    return (record.decided is None, record.decided or 0, rank, record.in_doubt, record.number)

@@ -105,15 +105,17 @@ class MarginJudge(Bench):
             return read, later
         return (lambda: _negated(read())), None if later is None else _negated(later)
 
-    def begin(self, t: int, triggered: int) -> Open:
-        """Start an attempt at the position `t`, which the flow is at."""
+    def new_attempt(self, t: int, triggered: int) -> Open:
+        """See `Bench`."""
+        return Open(triggered, (PASSED + 1, (t,)), ())
+
+    def begin(self, attempt: Open, t: int) -> None:
+        """See `Bench`."""
         if self.position < t or self._least is None:
             self.position = t
             self._enter(t // self._gap)
         self._ask(t // self._gap)
-        attempt = Open(triggered, (PASSED + 1, (t,)), ())
         self.attempts.append(attempt)
-        return attempt
 
     def visit(self, t: int) -> None:
         """Note what all leaves are at the position `t`, which the flow is at."""

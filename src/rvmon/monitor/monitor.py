@@ -188,10 +188,12 @@ class Monitor:
             reached = end if self._reached is None else max(end, self._reached)
             self._lanes.through(end)
             self._lanes.finish(end, reached)
+        self._ledger.close()
         self._ledger.flush()
         return report_of(
             [compiled.requirement.id for compiled in self._requirements],
             self._ledger.attempts,
+            untold=self._lanes.untold(),
             health=self._health.report(
                 self._requirements, self._lanes.main.flow.inputs, self._intake
             ),
@@ -240,7 +242,7 @@ class Monitor:
             self._ledger.open_record(judge, attempt, now)
             for judge in self._lanes.judges
             for attempt in judge.attempts
-        ]
+        ] + [*self._ledger.void_records]
 
     @property
     def next_due(self) -> int | None:

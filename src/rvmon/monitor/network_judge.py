@@ -91,9 +91,12 @@ class NetworkJudge(Bench):
             better.append(certain or (value == UNKNOWN and sense is not Sense.KNOWN_FALSE))
         return worse, better
 
-    def begin(self, t: int, triggered: int) -> Open:
-        """Start an attempt at the position `t`, which the flow is at."""
-        attempt = Open(triggered, (WAITING, (t,)), self.seen)
+    def new_attempt(self, t: int, triggered: int) -> Open:
+        """See `Bench`."""
+        return Open(triggered, (WAITING, (t,)), self.seen)
+
+    def begin(self, attempt: Open, t: int) -> None:
+        """See `Bench`."""
         self.attempts.append(attempt)
         self._begin_network()
         if self._letters is None or self.position < t:
@@ -106,7 +109,6 @@ class NetworkJudge(Bench):
         self._rest()
         self._foresee()
         self.restless = self.flow.gap is None and self.worse is not None
-        return attempt
 
     def _begin_network(self) -> None:
         if self.worse is None:

@@ -48,20 +48,23 @@ def plan_requirements(
         requirements: chosen from it.
         explained: whether somebody will ask what is owed: the tables are smaller if not.
     """
-    return plan_of(
-        compiled.checked,
-        [
-            PlannedRule(
-                one.requirement,
-                one.obligation.trigger,
-                one.alphabet,
-                automaton,
-                one.in_runs(automaton),
-                tuple(leaf for leaf, _ in one.leaves) if explained else None,
-            )
-            for one in requirements
-            for automaton in (_planned(one, explained),)
-        ],
+    return plan_of(compiled.checked, [_rule(one, explained) for one in requirements])
+
+
+def _rule(one: CompiledRequirement, explained: bool) -> PlannedRule:
+    automaton = _planned(one, explained)
+    obligation = one.obligation
+    return PlannedRule(
+        one.requirement,
+        obligation.trigger,
+        one.alphabet,
+        automaton,
+        one.in_runs(automaton),
+        tuple(leaf for leaf, _ in one.leaves) if explained else None,
+        obligation.again,
+        obligation.unborn,
+        obligation.told,
+        None if one.hidden is None else _rule(one.hidden, explained),
     )
 
 

@@ -11,15 +11,16 @@ class Trigger:
     Args:
         pulse: whether it starts an attempt at every position where it holds.
         episodic: whether an attempt is an episode, of which one runs at a time.
+        hidden: whether an episode starts only where the truth is unknown.
     """
 
-    __slots__ = ("before", "episodic", "known", "pulse", "running")
+    __slots__ = ("before", "episodic", "hidden", "pulse", "running")
 
-    def __init__(self, pulse: bool, episodic: bool) -> None:
+    def __init__(self, pulse: bool, episodic: bool, hidden: bool = False) -> None:
         self.pulse = pulse
         self.episodic = episodic
-        self.before = UNKNOWN
-        self.known = False
+        self.hidden = hidden
+        self.before = FALSE
         self.running = False
 
     def starts(self, truth: int) -> bool:
@@ -27,18 +28,19 @@ class Trigger:
 
         To be called at least where the truth changes, and at each position of a pulse that holds.
         """
-        start = truth == TRUE and (self.pulse or self.before == FALSE or not self.known)
-        self.before = truth
-        self.known = self.known or truth != UNKNOWN
+        before, self.before = self.before, truth
         if not self.episodic:
-            return start
+            return truth == TRUE and (self.pulse or before == FALSE)
         if self.running:
             self.running = truth != FALSE
             return False
-        self.running = start
-        return start
+        self.running = truth == UNKNOWN if self.hidden else truth != FALSE
+        return self.running
 
     @property
     def repeats(self) -> bool:
         """Whether another attempt starts at the next position if the truth stays."""
-        return self.pulse and not self.running and self.before == TRUE
+        if not self.episodic:
+            return self.pulse and self.before == TRUE
+        wanted = self.before == UNKNOWN if self.hidden else self.before != FALSE
+        return wanted and not self.running

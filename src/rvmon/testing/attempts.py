@@ -217,7 +217,8 @@ def obligation(start: Start, readings: Readings) -> Truth:
     """
     requirement, view = start.view.requirement, start.view
     if is_upon_end(requirement):
-        return readings.of(start.captured).truth(requirement.consequent, start.position)
+        value = readings.of(start.captured).truth(requirement.consequent, start.position)
+        return Truth.UNKNOWN if value is Truth.FALSE and start.sure is None else value
     truths = readings.of(start.captured)
     ended = start.stop is not None and start.stop < truths.known
     owed = [_owed(start, readings, k) for k in start.owes if k < truths.known]
@@ -253,17 +254,18 @@ def starts_upon(view: View) -> list[Start]:
     """The attempts of a requirement `upon` a trigger, those in doubt included."""
     if is_upon_end(view.requirement):
         last = len(view.word.letters) - 1
-        if last < 0:
+        if last < view.first:
             return []
-        return [replace(view.begin(last, [last], None), sure=last)]
+        sure = None if view.doubted else last
+        return [replace(view.begin(last, [last], None), sure=sure)]
     found = []
     edges = [view.edge(k) for k in range(len(view.trigger))]
     k = view.first
     while k < len(edges):
         owes, stop = view.stretch(k)
-        sure = [] if view.doubted else [j for j in owes if edges[j] is Truth.TRUE]
-        found += [view.begin(j, [j], j + 1) for j in sure]
-        hidden = [j for j in owes if edges[j] is not Truth.FALSE and j not in sure]
+        certain = [] if view.doubted else [j for j in owes if edges[j] is Truth.TRUE]
+        found += [view.begin(j, [j], j + 1) for j in certain]
+        hidden = [j for j in owes if edges[j] is not Truth.FALSE and j not in certain]
         if hidden:
             one = view.begin(hidden[0], hidden, stop)
             found.append(replace(one, sure=None))

@@ -29,13 +29,18 @@ class Outcome:
         return f"triggered at {trigger}{with_}, {self.verdict.value}{when} ({self.decision.value})"
 
 
-Key = tuple[str, int]
-"""Requirement and number."""
+Key = tuple[str, bool, int]
+"""Requirement, whether in doubt, and number."""
+
+
+def key_of(attempt: Attempt) -> Key:
+    """What tells an attempt apart from all others."""
+    return attempt.requirement, attempt.in_doubt, attempt.number
 
 
 def outcomes(report: Report) -> dict[Key, Outcome]:
-    """The outcome of every attempt, by requirement and number."""
-    return {(a.requirement, a.number): _outcome(a) for a in report.attempts}
+    """The outcome of every attempt."""
+    return {key_of(a): _outcome(a) for a in report.attempts}
 
 
 def _outcome(attempt: Attempt) -> Outcome:
@@ -66,8 +71,9 @@ def differences(expected: Report, actual: Report) -> list[str]:
     wanted, got = outcomes(expected), outcomes(actual)
     for key in sorted({*wanted, *got}):
         if wanted.get(key) != got.get(key):
-            name, number = key
-            lines.append(f"{name} #{number}: {wanted.get(key)}; got {got.get(key)}")
+            name, in_doubt, number = key
+            mark = "?" if in_doubt else "#"
+            lines.append(f"{name}{mark}{number}: {wanted.get(key)}; got {got.get(key)}")
     if not lines and list(wanted) != list(got):
         lines.append(f"the attempts are reported in the order {list(wanted)}, got {list(got)}")
     if len(expected.attempts) != len(actual.attempts) and not lines:

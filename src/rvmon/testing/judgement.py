@@ -9,11 +9,12 @@ from rvmon.spec.checked import Requirement
 from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, Outcome, outcomes
+from rvmon.testing.follow import Followed, Followings
 from rvmon.testing.health import expected_health, may_be_simplified
 from rvmon.testing.kleene import Truth
 from rvmon.testing.law import word
 from rvmon.testing.moments import Moment
-from rvmon.testing.oracle import Followed, follow, report_on
+from rvmon.testing.oracle import judge_views, report_on
 from rvmon.testing.seen import Seen
 from rvmon.testing.waiting import Waiting
 from rvmon.trace.health import Health
@@ -29,20 +30,20 @@ class Judgement:
     Attributes:
         case: the same.
         word: its trace, position by position.
-        followed: by requirement, its attempts as the prefix alone decides them.
+        followings: by requirement, its attempts as the prefix alone decides them.
     """
 
     def __init__(self, case: Case) -> None:
         self.case = case
         self.word = word(case)
-        self.followed: Mapping[str, Sequence[Followed]] = follow(case.spec, self.word, case.samples)
+        self.followings: Mapping[str, Followings] = judge_views(case.spec, self.word, case.samples)
 
     @cached_property
     def report(self) -> Report:
         """The oracle's report."""
         samples = self.case.samples
         origin = samples[0].t if samples else 0
-        return report_on(self.case.spec, self.followed, origin=origin, end=self.word.end)
+        return report_on(self.case.spec, self.followings, origin=origin, end=self.word.end)
 
     @cached_property
     def outcomes(self) -> Mapping[Key, Outcome]:
@@ -57,7 +58,12 @@ class Judgement:
     @cached_property
     def seen(self) -> Seen:
         """What attempts see of the inputs."""
-        starts = {name: [one.start for one in begun] for name, begun in self.followed.items()}
+        starts = {
+            key: one.start
+            for name, followings in self.followings.items()
+            for one in followings.attempts
+            for key in ((name, False, one.number), (name, True, one.doubtful_number))
+        }
         return Seen(self.case.spec, starts)
 
     def at(self, moment: Moment) -> tuple[dict[Key, Outcome], dict[Key, Waiting]]:
@@ -70,9 +76,10 @@ class Judgement:
         waiting: dict[Key, Waiting] = {}
         for key, requirement, one in self._begun(moment):
             simplified = may_be_simplified(requirement, self.case.spec.time)
-            here = Waiting(requirement, one.start, moment, simplified=simplified)
+            here = Waiting(one.start, moment, simplified=simplified)
             if self._is_decided(one, moment, here):
-                decided[key] = self.outcomes[key]
+                if key in self.outcomes:  # what was met in doubt vanishes
+                    decided[key] = self.outcomes[key]
             else:
                 waiting[key] = here
         return decided, waiting
@@ -86,10 +93,18 @@ class Judgement:
 
     def _begun(self, moment: Moment) -> Iterator[tuple[Key, Requirement, Followed]]:
         """The attempts whose trigger is known at a moment."""
-        for name, followed in self.followed.items():
+        for name, followings in self.followings.items():
             requirement = self.case.spec.requirements[name]
             if is_upon_end(requirement):
                 continue
-            for number, one in enumerate(followed, start=1):
-                if one.start.word.letters[one.start.position].instant <= moment.end:
-                    yield (name, number), requirement, one
+            for one in followings.attempts:
+                if one.start.triggered <= moment.end:
+                    yield (name, *_number_at(one, moment)), requirement, one
+
+
+def _number_at(one: Followed, moment: Moment) -> tuple[bool, int]:
+    """Whether an attempt is in doubt at a moment, and its number then."""
+    sure = one.start.sure
+    if sure is not None and one.start.word.letters[sure].instant <= moment.end:
+        return False, one.number
+    return True, one.doubtful_number

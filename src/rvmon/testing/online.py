@@ -7,7 +7,7 @@ from typing import Any
 
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key, Outcome
+from rvmon.testing.compare import Key, Outcome, key_of
 from rvmon.testing.drive import Monitored, is_asked, tell
 from rvmon.testing.held_back import HeldBack
 from rvmon.testing.judgement import Judgement
@@ -48,12 +48,12 @@ def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
             open_ = monitor.open
             found += _open(waiting, open_)
             found += _unforeseen(decided, forecast)
-            forecast |= {(a.requirement, a.number): a.forecast for a in open_ if a.forecast}
+            forecast |= {key_of(a): a.forecast for a in open_ if a.forecast}
             due = monitor.next_due
         found += _taken(whole, action, settle)
         if found:
             return [f"action {count} {line}" for line in found]
-        told |= {(a.requirement, a.number) for a in attempts}
+        told |= {key_of(a) for a in attempts}
     return []
 
 
@@ -89,24 +89,24 @@ def _returned(
     decided: Mapping[Key, Outcome], attempts: Sequence[Attempt], told: set[Key]
 ) -> Iterator[str]:
     due = decided.keys() - told
-    now = {(a.requirement, a.number) for a in attempts}
+    now = {key_of(a) for a in attempts}
     if now != due:
         yield f"decides {sorted(due)}, returned {sorted(now)}"
         return
     for attempt in attempts:
-        wanted = decided[attempt.requirement, attempt.number]
+        wanted = decided[key_of(attempt)]
         if (attempt.decided, attempt.verdict) != (wanted.decided, wanted.verdict):
             yield f"returned {attempt}, expected {wanted}"
 
 
 def _open(waiting: Mapping[Key, Waiting], found: Sequence[Attempt]) -> Iterator[str]:
     wanted = {(*key, one.triggered) for key, one in waiting.items()}
-    got = {(a.requirement, a.number, a.triggered) for a in found}
+    got = {(*key_of(a), a.triggered) for a in found}
     if got != wanted or len(found) != len(got):
         yield f"leaves open {sorted(wanted)}, shown are {sorted(got)}"
         return
     for attempt in found:
-        one = waiting[attempt.requirement, attempt.number]
+        one = waiting[key_of(attempt)]
         for part in one.misnamed(attempt.owed):
             yield f"{attempt} is said to owe {part}, which waits for nothing"
         deadline = one.deadline()
@@ -116,10 +116,10 @@ def _open(waiting: Mapping[Key, Waiting], found: Sequence[Attempt]) -> Iterator[
 
 def _unforeseen(decided: Mapping[Key, Outcome], forecast: Mapping[Key, Verdict]) -> Iterator[str]:
     """What was decided otherwise than a forecast said."""
-    for (name, number), outcome in decided.items():
-        said = forecast.get((name, number), outcome.verdict)
+    for key, outcome in decided.items():
+        said = forecast.get(key, outcome.verdict)
         if said is not outcome.verdict:
-            yield f"decides {name} #{number}: {outcome}; {said.value} was forecast"
+            yield f"decides {key}: {outcome}; {said.value} was forecast"
 
 
 def _early(

@@ -77,9 +77,7 @@ def evaluate(
     return report_on(checked, followings, origin=listed[0].t if listed else 0, end=word.end)
 
 
-def judge_views(
-    spec: CheckedSpec, word: Word, samples: Sequence[Sample]
-) -> dict[str, Followings]:
+def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dict[str, Followings]:
     """What is judged of each requirement on a word, with its attempts.
 
     Args:

@@ -65,7 +65,9 @@ class _Lost:
 
     def filled(self, name: str, value: Value, *, born: bool) -> Value:
         if name in self.spec.signals:
-            return value if not born or _is_known(value) else self.scalar(self.spec.signals[name].type)
+            return (
+                value if not born or _is_known(value) else self.scalar(self.spec.signals[name].type)
+            )
         event = self.spec.events[name]
         if isinstance(value, tuple):
             return tuple(self._payload(event, one) for one in value)

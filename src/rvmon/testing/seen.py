@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from rvmon.spec.checked import (
     BoundAtom,
@@ -16,7 +16,7 @@ from rvmon.spec.checked import (
 )
 from rvmon.spec.printer import format_formula
 from rvmon.testing.attempts import Start
-from rvmon.testing.compare import Key
+from rvmon.testing.compare import Key, key_of
 from rvmon.testing.health import may_be_simplified
 from rvmon.testing.kleene import Truth
 from rvmon.testing.truths import Truths
@@ -25,7 +25,13 @@ from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
-_SCALARS: Mapping[Truth, Scalar] = {Truth.TRUE: True, Truth.FALSE: False, Truth.UNKNOWN: None}
+_SCALARS: Mapping[Truth, tuple[Scalar, ...]] = {
+    Truth.TRUE: (True,),
+    Truth.FALSE: (False,),
+    Truth.UNKNOWN: (None,),
+    Truth.UNBORN: (True, False, None),
+}
+"""What is shown of a truth; what is not born is shown as the requirement takes it."""
 
 
 class Seen:
@@ -36,10 +42,10 @@ class Seen:
 
     Args:
         spec: gives the requirements.
-        starts: the law's attempts by requirement.
+        starts: the law's attempts.
     """
 
-    def __init__(self, spec: CheckedSpec, starts: Mapping[str, Sequence[Start]]) -> None:
+    def __init__(self, spec: CheckedSpec, starts: Mapping[Key, Start]) -> None:
         self._spec = spec
         self._starts = starts
         self._values: dict[Key, _Values] = {}
@@ -49,8 +55,9 @@ class Seen:
         lines = []
         for attempt in report.attempts:
             requirement = self._spec.requirements[attempt.requirement]
-            start = self._starts[requirement.id][attempt.number - 1]
-            values = self._values_of((requirement.id, attempt.number), requirement, start)
+            key = key_of(attempt)
+            start = self._starts[key]
+            values = self._values_of(key, requirement, start)
             if not values.agree(attempt.at_trigger, start.position):
                 lines.append(f"{attempt} saw {attempt.at_trigger} at its trigger")
             bare = not attempt.at_trigger and not may_be_simplified(requirement, self._spec.time)
@@ -88,6 +95,6 @@ class _Values:
     def agree(self, seen: Mapping[str, Scalar], position: int) -> bool:
         """Whether the values are those of a position."""
         return all(
-            text in self.atoms and _SCALARS[self.truths.truth(self.atoms[text], position)] is value
+            text in self.atoms and value in _SCALARS[self.truths.state(self.atoms[text], position)]
             for text, value in seen.items()
         )

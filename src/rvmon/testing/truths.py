@@ -339,12 +339,15 @@ class Truths:
         return negation(self._since(_true, _not(operand), i, interval))
 
     def _held(self, operand: Operand, i: int, interval: Interval) -> Truth:
-        """All positions of the window had it, which has to lie behind its birth whole."""
+        """All positions of the window had it, which has to lie behind its birth whole.
+
+        What is unknown may not be born either: it tells nothing of where the birth was.
+        """
         start, now = self._letters[0].instant, self._letters[i].instant
         window = [k for k in range(i + 1) if _within(now - self._letters[k].instant, interval)]
         values = [operand(k) for k in window]
-        if window and all(value is Truth.UNBORN for value in values):
-            return Truth.UNBORN
+        if not {Truth.TRUE, Truth.FALSE}.intersection(values):
+            return disjunction(values)
         long_enough = interval.high is not None and now - start >= interval.high
         return conjunction([truth_of(long_enough), *(_born_or_false(value) for value in values)])
 

@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-from rvmon.spec.checked import Binary, BinaryOp, Formula, Mode, Requirement, Unary, UnaryOp
+from rvmon.spec.checked import Binary, BinaryOp, Formula, Mode, Unary, UnaryOp
 from rvmon.spec.printer import format_formula
-from rvmon.testing.attempts import Start, obligation
+from rvmon.testing.attempts import Readings, Start, counts_in_favour, obligation
 from rvmon.testing.kleene import Truth
 from rvmon.testing.moments import Moment
-from rvmon.testing.truths import Truths
+from rvmon.testing.truths import Rest
 from rvmon.testing.walk import intervals, subformulas
 from rvmon.trace.time import format_ticks
 
@@ -39,18 +39,18 @@ class Waiting:
         triggered: the instant of the trigger.
     """
 
-    def __init__(
-        self, requirement: Requirement, start: Start, moment: Moment, *, simplified: bool
-    ) -> None:
+    def __init__(self, start: Start, moment: Moment, *, simplified: bool) -> None:
+        requirement = start.view.requirement
         letters = tuple(one for one in start.word.letters if one.instant <= moment.end)
         word = replace(start.word, letters=letters, end=moment.end, reached=moment.reached)
-        self.triggered = start.word.letters[start.position].instant
+        self.triggered = start.triggered
         self._requirement = requirement
         self._simplified = simplified
         self._start = start
         self._letters = letters
         self._reached = moment.reached
-        self._truths = Truths(word, start.captured)
+        self._readings = Readings(word, Rest.UNKNOWN)
+        self._truths = self._readings.of(start.captured, favour=counts_in_favour(requirement))
         parts = [*subformulas(requirement.consequent)]
         edges = [one for one in parts if isinstance(one, Unary) and one.op in _EDGES]
         # `rise φ` is `φ and not previous φ`: both may be told by themselves.
@@ -62,7 +62,7 @@ class Waiting:
     @property
     def truth(self) -> Truth:
         """Of what is owed."""
-        return obligation(self._requirement, self._start, self._truths)
+        return obligation(self._start, self._readings)
 
     def deadline(self) -> int | None:
         """The last instant before time alone decides, if nothing more comes; to be asked last.
@@ -77,7 +77,7 @@ class Waiting:
             if high is not None
         }
         for last in sorted(end for end in ends if end >= self._reached):
-            self._truths.reach(last + 1)
+            self._readings.reach(last + 1)
             if self.truth is not Truth.UNKNOWN:
                 return last
         return None

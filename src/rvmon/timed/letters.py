@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import assert_never
 
 from rvmon.formula.alphabet import Alphabet
-from rvmon.formula.state import FALSE, TRUE, StateOp
+from rvmon.formula.state import FALSE, TRUE, Lost, Missing, StateOp, Unborn
 from rvmon.formula.state import State as Proposition
 from rvmon.spec.checked import (
     Compare,
@@ -57,7 +57,7 @@ class Letters:
         for argument in proposition.args:
             self.require(argument)
         match proposition.op, proposition.leaf:
-            case StateOp.PREVIOUS | StateOp.SINCE, _:
+            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT, _:
                 raise NotExpressibleError("it speaks of the past")
             case StateOp.LEAF, SignalAtom(name=name):
                 self._require_signal(name)
@@ -73,7 +73,7 @@ class Letters:
                             pass
                         case _:
                             raise NotExpressibleError("it calculates with numbers")
-            case StateOp.LEAF, Constant():
+            case (StateOp.LEAF, Constant() | Unborn() | Missing() | Lost()) | (StateOp.SURE, _):
                 pass
             case StateOp.LEAF, _:
                 raise NotExpressibleError("it speaks of updates or of the trace's ends")
@@ -93,7 +93,9 @@ class Letters:
                 return any(self.truth(part, state, labels) for part in proposition.args)
             case StateOp.LEAF:
                 return self._leaf(proposition, state, labels)
-            case StateOp.PREVIOUS | StateOp.SINCE:
+            case StateOp.SURE:  # nothing is unknown
+                return self.truth(proposition.args[0], state, labels)
+            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT:
                 raise AssertionError("refused before")
             case _:
                 assert_never(proposition.op)
@@ -102,6 +104,8 @@ class Letters:
         match proposition.leaf:
             case Constant(value=value):
                 return value
+            case Unborn() | Missing() | Lost():  # nor is anything unborn
+                return False
             case SignalAtom(name=name):
                 return bool(self._read(name, state))
             case EventAtom(name=name):

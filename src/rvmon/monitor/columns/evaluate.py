@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.dataflow.inputs import Inputs
-from rvmon.dataflow.numbers import operands
+from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts

@@ -1,0 +1,314 @@
+"""Formulas of the present and past with four values, as state formulas with three.
+
+Before the birth of its signals a proposition is neither true nor false nor unknown. No engine has
+that value: each place in which a formula stands says what it takes it for, and the formula is made
+into one that is that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import assert_never
+
+from rvmon.formula.factory import Factory
+from rvmon.formula.numeric import reads_fields, signals_of
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Missing, Shown, State
+from rvmon.spec.checked import (
+    Atom,
+    Binary,
+    BinaryOp,
+    BoundAtom,
+    Compare,
+    Constant,
+    EventAtom,
+    Formula,
+    Interval,
+    ProbeAtom,
+    SignalAtom,
+    Unary,
+    UnaryOp,
+)
+
+
+class Four:
+    """A formula with four values.
+
+    Args:
+        read: gives the state formula with three that is FALSE, UNKNOWN or TRUE where this one is
+            not born.
+        missing: TRUE where it is not born, UNKNOWN where it is unknown, else FALSE; default as
+            `read` tells it.
+        mortal: whether there is a time before its birth.
+        fades: whether it is born for good as soon as it is.
+    """
+
+    def __init__(
+        self,
+        factory: Factory,
+        read: Callable[[int], State],
+        *,
+        missing: State | None = None,
+        mortal: bool = True,
+        fades: bool = False,
+    ) -> None:
+        self._factory = factory
+        self.read = cache(read) if mortal else _same(read(UNKNOWN))
+        self.mortal = mortal
+        self.fades = fades
+        self._missing = missing
+
+    @property
+    def unborn(self) -> State:
+        """Two-valued: it is not born."""
+        if not self.mortal:
+            return self._factory.state_false
+        if self._missing is not None:
+            return self._factory.sure(self._missing)
+        sure, negation = self._factory.sure, self._factory.negation
+        return self._factory.state_all([sure(self.read(TRUE)), sure(negation(self.read(FALSE)))])
+
+    @property
+    def missing(self) -> State:
+        """TRUE where it is not born, UNKNOWN where it is unknown, else FALSE."""
+        if self._missing is not None:
+            return self._missing
+        factory = self._factory
+        born = self.read(TRUE)
+        lost = factory.state_all([born, factory.negation(born)])
+        return factory.state_any([self.unborn, lost]) if self.mortal else lost
+
+    @property
+    def lost(self) -> State:
+        """Two-valued: it is unknown."""
+        sure, negation, missing = self._factory.sure, self._factory.negation, self.missing
+        return self._factory.state_all([negation(sure(missing)), negation(sure(negation(missing)))])
+
+
+def _same(state: State) -> Callable[[int], State]:
+    return lambda _: state
+
+
+class Reader:
+    """Makes formulas of the present and past into state formulas.
+
+    Args:
+        factory: where they are made.
+        period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
+
+    Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
+    """
+
+    def __init__(self, factory: Factory, period: int | None) -> None:
+        self.factory = factory
+        self.period = period
+
+    def literal(self, formula: Formula, unborn: int) -> State:
+        """A formula whose propositions, not the whole, are taken for `unborn` where they are not.
+
+        A proposition is an atom or an operator of the past.
+        """
+        factory = self.factory
+        match formula:
+            case Unary(op=UnaryOp.NOT, operand=operand):
+                return factory.negation(self.literal(operand, TRUE - unborn))
+            case Binary(op=BinaryOp.AND | BinaryOp.OR | BinaryOp.IMPLIES as op):
+                left = formula.left
+                if op is BinaryOp.IMPLIES:
+                    left = Unary(UnaryOp.NOT, left)
+                join = factory.state_all if op is BinaryOp.AND else factory.state_any
+                return join([self.literal(left, unborn), self.literal(formula.right, unborn)])
+            case Binary(op=BinaryOp.IFF | BinaryOp.XOR):
+                return self.literal(_expanded(formula), unborn)
+            case _:
+                return self.four(formula).read(unborn)
+
+    def four(self, formula: Formula) -> Four:
+        """A formula with its four values."""
+        match formula:
+            case Unary(op=op, operand=operand, interval=interval):
+                return self._unary(op, self.four(operand), interval)
+            case Binary(op=BinaryOp.IFF | BinaryOp.XOR):
+                return self.four(_expanded(formula))
+            case Binary(op=op, left=left, right=right, interval=interval):
+                return self._binary(op, self.four(left), self.four(right), interval)
+            case Constant(value=value):
+                constant = self.factory.state_true if value else self.factory.state_false
+                return Four(self.factory, _same(constant), mortal=False)
+            case _:
+                return self._atom(formula)
+
+    def _atom(self, atom: Atom) -> Four:
+        factory = self.factory
+        leaf = without_span(atom)
+        if not isinstance(leaf, SignalAtom | Compare) or not signals_of(leaf):
+            return Four(factory, lambda _: factory.leaf(leaf), mortal=False)
+        missing = None if reads_fields(leaf) else factory.leaf(Missing(leaf))
+        return Four(
+            factory,
+            lambda unborn: factory.leaf(leaf, unborn),
+            missing=missing,
+            fades=missing is not None,
+        )
+
+    def _unary(self, op: UnaryOp, arg: Four, interval: Interval | None) -> Four:
+        match op:
+            case UnaryOp.NOT:
+                return self._not(arg)
+            case UnaryOp.PREVIOUS:
+                return self._previous(arg)
+            case UnaryOp.ONCE:
+                return self._since(self._constant(True), arg, interval)
+            case UnaryOp.HISTORICALLY:
+                return self._not(self._since(self._constant(True), self._not(arg), interval))
+            case UnaryOp.RISE:
+                before = self._not(self._settled(self._previous(arg)))
+                return self._all([arg, before])
+            case UnaryOp.FALL:
+                return self._all([self._not(arg), self._settled(self._previous(arg))])
+            case UnaryOp.HELD:
+                return self._held(arg, interval)
+            case UnaryOp.NEXT | UnaryOp.EVENTUALLY | UnaryOp.ALWAYS:
+                raise AssertionError("future operators were sorted out")
+            case _:
+                assert_never(op)
+
+    def _binary(self, op: BinaryOp, left: Four, right: Four, interval: Interval | None) -> Four:
+        match op:
+            case BinaryOp.AND:
+                return self._all([left, right])
+            case BinaryOp.OR:
+                return self._any([left, right])
+            case BinaryOp.IMPLIES:
+                return self._any([self._not(left), right])
+            case BinaryOp.SINCE:
+                return self._since(left, right, interval)
+            case _:
+                raise AssertionError("other operators were sorted out")
+
+    def _constant(self, value: bool) -> Four:
+        state = self.factory.state_true if value else self.factory.state_false
+        return Four(self.factory, _same(state), mortal=False)
+
+    def _not(self, arg: Four) -> Four:
+        negation = self.factory.negation
+        return Four(
+            self.factory,
+            lambda unborn: negation(arg.read(TRUE - unborn)),
+            missing=arg._missing,
+            mortal=arg.mortal,
+            fades=arg.fades,
+        )
+
+    def _settled(self, arg: Four) -> Four:
+        """FALSE where it is not born, as what lies before the trace."""
+        return Four(self.factory, _same(arg.read(FALSE)), mortal=False)
+
+    def _any(self, args: Sequence[Four]) -> Four:
+        return self._not(self._all([self._not(arg) for arg in args]))
+
+    def _all(self, args: Sequence[Four]) -> Four:
+        factory = self.factory
+
+        def read(unborn: int) -> State:
+            if unborn != FALSE:
+                return factory.state_all([arg.read(unborn) for arg in args])
+            if all(not arg.mortal or len(args) == 1 for arg in args):
+                return factory.state_all([arg.read(FALSE) for arg in args])
+            # What was lost is not excused by what is not there: with it, the whole is unknown.
+            born = factory.state_all([factory.negation(arg.unborn) for arg in args])
+            lost = factory.state_any([arg.lost for arg in args])
+            known = factory.state_all([arg.read(UNKNOWN) for arg in args])
+            return factory.state_all([known, factory.state_any([born, lost])])
+
+        return Four(factory, read, mortal=any(arg.mortal for arg in args))
+
+    def _since(self, left: Four, right: Four, interval: Interval | None) -> Four:
+        """Positions at which an operand is not born are passed over."""
+        factory = self.factory
+        low, high = self._window(interval)
+        if high is not None and low > high:
+            return self._constant(False)
+        value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
+        if not right.mortal:
+            return Four(factory, _same(value), mortal=False)
+        if right.fades and low == 0:
+            unborn = right.unborn
+        else:
+            born = factory.since(factory.state_true, factory.negation(right.unborn), low, high)
+            some = factory.since(factory.state_true, factory.state_true, low, high)
+            unborn = factory.state_all([factory.negation(born), some])
+        return self._besides(value, unborn)
+
+    def _besides(self, value: State, unborn: State) -> Four:
+        """The formula that is not born where `unborn` says so; `value` is FALSE there."""
+        factory = self.factory
+
+        def read(reading: int) -> State:
+            if reading == FALSE:
+                return value
+            there = unborn if reading == TRUE else factory.state_all([unborn, factory.unknown])
+            return factory.state_any([value, there])
+
+        return Four(factory, read)
+
+    def _previous(self, arg: Four) -> Four:
+        factory = self.factory
+        value = factory.previous(arg.read(FALSE))
+        if not arg.mortal:
+            return Four(factory, _same(value), mortal=False)
+        return self._besides(value, factory.previous(arg.unborn))
+
+    def _held(self, arg: Four, interval: Interval | None) -> Four:
+        """As long as it must have held, it must have been born."""
+        factory = self.factory
+        elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
+        value = factory.state_all([self._historically(arg.read(FALSE), interval), elapsed])
+        missing = self._historically(arg.missing, interval)
+        if not arg.mortal:
+            lost = factory.state_all([missing, factory.negation(missing)])
+            return Four(factory, _same(factory.state_any([value, lost])), mortal=False)
+
+        def read(unborn: int) -> State:
+            if unborn == TRUE:
+                return factory.state_any([value, missing])
+            other = factory.unknown if unborn == UNKNOWN else factory.negation(missing)
+            return factory.state_any([value, factory.state_all([missing, other])])
+
+        return Four(factory, read)
+
+    def _historically(self, arg: State, interval: Interval | None) -> State:
+        factory = self.factory
+        low, high = self._window(interval)
+        if high is not None and low > high:
+            return factory.state_true
+        return factory.negation(factory.since(factory.state_true, factory.negation(arg), low, high))
+
+    def _window(self, interval: Interval | None) -> tuple[int, int | None]:
+        low, high = (interval.low, interval.high) if interval else (0, None)
+        if self.period:
+            low = -(-low // self.period) * self.period
+            high = None if high is None else high // self.period * self.period
+        return low, high
+
+
+def _expanded(formula: Binary) -> Formula:
+    """`a <-> b` as `(a & b) | (!a & !b)`, `a xor b` as `(a & !b) | (!a & b)`."""
+    left, right = formula.left, formula.right
+    not_left, not_right = Unary(UnaryOp.NOT, left), Unary(UnaryOp.NOT, right)
+    if formula.op is BinaryOp.XOR:
+        right, not_right = not_right, right
+    both = Binary(BinaryOp.AND, left, right)
+    return Binary(BinaryOp.OR, both, Binary(BinaryOp.AND, not_left, not_right))
+
+
+def without_span(atom: Atom) -> Shown:
+    """The atom as it is read off the input, wherever in a spec it stands."""
+    match atom:
+        case Constant():
+            raise AssertionError("constants are no leaves")
+        case SignalAtom() | EventAtom() | Compare() | ProbeAtom() | BoundAtom():
+            return replace(atom, span=None)
+        case _:
+            assert_never(atom)

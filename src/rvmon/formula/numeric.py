@@ -1,0 +1,46 @@
+"""What atoms read of the input."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rvmon.spec.checked import (
+    Arithmetic,
+    Compare,
+    FieldValue,
+    Numeric,
+    SignalAtom,
+    SignalValue,
+    UpdateValue,
+)
+
+
+def operands(expression: Numeric) -> Iterator[Numeric]:
+    """What an expression is made of, without the operations."""
+    match expression:
+        case Arithmetic(args=args):
+            for arg in args:
+                yield from operands(arg)
+        case _:
+            yield expression
+
+
+def signals_of(atom: SignalAtom | Compare) -> dict[str, bool]:
+    """The signals that an atom reads; of each, whether it asks for an update after its birth.
+
+    Source: SEMANTICS, section 1 (Birth).
+    """
+    if isinstance(atom, SignalAtom):
+        return {atom.name: False}
+    found: dict[str, bool] = {}
+    for part in (*operands(atom.left), *operands(atom.right)):
+        if isinstance(part, SignalValue | UpdateValue):
+            found[part.name] = found.get(part.name, False) or isinstance(part, UpdateValue)
+    return found
+
+
+def reads_fields(atom: SignalAtom | Compare) -> bool:
+    """Whether it speaks of the payload of an event."""
+    return isinstance(atom, Compare) and any(
+        isinstance(part, FieldValue) for part in (*operands(atom.left), *operands(atom.right))
+    )
