@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from rvmon.automaton.automaton import Automaton
 from rvmon.dataflow.graph import Graph
 from rvmon.formula.alphabet import Alphabet
-from rvmon.formula.state import State
-from rvmon.spec.checked import CheckedSpec, Requirement
+from rvmon.formula.state import Leaf, Missing, State, Unborn
+from rvmon.spec.checked import CheckedSpec, Literal, Requirement, SignalAtom, SignalValue
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,3 +89,40 @@ class Plan:
     signals: tuple[str, ...]
     events: tuple[str, ...]
     uses: Mapping[str, Uses]
+
+    @property
+    def judged(self) -> tuple[PlannedRule, ...]:
+        """The rules, then those that judge the attempts in doubt of some of them."""
+        return (*self.rules, *(rule.hidden for rule in self.rules if rule.hidden is not None))
+
+    @property
+    def hidden_of(self) -> tuple[int, ...]:
+        """For each of the latter, whose attempts in doubt it judges: the place of that rule."""
+        return tuple(n for n, rule in enumerate(self.rules) if rule.hidden is not None)
+
+    def readers(self, name: str) -> tuple[int, ...]:
+        """The leaves that depend on the value of a signal or event."""
+        nodes = self.graph.nodes
+        return tuple(
+            place
+            for place in self.graph.by_name.get(name, ())
+            if not asks_knowledge(nodes[place].leaf)
+        )
+
+    def knowers(self, name: str) -> tuple[int, ...]:
+        """The leaves that depend on whether the value of a signal is known, and nothing else."""
+        nodes = self.graph.nodes
+        return tuple(
+            place for place in self.graph.by_name.get(name, ()) if asks_knowledge(nodes[place].leaf)
+        )
+
+
+def asks_knowledge(leaf: Leaf | None) -> bool:
+    """Whether a leaf depends on what is known of signals, and not on their values."""
+    if isinstance(leaf, Missing):
+        atom = leaf.atom
+        plain = isinstance(atom, SignalAtom) or (
+            isinstance(atom.left, SignalValue) and isinstance(atom.right, Literal)
+        )
+        return plain
+    return isinstance(leaf, Unborn)

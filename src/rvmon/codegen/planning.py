@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rvmon.codegen.plan import Plan, PlannedRule, Uses
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import Leaf
+from rvmon.formula.state import Leaf, Missing, Unborn
 from rvmon.spec.checked import CheckedSpec, Compare, Probe, ProbeAtom, TimeModel, UpdateValue
 
 
@@ -35,6 +35,10 @@ def _uses(graph: Graph, name: str) -> Uses:
 
 
 def _asks_history(leaf: Leaf, name: str) -> bool:
+    if isinstance(leaf, Missing):
+        return _asks_history(leaf.atom, name)
+    if isinstance(leaf, Unborn):
+        return (name, True) in leaf.signals
     if isinstance(leaf, ProbeAtom):
         return leaf.probe is Probe.CHANGED
     return isinstance(leaf, Compare) and any(

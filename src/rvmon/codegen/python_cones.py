@@ -135,7 +135,7 @@ class ConeWriter:
             name: of a signal.
             instant: the leaves that depend on the present value of one signal and nothing else.
         """
-        readers = self.plan.graph.by_name.get(name, ())
+        readers = self.plan.readers(name)
         return self.each and self.small and len(readers) == 1 and instant.issuperset(readers)
 
     def apart(self, name: str, quiet: str) -> str:
@@ -145,6 +145,8 @@ class ConeWriter:
             name: of the signal.
             quiet: the condition under which nothing but a new value can change anything.
         """
+        if self.plan.knowers(name):
+            quiet += f" and self.last{self.plan.signals.index(name)} is not MISSING"
         if not self.joins:
             return quiet
         cone = bits(tuple(self._cone_of(name)))
@@ -153,7 +155,7 @@ class ConeWriter:
         return f"(t < self.wake or {late}){rest}"
 
     def _cone_of(self, name: str) -> list[int]:
-        (leaf,) = self.plan.graph.by_name[name]
+        (leaf,) = self.plan.readers(name)
         (places,) = (places for places in self.cones if places[0] == leaf)
         return places
 

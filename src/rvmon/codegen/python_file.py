@@ -58,7 +58,7 @@ def python_file(plan: Plan) -> str:
     parts.append(f"    NAMES = {tuple(rule.requirement.id for rule in plan.rules)!r}\n")
     parts.append(f"    KINDS = {_kinds(plan)}\n")
     parts.append("    TABLES = (\n")
-    parts += [_tables(rule) for rule in plan.rules]
+    parts += [_tables(rule) for rule in plan.judged]
     parts.append("    )\n    OUTCOMES = (\n")
     parts += [f"        {_outcomes(rule)!r},\n" for rule in plan.rules]
     parts.append("    )\n")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import assert_never
 
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import events_of
-from rvmon.formula.state import Elapsed, Leaf
+from rvmon.formula.numeric import signals_of
+from rvmon.formula.state import UNKNOWN, Elapsed, Leaf, Lost, Missing, Unborn
 from rvmon.spec.checked import (
     Arithmetic,
     BoundAtom,
@@ -52,24 +54,63 @@ _OPERATION = {
 
 def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
     """The value of a leaf at `t`, in a method of the monitor with `s` at hand."""
+    unborn = plan.graph.nodes[place].unborn
+    if isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN:
+        return _before_birth(plan, leaf, str(unborn))
     match leaf:
+        case Lost():
+            return "1"
+        case Unborn(signals=signals):
+            return f"2 if {_unborn(plan, signals)} else 0"
+        case Missing(atom=atom):
+            return f"self.missing_({_before_birth(plan, atom, '3')})"
         case Constant(value=value):
             return "2" if value else "0"
         case Elapsed(duration=duration):
             return f"self.elapsed_({place}, t, {duration})"
         case BoundAtom():
             return "2 if t == self.origin else 0"
-        case SignalAtom(name=name):
-            held = f"s[{plan.signals.index(name)}]"
-            return f"1 if {held} is None else 2 if {held} else 0"
+        case SignalAtom() | Compare():
+            return _atom(plan, leaf)
         case EventAtom(name=name):
             return f"self.o[{plan.events.index(name)}]"
         case ProbeAtom(probe=probe, name=name):
             return _probe(plan, probe, name)
-        case Compare():
-            return comparison(plan, leaf)
         case _:
             assert_never(leaf)
+
+
+def _unborn(plan: Plan, signals: Iterable[tuple[str, bool]]) -> str:
+    """Whether some signal has not had what is read of it."""
+    places = ((plan.signals.index(name), moved) for name, moved in signals)
+    return " or ".join(f"self.births[{place}] < {2 if moved else 1}" for place, moved in places)
+
+
+def _before_birth(plan: Plan, atom: SignalAtom | Compare, unborn: str) -> str:
+    """The value of an atom over signals, which is something else before their birth."""
+    signals = signals_of(atom).items()
+    if not signals:
+        return _atom(plan, atom)
+    early = f"{unborn} if {_unborn(plan, signals)} else 1"
+    if isinstance(atom, Compare):
+        events = [plan.events.index(event) for event in events_of(atom.left, atom.right)]
+        if events:
+            early = f"1 if self.uncertain_({events!r}) else {early}"
+            return f"({early}) if (got := {_atom(plan, atom)}) == 1 else got"
+        if not _is_plain(atom):
+            return f"({early}) if (got := {_atom(plan, atom)}) == 1 else got"
+    return _atom(plan, atom).replace("1 if", f"({early}) if", 1)
+
+
+def _is_plain(atom: Compare) -> bool:
+    return isinstance(atom.left, SignalValue) and isinstance(atom.right, Literal)
+
+
+def _atom(plan: Plan, atom: SignalAtom | Compare) -> str:
+    if isinstance(atom, Compare):
+        return comparison(plan, atom)
+    held = f"s[{plan.signals.index(atom.name)}]"
+    return f"1 if {held} is None else 2 if {held} else 0"
 
 
 def known_test(leaf: Leaf | None, variable: str) -> str | None:

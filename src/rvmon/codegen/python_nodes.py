@@ -31,7 +31,8 @@ class Roles:
 
     Attributes:
         letters: per node, a bit for each requirement whose letter it is part of.
-        triggers: per node, a bit for each requirement that it triggers.
+        triggers: per node, a bit for each requirement that it triggers, and behind these one for
+            each whose episodes may go on with it after a failure.
         kept: a bit for each node that has a value of its own; the others are parts of one other.
         parents: per node, a bit for each kept node whose value depends on it directly.
     """
@@ -52,17 +53,23 @@ def roles_of(plan: Plan) -> Roles:
     graph = plan.graph
     letters = [0 for _ in graph.nodes]
     triggers = [0 for _ in graph.nodes]
-    for index, rule in enumerate(plan.rules):
+    asked = 0
+    for index, rule in enumerate(plan.judged):
         for state in rule.alphabet.propositions:
             letters[graph.index[state]] |= 1 << index
         if rule.trigger is not None:
             triggers[graph.index[rule.trigger]] |= 1 << index
+        if rule.again is not None:
+            triggers[graph.index[rule.again]] |= 1 << index + len(plan.judged)
+        for named in (rule.unborn, rule.told):
+            asked |= 0 if named is None else 1 << graph.index[named]
     kept = 0
     depths = [0 for _ in graph.nodes]
     for place, state in enumerate(graph.nodes):
         depth = 1 + max((depths[operand] for operand in graph.operands[place]), default=0)
-        combines = state.op in (StateOp.NOT, StateOp.AND, StateOp.OR)
-        read = letters[place] or triggers[place] or len(graph.parents[place]) != 1
+        combines = state.op in (StateOp.NOT, StateOp.AND, StateOp.OR, StateOp.SURE)
+        read = letters[place] or triggers[place] or asked >> place & 1
+        read = read or len(graph.parents[place]) != 1
         if combines and not read and depth < _DEEPEST:
             depths[place] = depth
         else:
@@ -121,8 +128,18 @@ class NodeWriter:
         """Put the value of a node at `t` into `n`; the other names are those of `ARRAYS`."""
         state = self.plan.graph.nodes[place]
         match state.op:
-            case StateOp.LEAF | StateOp.NOT | StateOp.AND | StateOp.OR:
+            case StateOp.LEAF | StateOp.NOT | StateOp.AND | StateOp.OR | StateOp.SURE:
                 yield f"n = {self.formula(place)}"
+            case StateOp.DOUBT:
+                (operand,) = self.plan.graph.operands[place]
+                yield f"m = {self.value(operand)}"
+                yield f"if m != 1 and w[{place}] != 1 and not v[{place}]:"
+                if state.every:
+                    raise ValueError("instances are not generated")
+                yield "    n = 0"
+                yield "else:"
+                yield f"    n = self.doubt_({place}, t, m, {state.pulse}, False)"
+                yield f"w[{place}] = m"
             case StateOp.PREVIOUS:
                 (operand,) = self.plan.graph.operands[place]
                 yield f"n = w[{place}]"
@@ -135,6 +152,13 @@ class NodeWriter:
                 yield from self._since(place, state)
             case _:
                 assert_never(state.op)
+
+    def pending(self, place: int) -> str:
+        """A further condition under which a node may change; empty if there is none."""
+        graph = self.plan.graph
+        state = graph.nodes[place]
+        lasts = _is_latch(state) and graph.nodes[graph.operands[place][0]].leaf == Constant(True)
+        return f" and v[{place}] != 2" if lasts else ""
 
     def value(self, place: int) -> str:
         """A node as an operand."""
@@ -160,6 +184,8 @@ class NodeWriter:
         if state.leaf is not None:
             return leaf_expression(self.plan, place, state.leaf)
         operands = [self.value(operand) for operand in self.plan.graph.operands[place]]
+        if state.op is StateOp.SURE:
+            return operands[0] if operands[0] in _TRUTHS else f"2 if {operands[0]} == 2 else 0"
         if state.op is StateOp.NOT:
             return _DENIED.get(operands[0], f"2 - {operands[0]}")
         sign, decisive = ("<", "0") if state.op is StateOp.AND else (">", "2")
@@ -282,4 +308,6 @@ class NodeWriter:
         state = self.plan.graph.nodes[place]
         if state.op is StateOp.SINCE:
             return not _is_latch(state)
-        return state.op is StateOp.PREVIOUS or isinstance(state.leaf, Elapsed)
+        if state.op in (StateOp.PREVIOUS, StateOp.DOUBT):
+            return True
+        return isinstance(state.leaf, Elapsed)

@@ -45,7 +45,10 @@ class _Writer:
         self.roles = roles_of(plan)
         names = (*plan.signals, *plan.events)
         present = tuple(name for name in names if arriving is None or name in arriving)
-        self.judges = [_judge(rule) for rule in plan.rules]
+        self.judges = [
+            *(_judge(rule) for rule in plan.rules),
+            *("Rule" for rule in plan.rules if rule.hidden is not None),
+        ]
         calm = all(judge == "SoloRule" for judge in self.judges)
         nodes = NodeWriter(plan, self.roles)
         self.visit = VisitWriter(plan, self.roles, nodes, calm=calm)
@@ -79,7 +82,7 @@ class _Writer:
         yield ""
 
     def _letters(self) -> Iterator[str]:
-        for index, rule in enumerate(self.plan.rules):
+        for index, rule in enumerate(self.plan.judged):
             alphabet = rule.alphabet
             places = [self.plan.graph.index[state] for state in alphabet.propositions]
             if len(places) <= _TABULATED:
@@ -96,7 +99,7 @@ class _Writer:
                 yield "    return worse, better"
             yield ""
             yield ""
-            if rule.noted is not None:
+            if rule.noted is not None and index < len(self.plan.rules):
                 yield from self._noted(index, rule, rule.noted)
 
     def _noted(self, index: int, rule: PlannedRule, noted: Sequence[State]) -> Iterator[str]:
@@ -146,15 +149,24 @@ class _Writer:
         if all(rule.noted is not None for rule in plan.rules):
             yield f"NOTED = {_tuple(f'noted{index}' for index in range(len(plan.rules)))}"
         yield "RULES = ("
-        for index, (rule, judge) in enumerate(zip(plan.rules, self.judges, strict=True)):
-            yield f"    ({judge}, letters{index}, {self._trigger(rule)}),  # {rule.requirement.id}"
+        for index, (rule, judge) in enumerate(zip(plan.judged, self.judges, strict=True)):
+            hidden = index >= len(plan.rules)
+            trigger = self._trigger(rule, hidden)
+            yield f"    ({judge}, letters{index}, {trigger}),  # {rule.requirement.id}"
         yield ")"
+        yield f"HIDDEN_OF = {plan.hidden_of!r}"
+        told = [self._place(rule.told) for rule in plan.rules]
+        yield f"TOLD = {tuple(told)!r}"
 
-    def _trigger(self, rule: PlannedRule) -> str:
-        place = -1 if rule.trigger is None else self.plan.graph.index[rule.trigger]
+    def _trigger(self, rule: PlannedRule, hidden: bool) -> str:
         requirement = rule.requirement
         episodic = requirement.mode is Mode.WHENEVER
-        return f"{place}, {requirement.pulse!r}, {episodic!r}"
+        places = f"{self._place(rule.again)}, {self._place(rule.unborn)}"
+        kind = f"{requirement.pulse!r}, {episodic or hidden!r}, {hidden!r}"
+        return f"{self._place(rule.trigger)}, {kind}, {places}"
+
+    def _place(self, state: State | None) -> int:
+        return -1 if state is None else self.plan.graph.index[state]
 
     def _momentary(self) -> tuple[tuple[int, tuple[str, ...]], ...]:
         """The leaves that speak of one position, with the names of which they need one."""

@@ -9,7 +9,7 @@ from rvmon.codegen.python_leaves import known_test, leaf_expression
 from rvmon.codegen.python_nodes import bits
 from rvmon.codegen.python_visit import indented
 from rvmon.dataflow.numbers import inputs_of
-from rvmon.formula.state import Leaf
+from rvmon.formula.state import UNKNOWN, Leaf, Missing, Unborn
 from rvmon.spec.checked import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
@@ -94,8 +94,8 @@ class ValueWriter:
     def _changed(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
         """Take another value; `given`: it is not `None`."""
         yield from self.kept(variable, name, given=given)
-        others = bits(self.plan.graph.by_name.get(name, ()))
-        for place in self.plan.graph.by_name.get(name, ()):
+        others = bits(self.plan.readers(name))
+        for place in self.plan.readers(name):
             leaf = self.plan.graph.nodes[place].leaf
             if place in self.instant and leaf is not None and not isinstance(leaf, SignalAtom):
                 others &= ~(1 << place)
@@ -109,11 +109,34 @@ class ValueWriter:
     def kept(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
         """Keep another value of a signal."""
         signal = self.plan.signals.index(name)
-        yield f"if s[{signal}] is None and self.first[{signal}] is None:"
-        yield f"    self.first[{signal}] = t"
+        yield f"if s[{signal}] is None:"
+        yield f"    if self.first[{signal}] is None:"
+        yield f"        self.first[{signal}] = t"
+        if self.tells_birth(name):
+            yield f"    if not self.births[{signal}]{'' if given else f' and {variable} is not None'}:"
+            yield f"        self.births[{signal}] = 1"
+        yield from self._found(name)
+        if not given:
+            yield f"elif {variable} is None:"
+            yield from self._found(name) if self.plan.knowers(name) else ("    pass",)
         known = variable if given else f"MISSING if {variable} is None else {variable}"
         yield f"self.last{signal} = {known}"
         yield f"s[{signal}] = {variable}"
+
+    def tells_birth(self, name: str) -> bool:
+        """Whether something depends on when a signal had its first value."""
+        nodes = self.plan.graph.nodes
+        places = self.plan.graph.by_name.get(name, ())
+        leaves = [nodes[place] for place in places]
+        return any(
+            isinstance(state.leaf, Unborn | Missing) or state.unborn != UNKNOWN for state in leaves
+        )
+
+    def _found(self, name: str) -> Iterator[str]:
+        """What depends on whether the value of a signal is known."""
+        knowers = self.plan.knowers(name)
+        if knowers:
+            yield f"    dirty |= {bits(knowers)}"
 
     def _occurs(self, variable: str, name: str) -> Iterator[str]:
         yield f"self.occur({self.plan.events.index(name)}, {variable})"

@@ -53,6 +53,10 @@ class VisitWriter:
         self.gathers = any(uses.history or uses.marked for uses in plan.uses.values()) or any(
             name in plan.uses for name in plan.events
         )
+        self.goes_on = any(
+            rule.requirement.mode is Mode.WHENEVER and rule.trigger is not None
+            for rule in plan.rules
+        )
         self.repeats = any(
             rule.requirement.pulse and rule.requirement.mode is not Mode.WHENEVER
             for rule in plan.rules
@@ -109,7 +113,7 @@ class VisitWriter:
         yield from indented(nodes, 2)
         yield "        self.dirty = 0"
         yield "    if first:"
-        yield f"        letters, triggers = 0, {(1 << len(self.plan.rules)) - 1}"
+        yield f"        letters, triggers = 0, {(1 << len(self.plan.judged)) - 1}"
         yield "        # What nodes were before was at no instant."
         yield "        self.until[:] = [None] * len(self.until)"
         if self.momentary:
@@ -154,7 +158,7 @@ class VisitWriter:
         yield f"if {' or '.join(concerns)}:"
         how = "conclude"
         if self.calm:
-            how = "conclude_alone" if len(self.plan.rules) == 1 else "conclude_calmly"
+            how = "conclude_alone" if len(self.plan.judged) == 1 else "conclude_calmly"
         yield f"    self.{how}(t, letters, {'triggers' if triggers else 0})"
 
     def done(self) -> Iterator[str]:
@@ -176,10 +180,10 @@ class VisitWriter:
 
     def _concerns(self, *, triggers: bool = True) -> Iterator[str]:
         """If none of these holds, a position is not to be judged."""
-        alone = len(self.plan.rules) == 1
+        alone = len(self.plan.judged) == 1
         yield f"letters and {'' if alone else 'letters & '}self.active"
         if triggers:
-            yield "triggers"
+            yield "triggers & self.asked" if self.goes_on else "triggers"
         if self.repeats:
             yield "self.repeating"
         if not self.calm:
@@ -193,6 +197,8 @@ class VisitWriter:
             yield "self.gathered"
         if not self.calm:
             yield "(dues and dues[0][0] <= t)"
+        if self.goes_on:
+            yield "self.resume_at <= t"
 
     def _rung(self) -> Iterator[str]:
         """See what time alone has changed."""
@@ -220,6 +226,9 @@ class VisitWriter:
             yield "    self.wake = t + 1"
             yield "else:"
         yield from indented(wake, 1 if waiting else 0)
+        if self.goes_on:
+            yield "if self.resume_at < self.wake:"
+            yield "    self.wake = self.resume_at"
 
     def _next_wake(self) -> Iterator[str]:
         if self.calm and self.nodes.watched is not None and len(self.nodes.watched) == 1:
@@ -262,7 +271,7 @@ class VisitWriter:
             parents = self.roles.parents[place]
             dirty = bits(tuple(other for other in self.kept if parents >> other & 1))
             onward = (f"dirty |= {dirty}",) if dirty else ()
-            yield f"if dirty & {1 << place}:"
+            yield f"if dirty & {1 << place}{self.nodes.pending(place)}:"
             yield from indented(self.nodes.statements(place))
             yield from indented(self.momentary_lines(place))
             yield f"    if n != v[{place}]:"
@@ -282,13 +291,14 @@ class VisitWriter:
             value: the new one.
             onward: tells the nodes that depend on it.
         """
-        sign = "|=" if len(self.plan.rules) > 1 else "="
+        alone = len(self.plan.judged) == 1
+        sign = "=" if alone else "|="
         if self.roles.letters[place]:
             yield f"self.until[{3 * place} + v[{place}]] = before"
             yield f"self.since[{place}] = t"
             yield f"letters {sign} {self.roles.letters[place]}"
         if self.roles.triggers[place]:
-            yield f"triggers {sign} {self.roles.triggers[place]}"
+            yield f"triggers {'=' if alone and not self.goes_on else '|='} {self.roles.triggers[place]}"
         yield from onward
         yield f"v[{place}] = {value}"
 

@@ -122,7 +122,7 @@ def _lane(lane: Lane, end: int) -> Iterator[object]:
     )
     for starter in lane.starters:
         if starter.trigger is not None:
-            yield (starter.trigger.before, starter.trigger.known, starter.trigger.running)
+            yield (starter.trigger.before, starter.trigger.running)
 
 
 def _relative(machine: Machine, token: Token, end: int) -> object:

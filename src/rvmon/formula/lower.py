@@ -65,7 +65,7 @@ class Obligation:
         owed: what an attempt owes from its trigger on; of an episode, all that it owes.
         origins: for explanations, where the parts of `owed` come from.
         again: of an episode, not FALSE where what is owed has not failed at once: there it goes on
-            after a failure; `None` where no state formula says so.
+            after a failure; `None` where it does not, as the future stands below the past.
         unborn: of an episode, where something of its consequent had no value yet.
         told: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
         hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN where one may

@@ -21,8 +21,7 @@ class Episode:
 
     Attributes:
         place: of the trigger in the flow.
-        again: of the formula that is FALSE where what is owed fails at once; `None`: the judge of
-            another requirement tells.
+        again: of the formula that is FALSE where what is owed fails at once; −1: it does not go on.
         current: the attempt that runs, or has failed in an episode that runs.
         failed_at: the instant of that failure.
         resume: is told when that is.
@@ -81,7 +80,8 @@ class Episode:
         """Hear that an attempt has failed at `t`."""
         if attempt is self.current:
             self.failed_at = t
-            self.resume(self)
+            if self.again >= 0:
+                self.resume(self)
 
     def look(self, t: int) -> None:
         """See the trigger, at the position `t`, before the attempts do."""
@@ -102,6 +102,14 @@ class Episode:
             attempt.sure = True
             self._sure(attempt, t)
 
+    def close(self) -> None:
+        """Come to the end: what runs may be over, or void; what is over is neither."""
+        for attempt in self.judge.attempts:
+            if attempt is self.current:
+                attempt.void = attempt.void or self.is_unborn
+            else:
+                attempt.clouded = False
+
     @property
     def is_unborn(self) -> bool:
         """Whether something that is owed speaks of signals that have had no value."""
@@ -109,9 +117,12 @@ class Episode:
 
     def goes_on(self, t: int) -> bool:
         """Whether a failed attempt is followed by another at the position `t`."""
-        if self.failed_at is None or t <= self.failed_at:
-            return False
-        return self._flow.values[self.again] != FALSE
+        return self.failed_at is not None and t > self.failed_at and self.may_go_on
+
+    @property
+    def may_go_on(self) -> bool:
+        """Whether what is owed has not failed at once at the position that the flow is at."""
+        return self.again >= 0 and self._flow.values[self.again] != FALSE
 
 
 def _ignore(_: Episode) -> None:

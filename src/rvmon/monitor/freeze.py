@@ -51,7 +51,8 @@ _UNIT = (
     *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
     *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired", "timers"),
     *("began", "rules", "position", "after", "news", "dirty", "fading", "restless", "repeating"),
-    *("awaited", "dues", "due_at", "active"),
+    *("awaited", "dues", "due_at", "active", "births"),
+    *("asked", "eyed", "failing", "resume_at"),
 )
 
 _KEPT: Mapping[type, tuple[str, ...]] = {
@@ -66,15 +67,15 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Unit: _UNIT,
     Rule: (
         *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
-        *("before", "known", "running"),
+        *("before", "running", "current", "failed_at", "clouded", "eyed"),
     ),
-    HostedRule: ("judge", "due", "restless", "before", "known", "running"),
+    HostedRule: ("judge", "due", "restless", "before", "running", "failed_at", "eyed"),
     Lane: (
         *("flow", "judges", "starters", "waiting", "_restless", "_repeating"),
         *("_soonest", "_awaited"),
     ),
     Starter: ("trigger",),
-    Trigger: ("before", "known", "running"),
+    Trigger: ("before", "running"),
     Judge: (*_BENCH, "letters"),
     NetworkJudge: (
         *(*_BENCH, "worse", "better", "now", "_letters", "_held"),

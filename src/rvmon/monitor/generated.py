@@ -52,6 +52,8 @@ class Forms:
         self.plan = plan_requirements(compiled, self.requirements)
         self.unit = unit_class(self.plan, sources)
         self.machines = [machine_of(self.plan, index) for index in range(len(self.requirements))]
+        # What judges attempts in doubt is made when one comes up.
+        self.machines += [None for _ in self.plan.hidden_of]
 
 
 class GeneratedLanes(Lanes):
@@ -88,28 +90,31 @@ class GeneratedLanes(Lanes):
             Seat(one, forms.plan, unit, ledger, self._counts, noted)
             for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
-        unit.restart(self, self._seats)
-        for index, one in enumerate(forms.requirements):
-            if forms.machines[index] is None:
-                unit.rules[index] = HostedRule(index, one, forms.plan, unit, ledger)
-                unit.restless |= 1 << index
-                unit.active |= 1 << index
+        unit.restart(self, [*self._seats, *(None for _ in forms.plan.hidden_of)])
+        judged: list[CompiledRequirement | None] = [*forms.requirements]
+        judged += [forms.requirements[index].hidden for index in forms.plan.hidden_of]
+        for index, one in enumerate(judged):
+            if forms.machines[index] is None and one is not None:
+                unit.rules[index] = rule = HostedRule(index, one, forms.plan, unit, ledger)
+                if index < len(forms.requirements) and one.network_plan.looks_back:
+                    # What it owes depends on what was before.
+                    rule.judge.restless = rule.restless = True
+                    unit.restless |= 1 << index
+                    unit.active |= 1 << index
 
     # What the monitor calls.
 
     @property
     def judges(self) -> Sequence[Bench]:
         """The judges of all lanes."""
-        return [
-            *(self._judge_now(rule) for rule in self.unit.rules),
-            *super().judges,
-        ]
+        own = (self._judge_now(rule) for rule in self.unit.rules)
+        return [*(judge for judge in own if judge is not None), *super().judges]
 
-    def _judge_now(self, rule: Rule) -> Bench:
-        """The judge of a requirement, or how it would stand if there were one."""
+    def _judge_now(self, rule: Rule) -> Bench | None:
+        """The judge of a rule, or how it would stand if there were one; `None`: nobody asked it."""
         if isinstance(rule, HostedRule):
             rule.stand()
-            return rule.judge
+            return rule.judge if rule.runs else None
         return self._seats[rule.index].judge_now(rule)
 
     def through(self, limit: int) -> None:
@@ -134,6 +139,10 @@ class GeneratedLanes(Lanes):
         self.unit.close(end, reached)
         for rule in self.unit.rules:
             judge = self._judge_now(rule)
+            if judge is None:
+                continue
+            rule.attempts = judge.attempts
+            rule.settle_flags()
             for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts = judge.attempts = []
@@ -141,6 +150,15 @@ class GeneratedLanes(Lanes):
         super().finish(end, reached)
         if self.alone:
             self._show_inputs()
+
+    def untold(self) -> list[str]:
+        """See `Lanes`."""
+        own = [
+            seat.compiled.requirement.id
+            for index, seat in enumerate(self._seats)
+            if not self.unit.is_told(index)
+        ]
+        return [*own, *super().untold()]
 
     def _show_inputs(self) -> None:
         """Note what the unit saw of the inputs where their health is reported from."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from rvmon.automaton.machine import Token
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.runtime.rule import Rule
@@ -9,6 +11,7 @@ from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.flow import Flow
 from rvmon.monitor.bench import Bench, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.episode import Episode
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
@@ -46,40 +49,93 @@ class HostedRule(Rule):
     """Stands where generated code drives attempts, and leaves that to a judge.
 
     Args:
-        index: of the requirement in the plan.
-        compiled: the requirement.
+        index: of the rule in the unit.
+        compiled: the requirement, or what judges its attempts in doubt.
         plan: of the generated code.
         unit: of that plan; has begun a run.
         ledger: takes the records.
-
-    Attributes:
-        judge: has the open attempts.
     """
 
-    __slots__ = ("_ledger", "_standing", "_unit", "judge")
+    __slots__ = ("_compiled", "_episode", "_judge", "_ledger", "_plan", "_standing", "_unit")
 
     def __init__(
         self, index: int, compiled: CompiledRequirement, plan: Plan, unit: Unit, ledger: Ledger
     ) -> None:
-        _, letters, _, pulse, episodic = unit.RULES[index]
-        super().__init__(index, None, letters, pulse, episodic, unit.GAP, unit.v, None)
+        _, letters, *kind = unit.RULES[index]
+        given: list[Any] = [index, None, letters, *kind, unit.GAP, unit.v, None]
+        super().__init__(*given)
+        self._compiled = compiled
+        self._plan = plan
         self._ledger = ledger
         self._unit = unit
-        self._standing = Standing(plan, unit)
-        self.judge = _judge(compiled, self._standing, _Hearing(unit, ledger))
-        # Whether there is somebody to visit is known to the judge.
-        self.runs = {0: self.judge}
+        self._standing: Standing | None = None
+        self._judge: Bench | None = None
+        self._episode: Episode | None = None
+
+    @property
+    def judge(self) -> Bench:
+        """Has the open attempts; it is made when it is first asked for."""
+        if self._judge is None:
+            self._standing = Standing(self._plan, self._unit)
+            hearing = _Hearing(self._unit, self._ledger)
+            self._judge = judge = _judge(self._compiled, self._standing, hearing)
+            # Whether there is somebody to visit is known to the judge.
+            self.runs = {0: judge}
+            if self.episodic and not self.hidden:
+                self._episode = Episode(
+                    judge,
+                    self._standing,
+                    doubted=False,
+                    start=lambda attempt: self._ledger.doubtful(0, judge, attempt),
+                    sure=lambda attempt, t: self._ledger.sure(0, judge, attempt, t),
+                )
+                self._episode.resume = self._resume
+        return self._judge
+
+    def _resume(self, episode: Episode) -> None:
+        if self.again >= 0:
+            self.failed_at = episode.failed_at
 
     def stand(self) -> None:
         """Let the judge see where the generated code stands now."""
-        self._standing.follow()
+        if self._standing is not None:
+            self._standing.follow()
 
     def begin(self, t: int, triggered: int) -> None:
         """Start an attempt at the position `t`, at which the values are."""
+        judge = self.judge
         self.stand()
-        self._ledger.started(0, self.judge, self.judge.begin(t, triggered))
+        if self._episode is not None:
+            self.failed_at = None
+            self.eyed = True
+            self._episode.begin(t, triggered)
+        else:
+            attempt = judge.new_attempt(t, triggered)
+            if self.hidden:
+                self._ledger.doubtful(0, judge, attempt)
+            else:
+                attempt.sure = True
+                self._ledger.sure(0, judge, attempt, triggered)
+            judge.begin(attempt, t)
         self._unit.news = True  # it is numbered where decisions are looked for
         self._note()
+
+    def look(self) -> None:
+        """See the trigger before the attempts do."""
+        if self._episode is not None:
+            self.stand()
+            self._episode.look(self._standing.position if self._standing else 0)
+            self._unit.news = True
+
+    def goes_on(self, _: int) -> bool:
+        """Whether what is owed has not failed at once at a position, at which the values are."""
+        return self._episode is not None and self._episode.may_go_on
+
+    def settle_flags(self) -> None:
+        """Come to the end."""
+        if self._episode is not None:
+            self.stand()
+            self._episode.close()
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, at which the values are."""
@@ -89,15 +145,17 @@ class HostedRule(Rule):
 
     def pass_to(self, t: int) -> None:
         """Let time come to `t` with the letters as they are; positions up to there are stepped."""
-        self.stand()
-        self.judge.pass_to(t)
-        self._note()
+        if self._judge is not None:
+            self.stand()
+            self._judge.pass_to(t)
+            self._note()
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, of which the letter is not known, from the instant before."""
-        self.stand()
-        self.judge.reach(t)
-        self._note()
+        if self._judge is not None:
+            self.stand()
+            self._judge.reach(t)
+            self._note()
 
     def _note(self) -> None:
         self.due = self.judge.due

@@ -129,6 +129,9 @@ class Lanes:
                     # A value that came after the last tick of a clock has not occurred at any.
                     if instance is None or instance.first <= position:
                         starter.start(position, end)
+        for lane in self.all:
+            for episode in lane.episodes:
+                episode.close()
         for judge in self.judges:
             judge.reach(reached)
             for attempt in judge.attempts:

@@ -58,6 +58,11 @@ class Ledger:
         """Take a new attempt of which it is not known whether there was a trigger; see `sure`."""
         self._doubtful.append((attempt.triggered, instance, judge, attempt))
 
+    def next_doubtful(self, name: str) -> int:
+        """The number of another attempt in doubt of a requirement."""
+        self._doubts[name] = self._doubts.get(name, 0) + 1
+        return self._doubts[name]
+
     def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """See `rvmon.monitor.bench.Clerk`."""
         if verdict and attempt.void:
@@ -84,15 +89,12 @@ class Ledger:
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
         requirement = judge.compiled.requirement
-        episode = attempt.episode
-        runs = episode is not None and episode.current is attempt
-        void = attempt.void or (runs and episode is not None and episode.is_unborn)
         passes = attempt.better is not None and attempt.better[0] == PASSED
         verdict, decision = settle_at_end(
             requirement.at_end,
-            held=not void and judge.held_at_end(attempt, end, reached),
-            cannot_pass=void or attempt.token[0] == FAILED,
-            cannot_fail=passes or not attempt.sure or (runs and attempt.clouded),
+            held=not attempt.void and judge.held_at_end(attempt, end, reached),
+            cannot_pass=attempt.void or attempt.token[0] == FAILED,
+            cannot_fail=passes or not attempt.sure or attempt.clouded,
         )
         if verdict is Verdict.PASS and not attempt.sure:
             return
@@ -135,8 +137,7 @@ class Ledger:
             attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
         self._started.clear()
         for _, _, judge, attempt in sorted(self._doubtful, key=itemgetter(0, 1)):
-            name = judge.compiled.requirement.id
-            attempt.doubtful_number = self._doubts[name] = self._doubts.get(name, 0) + 1
+            attempt.doubtful_number = self.next_doubtful(judge.compiled.requirement.id)
         self._doubtful.clear()
         if not self._decided:
             if not self.told:

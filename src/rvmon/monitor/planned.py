@@ -35,6 +35,15 @@ def _beyond(requirement: CompiledRequirement) -> str:
     return ""
 
 
+def _beyond_alone(requirement: CompiledRequirement) -> str:
+    """Why code that runs without rvmon cannot judge a requirement; empty if it can."""
+    why, hidden = _beyond(requirement), requirement.hidden
+    if why or hidden is None:
+        return why
+    beside = _beyond(hidden)
+    return f"in doubt {beside}" if beside else ""
+
+
 def plan_requirements(
     compiled: CompiledSpec,
     requirements: Sequence[CompiledRequirement],
@@ -51,8 +60,9 @@ def plan_requirements(
     return plan_of(compiled.checked, [_rule(one, explained) for one in requirements])
 
 
-def _rule(one: CompiledRequirement, explained: bool) -> PlannedRule:
-    automaton = _planned(one, explained)
+def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) -> PlannedRule:
+    # In this process what judges attempts in doubt is made when one comes up.
+    automaton = None if hidden and explained else _planned(one, explained)
     obligation = one.obligation
     return PlannedRule(
         one.requirement,
@@ -60,11 +70,11 @@ def _rule(one: CompiledRequirement, explained: bool) -> PlannedRule:
         one.alphabet,
         automaton,
         one.in_runs(automaton),
-        tuple(leaf for leaf, _ in one.leaves) if explained else None,
-        obligation.again,
-        obligation.unborn,
-        obligation.told,
-        None if one.hidden is None else _rule(one.hidden, explained),
+        again=obligation.again,
+        unborn=obligation.unborn,
+        told=obligation.told,
+        hidden=None if one.hidden is None else _rule(one.hidden, explained, hidden=True),
+        noted=tuple(leaf for leaf, _ in one.leaves) if explained else None,
     )
 
 
@@ -102,7 +112,7 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
             "generated code cannot sort samples: leave out `max delay`, or use the engine `auto`"
         )
     for one in chosen:
-        if reason := _beyond(one):
+        if reason := _beyond_alone(one):
             raise RvmonError(
                 f"{one.requirement.id} {reason}; generated code cannot judge it: "
                 "leave it out (`only`, --only), or use the engine `auto`"

@@ -46,6 +46,7 @@ class Seat(Witness):
         noted: Noted,
     ) -> None:
         super().__init__(compiled, plan, ledger)
+        self._ledger = ledger
         self._unit = unit
         self._tell = ledger.told.append
         self._counts = counts
@@ -64,12 +65,21 @@ class Seat(Witness):
 
     # What the unit calls.
 
-    def opened(self, rule: Rule, triggered: int, token: Token) -> Open:
-        """A new attempt."""
+    def opened(self, rule: Rule, triggered: int, token: Token, sure: bool) -> Open:
+        """A new attempt; `sure`: its trigger was true."""
         attempt = Open(triggered, token, self._seen_of(self._unit.v))
+        if sure:
+            attempt.sure = True
+            self._counts[rule.index] += 1
+            attempt.number = self._counts[rule.index]
+        else:
+            attempt.doubtful_number = self._ledger.next_doubtful(self._id)
+        return attempt
+
+    def assured(self, rule: Rule, attempt: Open) -> None:
+        """Hear that the trigger of an attempt was true, which was unknown before."""
         self._counts[rule.index] += 1
         attempt.number = self._counts[rule.index]
-        return attempt
 
     def entered(self, rule: Rule) -> tuple[int, tuple[int, ...]]:
         """The number of a new attempt, and what it sees at its trigger."""
@@ -83,6 +93,7 @@ class Seat(Witness):
         """An attempt that was moved together with others, by itself."""
         attempt = Open(triggered, token, self.unpacked(seen))
         attempt.number = number
+        attempt.sure = True
         return attempt
 
     def parted(self, rule: Rule, attempt: Open) -> None:
@@ -91,6 +102,11 @@ class Seat(Witness):
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
+        if verdict and attempt.void:
+            self._ledger.void.append((self.judge_now(rule), attempt))
+            return
+        if not attempt.sure:
+            return  # met, triggered or not
         self.decided_in_run(
             rule, attempt.number, attempt.triggered, attempt.seen, verdict, t, before
         )

@@ -19,6 +19,7 @@ from rvmon.testing.attempts import (
 from rvmon.testing.kleene import Truth
 from rvmon.testing.pulse import is_pulse
 from rvmon.testing.ready import opened_at_once
+from rvmon.testing.walk import looks_back_at_future
 from rvmon.testing.word import Word
 
 
@@ -106,6 +107,7 @@ def _episodes(view: View) -> list[Followed]:
     """The attempts of a `whenever`, of which each failure begins another."""
     requirement, letters, readings = view.requirement, view.word.letters, view.readings()
     at_once = opened_at_once(requirement.consequent)
+    goes_on = not looks_back_at_future(requirement.consequent)
     favour = counts_in_favour(requirement)
     found: list[Followed] = []
     episode: Start | None = None
@@ -120,7 +122,7 @@ def _episodes(view: View) -> list[Followed]:
                 owes, stop = view.stretch(k)
                 episode = view.begin(k, owes, stop)
                 found.append(Followed(episode))
-            elif episode is not None and _has_failed(found[-1]):
+            elif episode is not None and goes_on and _has_failed(found[-1]):
                 truths = readings.of(episode.captured_at(k), favour=favour)
                 if truths.truth(at_once, k) is not Truth.FALSE:
                     found.append(Followed(episode.restarted(k)))

@@ -17,7 +17,7 @@ def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
     In negation normal form these are the windows of `G` and `R`: their lower bounds become 0.
 
     Args:
-        formula: a consequent or a part of one.
+        formula: a consequent or a part of one, with nothing of the future below the past.
         positive: whether an even number of negations stands above it.
 
     Source: SEMANTICS, section 3 (After a failure).
@@ -38,10 +38,6 @@ def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
     match formula:
         case Unary(op=UnaryOp.NOT, operand=operand):
             return other(operand)
-        case Unary(op=UnaryOp.RISE, operand=operand):
-            return Binary(BinaryOp.AND, same(operand), _not_before(operand, positive))
-        case Unary(op=UnaryOp.FALL, operand=operand):
-            return Binary(BinaryOp.AND, other(operand), Unary(UnaryOp.PREVIOUS, same(operand)))
         case Unary(operand=operand):
             return replace(formula, operand=same(operand), interval=interval)
         case Binary(op=BinaryOp.IMPLIES, left=left, right=right):
@@ -54,8 +50,3 @@ def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
             return Binary(BinaryOp.OR, one, Binary(BinaryOp.AND, other(left), same(right)))
         case Binary(left=left, right=right):
             return replace(formula, left=same(left), right=same(right), interval=interval)
-
-
-def _not_before(operand: Formula, positive: bool) -> Formula:
-    before = Unary(UnaryOp.PREVIOUS, opened_at_once(operand, positive=not positive))
-    return Unary(UnaryOp.NOT, before)

@@ -47,6 +47,16 @@ def speaks_of_future(formula: Formula) -> bool:
     )
 
 
+def looks_back_at_future(formula: Formula) -> bool:
+    """Whether something of the future stands below an operator of the past."""
+    return any(
+        isinstance(part, Unary | Binary)
+        and part.op not in _BOOLEAN | _FUTURE
+        and speaks_of_future(part)
+        for part in subformulas(formula)
+    )
+
+
 def is_proposition(formula: Formula) -> bool:
     """Whether it is read off the trace so far, and no combination of what is."""
     if isinstance(formula, Unary | Binary):

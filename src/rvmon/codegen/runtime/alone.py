@@ -13,20 +13,24 @@ from rvmon.codegen.runtime.unit import Unit
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-Attempt = namedtuple("Attempt", "requirement number triggered decided verdict decision")
-"""`decided` is None and `verdict` "I" for what stayed open; instants are nanoseconds."""
+Attempt = namedtuple("Attempt", "requirement number triggered decided verdict decision in_doubt")
+"""`decided` is None and `verdict` "I" for what stayed open; instants are nanoseconds. What is
+`in_doubt` may have had no trigger: it has numbers of its own."""
 
 
 class Open:
     """An undecided attempt."""
 
-    __slots__ = ("better", "number", "token", "triggered")
+    __slots__ = ("better", "clouded", "number", "sure", "token", "triggered", "void")
 
-    def __init__(self, number: int, triggered: int, token: Any) -> None:
+    def __init__(self, number: int, triggered: int, token: Any, sure: bool = True) -> None:
         self.number = number
         self.triggered = triggered
         self.token = token
         self.better: Any = None
+        self.sure = sure
+        self.void = False
+        self.clouded = False
 
 
 class Monitor:
@@ -55,20 +59,34 @@ class Monitor:
 
     def reset(self) -> None:
         """Forget the run."""
-        self.unit.restart(self, [self] * len(self.NAMES))
+        self.unit.restart(self, [self] * len(self.UNIT.RULES))
         self.attempts: list[Attempt] = []
         self.fresh: list[Attempt] = []
         self.counts = [0] * len(self.NAMES)
+        self.doubts = [0] * len(self.NAMES)
+        self.void: list[tuple[Rule, Open]] = []
         self.last: int | None = None
         self.reached: int | None = None
         self.finished = False
 
     # What the generated code calls.
 
-    def opened(self, rule: Rule, triggered: int, token: Any) -> Open:
-        """A new attempt."""
+    def of(self, rule: Rule) -> int:
+        """The requirement that a rule judges."""
+        hidden = rule.index - len(self.NAMES)
+        return rule.index if hidden < 0 else self.UNIT.HIDDEN_OF[hidden]
+
+    def opened(self, rule: Rule, triggered: int, token: Any, sure: bool) -> Open:
+        """A new attempt; `sure`: its trigger was true."""
+        counts = self.counts if sure else self.doubts
+        index = self.of(rule)
+        counts[index] += 1
+        return Open(counts[index], triggered, token, sure)
+
+    def assured(self, rule: Rule, attempt: Open) -> None:
+        """Hear that the trigger of an attempt was true, which was unknown before."""
         self.counts[rule.index] += 1
-        return Open(self.counts[rule.index], triggered, token)
+        attempt.number = self.counts[rule.index]
 
     def entered(self, rule: Rule) -> tuple[int, tuple[int, ...]]:
         """The number of a new attempt, and nothing that was seen."""
@@ -90,16 +108,21 @@ class Monitor:
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, _: Any) -> None:
         """Hear of a decision."""
+        if verdict and attempt.void:
+            self.void.append((rule, attempt))
+            return
+        if not attempt.sure:
+            return
         self.unit.news = True
-        upon_end = self.unit.RULES[rule.index][2] < 0
+        upon_end = rule.trigger < 0
         at = attempt.triggered if upon_end else t
         self._record(rule, attempt, at, "P" if verdict else "F", "prefix")
 
     def _record(
         self, rule: Rule, attempt: Open, t: int | None, verdict: str, decision: str
     ) -> None:
-        name = self.NAMES[rule.index]
-        made = Attempt(name, attempt.number, attempt.triggered, t, verdict, decision)
+        name, doubt = self.NAMES[self.of(rule)], not attempt.sure
+        made = Attempt(name, attempt.number, attempt.triggered, t, verdict, decision, doubt)
         self.fresh.append(made)
 
     def told(self) -> list[Attempt]:
@@ -107,7 +130,13 @@ class Monitor:
         self.unit.news = False
         ranks = {name: rank for rank, name in enumerate(self.NAMES)}
         self.fresh.sort(
-            key=lambda one: (one.decided is None, one.decided or 0, ranks[one[0]], one.number)
+            key=lambda one: (
+                one.decided is None,
+                one.decided or 0,
+                ranks[one[0]],
+                one.in_doubt,
+                one.number,
+            )
         )
         found, self.fresh = self.fresh, []
         self.attempts += found
@@ -195,9 +224,10 @@ class Monitor:
                 self._close(t_ns)
             self.unit.after = LIMIT
         found = {}
-        for name in self.NAMES:
+        for index, name in enumerate(self.NAMES):
             seen = {one.verdict for one in self.attempts if one.requirement == name}
-            found[name] = next((verdict for verdict in "FIP" if verdict in seen), "NT")
+            silent = "NT" if self.unit.is_told(index) else "I"
+            found[name] = next((verdict for verdict in "FIP" if verdict in seen), silent)
         return found
 
     def _close(self, t_ns: int | None) -> None:
@@ -209,12 +239,19 @@ class Monitor:
         self.unit.through(end)
         self.unit.close(end, reached)
         for rule in self.unit.rules:
-            for attempt in rule.undecided():
-                held = rule.machine.holds_at_end(attempt.token, end, reached)
+            rule.attempts, rule.runs = rule.undecided(), {}
+            rule.settle_flags()
+            for attempt in rule.attempts:
+                held = not attempt.void and rule.machine.holds_at_end(attempt.token, end, reached)
                 state = 1 if held else 0
-                state += 2 if attempt.token[0] == FAILED else 0
-                state += 4 if attempt.better is not None and attempt.better[0] == PASSED else 0
-                verdict, decision = self.OUTCOMES[rule.index][state]
+                state += 2 if attempt.void or attempt.token[0] == FAILED else 0
+                passes = attempt.better is not None and attempt.better[0] == PASSED
+                state += 4 if passes or attempt.clouded or not attempt.sure else 0
+                verdict, decision = self.OUTCOMES[self.of(rule)][state]
+                if verdict == "P" and not attempt.sure:
+                    continue
                 at = None if decision == "open" else end
                 self._record(rule, attempt, at, verdict, decision)
+        for rule, attempt in self.void:
+            self._record(rule, attempt, None, "I", "open")
         self.told()

@@ -92,15 +92,15 @@ class BulkRule(Rule):
             self.visit(t)
         machine = self.machine
         kind = machine.class_of[self.letter]
-        if kind != machine.class_of[self.other]:
+        if kind != machine.class_of[self.other] or not self.is_plain:
             self.begin_alone(t, triggered)
             return
         location, _ = machine.start
         number, seen = self.clerk.entered(self)
+        self.enter(triggered)
         target, _ = machine.rows[machine.bases[location]][kind]
         if target <= PASSED:
-            verdict = target == PASSED
-            self.clerk.decided_in_run(self, number, triggered, seen, verdict, t, machine.start)
+            self._told_in_run(number, triggered, seen, target == PASSED, t, machine.start)
             return
         run = self.runs.get(target)
         if run is None:
@@ -214,7 +214,14 @@ class BulkRule(Rule):
             token = (location, (triggered,) if clocked else ())
             at = triggered + cut if t is None else t
             number, seen = run.numbers[index], run.seen[index]
-            self.clerk.decided_in_run(self, number, triggered, seen, verdict, at, token)
+            self._told_in_run(number, triggered, seen, verdict, at, token)
+
+    def _told_in_run(
+        self, number: int, triggered: int, seen: Any, verdict: bool, t: int, before: Token
+    ) -> None:
+        if not verdict:
+            self.fail(triggered, t)
+        self.clerk.decided_in_run(self, number, triggered, seen, verdict, t, before)
 
     def next_cut(self, t: int) -> int:
         """The first instant after `t` at which an attempt of a run enters another region."""
@@ -303,7 +310,7 @@ class BulkRule(Rule):
                 token: Token = (location, (triggered,) if clocked else ())
                 number, seen = run.numbers[index], run.seen[index]
                 found.append(self.clerk.reopened(self, number, triggered, token, seen))
-        found.sort(key=lambda attempt: attempt.number)
+        found.sort(key=lambda attempt: attempt.triggered)
         return found
 
 

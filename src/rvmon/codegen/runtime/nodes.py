@@ -6,7 +6,7 @@ from heapq import heappop, heappush, heapreplace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.past import History, Since, beyond, within
+from rvmon.codegen.runtime.past import History, Since, beyond, doubt, within
 from rvmon.codegen.runtime.table import NEVER
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ class Nodes:
         since: per node of a letter, the position from which on it has had its value.
         until: per node of a letter and truth, the last position at which it had that before.
         s: per signal, its value; `None` if it is unknown.
+        births: per signal, 0 before its first known value, 1 from then on, 2 after an update more,
+            where something depends on that.
         o: per event, whether it occurs at this position.
         p: per event, its payloads.
         w: per node, what it remembers, taking the unknown for the worse.
@@ -43,6 +45,7 @@ class Nodes:
         "absent",
         "b",
         "before",
+        "births",
         "c",
         "expired",
         "first",
@@ -107,6 +110,7 @@ class Nodes:
         self.silent = [UNKNOWN if name in absent else FALSE for name in self.EVENTS]
         self.o = list(self.silent)
         self.p: list[list[Any]] = [[] for _ in self.EVENTS]
+        self.births = [0] * len(self.SIGNALS)
         self.u: set[str] = set()
         self.c: dict[int, int] = {}
         self.h = [History() if index in self.HISTORIES else None for index in range(len(self.s))]
@@ -173,6 +177,24 @@ class Nodes:
         self.set_wake(place, due if t < due else NEVER)
         return FALSE if t < due else TRUE
 
+    def missing_(self, value: int) -> int:
+        """Whether an atom of this value, 3 if it is not born, is missing or lost."""
+        return TRUE if value == 3 else UNKNOWN if value == UNKNOWN else FALSE
+
+    def uncertain_(self, events: Sequence[int]) -> bool:
+        """Whether it is not known of some occurrence of these events, or what it says."""
+        return any(
+            self.silent[event] == UNKNOWN or any(one is None for one in self.p[event])
+            for event in events
+        )
+
+    def doubt_(self, place: int, t: int, now: int, pulse: bool, every: bool) -> int:
+        """Whether a trigger may have been hidden at `t`, where its truth is `now`."""
+        found = doubt(self.w[place] or FALSE, now, self.v[place], pulse, every)
+        stays = doubt(now, now, found, pulse, every) == found
+        self.set_wake(place, NEVER if stays else t + (self.GAP or 1))
+        return found
+
     def over_(self, events: Sequence[int], truth: Callable[[dict[int, Any]], int]) -> int:
         """The truth of a comparison over all occurrences of the events whose fields it reads."""
         found = FALSE
@@ -209,6 +231,8 @@ class Nodes:
         """Take the update of a signal that more is asked of than its value."""
         self.gathered = True
         self.u.add(self.SIGNALS[signal])
+        if self.births[signal] == 1:
+            self.births[signal] = 2
         history = self.h[signal]
         if history is not None:
             changed = history.update(t, value)

@@ -159,6 +159,30 @@ def beyond(
     return start, start <= t, start if start > t else NEVER
 
 
+def doubt(before: int, now: int, value: int, pulse: bool, every: bool) -> int:
+    """Whether a trigger may have been hidden at a position.
+
+    Args:
+        before: the truth of the trigger at the position before.
+        now: its truth.
+        value: what this was at the position before.
+        pulse: whether the trigger starts an attempt wherever it is true.
+        every: whether no trigger is sure.
+
+    >>> doubt(FALSE, UNKNOWN, FALSE, False, False), doubt(UNKNOWN, FALSE, UNKNOWN, False, False)
+    (1, 0)
+    """
+    if now == FALSE:
+        return FALSE
+    if pulse:
+        hidden = every or now == UNKNOWN
+    elif every:
+        hidden = before != TRUE
+    else:
+        hidden = before == UNKNOWN or (now == UNKNOWN and before == FALSE)
+    return UNKNOWN if hidden else TRUE if value else FALSE
+
+
 class History:
     """The last two updates of a signal."""
 

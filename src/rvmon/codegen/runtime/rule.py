@@ -33,8 +33,12 @@ class Rule:
         index: of the requirement.
         machine: judges its attempts; `None`: somebody else does.
         letters: gives, from the values, the letters with the unknown taken for worse and better.
+        trigger: the node of its trigger; −1: the end of the trace.
         pulse: whether it starts an attempt at every position where its trigger holds.
         episodic: whether one attempt runs at a time, until the trigger is false.
+        hidden: whether an episode starts only where the trigger is unknown.
+        again: the node that is not false where an episode goes on after a failure; −1: none.
+        unborn: the node that is true while something that is owed had no value; −1: none.
         gap: ticks between two positions; `None` if only samples are positions.
         values: the truth of the state formulas.
         clerk: makes attempts and hears of decisions.
@@ -45,17 +49,26 @@ class Rule:
         due: an instant before which, the letters staying, no attempt can be decided.
         restless: whether attempts may move at the next position though the letters stay.
         slides: whether a clock moves along while an attempt loops.
+        current: the instant of the trigger of the attempt that runs in an episode, or `None`.
+        failed_at: the instant at which that failed, the episode running on.
+        clouded: whether the trigger was unknown while it ran.
+        eyed: whether it has to see the trigger before its attempts do.
     """
 
     __slots__ = (
+        "again",
         "attempts",
         "before",
         "clerk",
+        "clouded",
+        "current",
         "due",
         "episodic",
+        "eyed",
+        "failed_at",
         "gap",
+        "hidden",
         "index",
-        "known",
         "letter",
         "letters",
         "machine",
@@ -67,6 +80,8 @@ class Rule:
         "running",
         "runs",
         "slides",
+        "trigger",
+        "unborn",
         "values",
     )
 
@@ -75,8 +90,12 @@ class Rule:
         index: int,
         machine: Any,
         letters: Callable[[list[int]], tuple[int, int]],
+        trigger: int,
         pulse: bool,
         episodic: bool,
+        hidden: bool,
+        again: int,
+        unborn: int,
         gap: int | None,
         values: list[int],
         clerk: Any,
@@ -85,8 +104,12 @@ class Rule:
         self.machine = machine
         self.moves: Any = None if machine is None else machine.moves
         self.letters = letters
+        self.trigger = trigger
         self.pulse = pulse
         self.episodic = episodic
+        self.hidden = hidden
+        self.again = again
+        self.unborn = unborn
         self.gap = gap
         self.values = values
         self.clerk = clerk
@@ -97,27 +120,77 @@ class Rule:
         self.slides = False
         self.position = -NEVER
         self.letter = self.other = 0
-        self.before = UNKNOWN
-        self.known = False
+        self.before = FALSE
         self.running = False
+        self.current: int | None = None
+        self.failed_at: int | None = None
+        self.clouded = False
+        self.eyed = False
 
     def starts(self, truth: int) -> bool:
         """Whether an attempt starts at a position where the trigger has this truth."""
-        start = truth == TRUE and (self.pulse or self.before == FALSE or not self.known)
-        self.before = truth
-        if truth != UNKNOWN:
-            self.known = True
-        if self.episodic:
-            if self.running:
-                self.running = truth != FALSE
-                return False
-            self.running = start
-        return start
+        before, self.before = self.before, truth
+        if not self.episodic:
+            return truth == TRUE and (self.pulse or before == FALSE)
+        if not self.running:
+            self.running = truth == UNKNOWN if self.hidden else truth != FALSE
+            return self.running
+        if truth == FALSE:
+            self.running = False
+            self.current = self.failed_at = None
+        elif truth == UNKNOWN:
+            self.clouded = True
+        return False
 
     @property
     def repeats(self) -> bool:
         """Whether another attempt starts at the next position if the trigger stays."""
         return self.pulse and not self.episodic and self.before == TRUE
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether an attempt that starts here is sure, and no signal is to be waited for."""
+        if not self.episodic:
+            return True
+        values = self.values
+        born = self.unborn < 0 or values[self.unborn] != TRUE
+        return born and values[self.trigger] == TRUE and not self.hidden
+
+    def enter(self, triggered: int) -> None:
+        """Take it that an attempt runs from here on."""
+        if self.episodic:
+            self.current = triggered
+            self.failed_at = None
+            self.clouded = self.values[self.trigger] == UNKNOWN
+            self.eyed = not self.hidden and not self.is_plain
+
+    def look(self) -> None:
+        """See the trigger before the attempts do: it may make one sure, or void."""
+        for attempt in self.attempts:
+            if attempt.triggered == self.current:
+                truth = self.values[self.trigger]
+                if truth == FALSE:
+                    attempt.void = self.unborn >= 0 and self.values[self.unborn] == TRUE
+                elif truth == TRUE and not attempt.sure:
+                    attempt.sure = True
+                    self.clerk.assured(self, attempt)
+
+    def fail(self, triggered: int, t: int) -> None:
+        """Note that an attempt has failed at `t`."""
+        if triggered == self.current and self.again >= 0:
+            self.current = None
+            self.failed_at = t
+
+    def goes_on(self, _: int) -> bool:
+        """Whether what is owed has not failed at once at a position, at which the values are."""
+        return bool(self.values[self.again] != FALSE)
+
+    def settle_flags(self) -> None:
+        """Come to the end: what runs may be over, or void; what is over is neither."""
+        for attempt in self.attempts:
+            if self.current is not None and attempt.triggered == self.current:
+                attempt.clouded = self.clouded
+                attempt.void = self.unborn >= 0 and self.values[self.unborn] == TRUE
 
     def begin(self, t: int, triggered: int) -> None:
         """Start an attempt at the position `t`, at which the values are."""
@@ -128,7 +201,9 @@ class Rule:
     def begin_alone(self, t: int, triggered: int) -> None:
         """Start an attempt that is driven by itself, at the position visited last."""
         machine = self.machine
-        attempt = self.clerk.opened(self, triggered, machine.start)
+        sure = not self.episodic or (not self.hidden and self.values[self.trigger] == TRUE)
+        attempt = self.clerk.opened(self, triggered, machine.start, sure)
+        self.enter(triggered)
         if self.moves is None or self.letter != self.other:
             due = self.stepped(attempt, t)
         else:
@@ -138,6 +213,11 @@ class Rule:
             self.attempts.append(attempt)
             if due < self.due:
                 self.due = due
+
+    def _decided(self, attempt: Any, verdict: bool, t: int, before: Token) -> None:
+        if not verdict:
+            self.fail(attempt.triggered, t)
+        self.clerk.decided(self, attempt, verdict, t, before)
 
     def undecided(self) -> list[Any]:
         """The open attempts, oldest first."""
@@ -208,7 +288,7 @@ class Rule:
         """As `stepped`, by a move of `rvmon.codegen.runtime.table.moves_of`."""
         target, how, leads_on = move
         if target <= PASSED:
-            self.clerk.decided(self, attempt, target == PASSED, t, attempt.token)
+            self._decided(attempt, target == PASSED, t, attempt.token)
             return None
         machine = self.machine
         if how == BARE:
@@ -236,7 +316,7 @@ class Rule:
 
     def _moved(self, attempt: Any, before: Token, token: Token, due: int) -> int | None:
         if token[0] <= PASSED:
-            self.clerk.decided(self, attempt, token[0] == PASSED, due, before)
+            self._decided(attempt, token[0] == PASSED, due, before)
             return None
         attempt.token = token
         return due
@@ -255,14 +335,14 @@ class Rule:
         if worse[0] != FAILED:
             moved, due = drive(worse, self.letter)
             if moved[0] == PASSED:
-                self.clerk.decided(self, attempt, True, due, worse)
+                self._decided(attempt, True, due, worse)
                 return None
             if moved[0] == FAILED:
                 due = NEVER
         if better[0] != PASSED:
             moved_better, own = drive(better, self.other)
             if moved_better[0] == FAILED:
-                self.clerk.decided(self, attempt, False, own, better)
+                self._decided(attempt, False, own, better)
                 return None
             if moved_better[0] != PASSED:
                 due = min(due, own)

@@ -74,15 +74,14 @@ class SoloRule(Rule):
         letter, other = self.letters(self.values)
         self.letter, self.other = letter, other
         self.position = t
-        if letter != other and self._part(letter, other):
+        if not self.is_plain or (letter != other and self._part(letter, other)):
             self.begin_alone(t, triggered)
             return
-        clerk = self.clerk
-        number, seen = clerk.entered(self)
+        number, seen = self.clerk.entered(self)
+        self.enter(triggered)
         target = self.firsts[letter]
         if target <= PASSED:
-            verdict = target == PASSED
-            clerk.decided_in_run(self, number, triggered, seen, verdict, t, self.machine.start)
+            self._told(number, triggered, seen, target == PASSED, t, self.machine.start)
         else:
             self.runs[target] = (triggered, number, seen)
 
@@ -101,7 +100,14 @@ class SoloRule(Rule):
             if target <= PASSED:
                 triggered, number, seen = self.runs.pop(self.place)
                 token: Token = (self.place, ())
-                self.clerk.decided_in_run(self, number, triggered, seen, target == PASSED, t, token)
+                self._told(number, triggered, seen, target == PASSED, t, token)
+
+    def _told(
+        self, number: int, triggered: int, seen: Any, verdict: bool, t: int, before: Token
+    ) -> None:
+        if not verdict:
+            self.fail(triggered, t)
+        self.clerk.decided_in_run(self, number, triggered, seen, verdict, t, before)
 
     def _part(self, worse: int, better: int) -> bool:
         """Whether the automaton tells these letters apart."""
@@ -120,5 +126,5 @@ class SoloRule(Rule):
         found = list(self.attempts)
         for location, (triggered, number, seen) in self.runs.items():
             found.append(self.clerk.reopened(self, number, triggered, (location, ()), seen))
-        found.sort(key=lambda attempt: attempt.number)
+        found.sort(key=lambda attempt: attempt.triggered)
         return found

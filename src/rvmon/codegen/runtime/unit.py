@@ -30,6 +30,10 @@ class Unit(Nodes):
         fading: the nodes that speak of that position only.
         restless: the requirements to be asked at the next position whatever changes.
         repeating: the requirements that start an attempt at the next position if nothing changes.
+        asked: of what `triggers` may hold, what somebody asks for.
+        eyed: the requirements that have to see their triggers first.
+        failing: the requirements whose episode runs on after a failure.
+        resume_at: the next position at which one of them may go on though nothing changes.
         awaited: the next position at which samples that were taken will show.
         active: the requirements that have open attempts.
         dues: when requirements are due; `due_at` says which entries still hold.
@@ -38,18 +42,22 @@ class Unit(Nodes):
     __slots__ = (
         "active",
         "after",
+        "asked",
         "awaited",
         "began",
         "clerk",
         "dirty",
         "due_at",
         "dues",
+        "eyed",
         "fading",
+        "failing",
         "machines",
         "news",
         "position",
         "repeating",
         "restless",
+        "resume_at",
         "rules",
     )
 
@@ -59,8 +67,13 @@ class Unit(Nodes):
     """Per requirement, where records are kept: what they note, from what was seen at the trigger,
     the instant, the token before it, the rule, `v`, `since` and `until`. One flat tuple costs the
     collector of garbage next to nothing."""
-    RULES: tuple[tuple[type[Rule], Callable[[list[int]], tuple[int, int]], int, bool, bool], ...]
-    """Per requirement: what judges it, its letters, the node of its trigger, pulse, episodic."""
+    RULES: tuple[tuple[Any, ...], ...]
+    """Per rule its class, what gives its letters, and what else it takes. Rules judge requirements;
+    behind these stand those that judge attempts in doubt."""
+    HIDDEN_OF: tuple[int, ...] = ()
+    """For each of the latter, the requirement."""
+    TOLD: tuple[int, ...] = ()
+    """Per requirement the node that is true once its trigger was true or false; −1: it always is."""
 
     step: Callable[[int, Mapping[str, Any]], Sequence[Any]]
     """Take one sample; returns what it decided."""
@@ -91,15 +104,20 @@ class Unit(Nodes):
         self.fading = 0
         self.restless = 0
         self.repeating = 0
+        self.asked = (1 << len(self.rules)) - 1
+        self.eyed = 0
+        self.failing = 0
+        self.resume_at = NEVER
         self.awaited = NEVER
         self.dues: list[tuple[int, int]] = []
         self.due_at = [NEVER] * len(self.rules)
         self.active = 0
 
     def _rule(self, index: int, clerk: Any) -> Rule:
-        class_, letters, _, pulse, episodic = self.RULES[index]
+        class_, letters, *kind = self.RULES[index]
         machine = self.machines[index]
-        return class_(index, machine, letters, pulse, episodic, self.GAP, self.v, clerk)
+        made: Rule = class_(index, machine, letters, *kind, self.GAP, self.v, clerk)
+        return made
 
     # Positions.
 
@@ -159,6 +177,8 @@ class Unit(Nodes):
     def conclude(self, t: int, letters: int, triggers: int) -> None:
         """Have the position judged by those whom it concerns."""
         self.awaited = NEVER
+        if triggers & self.eyed:
+            self.look(triggers & self.eyed)
         letters = (letters | self.restless) & self.active
         dues, due_at = self.dues, self.due_at
         while dues and dues[0][0] <= t:
@@ -178,28 +198,93 @@ class Unit(Nodes):
                 or self.restless
                 or rule.due != due_at[index]
                 or not (rule.attempts or rule.runs)
+                or rule.failed_at is not None
             ):
                 self.note(rule)
-        triggers |= self.repeating
+        again = triggers >> len(rules)
+        triggers = triggers & (1 << len(rules)) - 1 | self.repeating
         while triggers:
             bit = triggers & -triggers
             triggers ^= bit
             index = bit.bit_length() - 1
-            place = self.RULES[index][2]
-            if place < 0:
-                continue
             rule = rules[index]
-            if rule.starts(self.v[place]):
-                rule.begin(t, t)
-                self.note(rule)
+            if rule.trigger < 0:
+                continue
+            if rule.starts(self.v[rule.trigger]):
+                self.begin(rule, t)
             if rule.pulse:
                 self.repeating = self.repeating | bit if rule.repeats else self.repeating & ~bit
+        if again & self.failing or self.resume_at <= t:
+            self.go_on(t, again)
         if self.gathered:
             self.leave()
+
+    def begin(self, rule: Rule, t: int) -> None:
+        """Start an attempt at the position `t`."""
+        rule.begin(t, t)
+        self.note(rule)
+        if rule.episodic:
+            bit = 1 << rule.index
+            self.eyed = self.eyed | bit if rule.eyed else self.eyed & ~bit
+
+    def look(self, eyed: int) -> None:
+        """Have requirements see their triggers before their attempts do."""
+        while eyed:
+            bit = eyed & -eyed
+            eyed ^= bit
+            self.rules[bit.bit_length() - 1].look()
+
+    def go_on(self, t: int, again: int) -> None:
+        """Follow failures by other attempts at the position `t`, where it is time for that.
+
+        Args:
+            t: the position.
+            again: the requirements for which that may have changed.
+        """
+        asked = self.failing
+        if self.resume_at > t:
+            asked &= again
+        else:
+            self.resume_at = NEVER
+        while asked:
+            bit = asked & -asked
+            asked ^= bit
+            rule = self.rules[bit.bit_length() - 1]
+            failed_at = rule.failed_at
+            if failed_at is None:
+                self.follow(rule)
+            elif t <= failed_at:
+                self.await_next(failed_at)
+            elif rule.goes_on(t):
+                self.begin(rule, t)
+
+    def follow(self, rule: Rule) -> None:
+        """Note whether a requirement's episode runs on after a failure."""
+        bit = 1 << rule.index
+        if rule.failed_at is None:
+            self.failing &= ~bit
+            self.asked &= ~(bit << len(self.rules))
+            return
+        self.failing |= bit
+        self.asked |= bit << len(self.rules)
+        # Where it fails at once, something has to change first.
+        if rule.goes_on(rule.failed_at):
+            self.await_next(rule.failed_at)
+
+    def await_next(self, t: int) -> None:
+        """Have the first position behind `t` visited."""
+        gap = self.GAP
+        following = t + 1
+        if gap is not None:
+            late = max(t - self.position, 0)
+            following = self.position + (late // gap + 1) * gap
+        self.resume_at = min(self.resume_at, following)
 
     def conclude_calmly(self, t: int, letters: int, triggers: int) -> None:
         """As `conclude`, where all requirements are episodes that only letters decide."""
         rules = self.rules
+        if triggers & self.eyed:
+            self.look(triggers & self.eyed)
         letters &= self.active
         while letters:
             bit = letters & -letters
@@ -208,29 +293,36 @@ class Unit(Nodes):
             rule.visit(t)
             if not (rule.runs or rule.attempts):
                 self.active ^= bit
+                if rule.failed_at is not None:
+                    self.follow(rule)
+        again = triggers >> len(rules)
+        triggers &= (1 << len(rules)) - 1
         while triggers:
             bit = triggers & -triggers
             triggers ^= bit
-            index = bit.bit_length() - 1
-            rule = rules[index]
-            if rule.starts(self.v[self.RULES[index][2]]):
-                rule.begin(t, t)
-                if rule.runs or rule.attempts:
-                    self.active |= bit
+            rule = rules[bit.bit_length() - 1]
+            if rule.starts(self.v[rule.trigger]):
+                self.begin(rule, t)
+        if again & self.failing or self.resume_at <= t:
+            self.go_on(t, again)
         if self.gathered:
             self.leave()
 
     def conclude_alone(self, t: int, letters: int, triggers: int) -> None:
         """As `conclude_calmly`, where there is but one requirement."""
         (rule,) = self.rules
+        if self.eyed and triggers & 1:
+            rule.look()
         if letters and self.active:
             rule.visit(t)
             if not (rule.runs or rule.attempts):
                 self.active = 0
-        if triggers and rule.starts(self.v[self.RULES[0][2]]):
-            rule.begin(t, t)
-            if rule.runs or rule.attempts:
-                self.active = 1
+                if rule.failed_at is not None:
+                    self.follow(rule)
+        if triggers & 1 and rule.starts(self.v[rule.trigger]):
+            self.begin(rule, t)
+        if triggers >> 1 & self.failing or self.resume_at <= t:
+            self.go_on(t, triggers >> 1)
         if self.gathered:
             self.leave()
 
@@ -238,7 +330,7 @@ class Unit(Nodes):
         """Work out before when nothing happens; it may come to nothing at that instant."""
         if self.origin is None:
             return
-        wake = min(LIMIT, self.next_timer(), self.awaited)
+        wake = min(LIMIT, self.next_timer(), self.awaited, self.resume_at)
         if self.dues:
             wake = min(wake, self.dues[0][0])
         if self.fading or self.repeating or (self.restless and self.GAP is None):
@@ -268,8 +360,10 @@ class Unit(Nodes):
     def next_position(self) -> int:
         """The next position at which something can change without a further sample."""
         found = min(self.awaited, self.next_change())
-        if self.repeating and self.GAP is not None:
-            found = min(found, self.position + self.GAP)
+        if self.GAP is not None:
+            found = min(found, self.resume_at)
+            if self.repeating:
+                found = min(found, self.position + self.GAP)
         return found
 
     def note(self, rule: Rule) -> None:
@@ -283,6 +377,8 @@ class Unit(Nodes):
             self.restless |= bit
         elif self.restless & bit:
             self.restless ^= bit
+        if rule.failed_at is not None:
+            self.follow(rule)
         due = rule.due
         if due != self.due_at[rule.index]:
             self.due_at[rule.index] = due
@@ -297,12 +393,15 @@ class Unit(Nodes):
         if limit < self.wake or self.began is None:
             return
         while True:
-            position = self.next_position()
-            stop = min(position - 1, limit)
-            while self.next_due() <= stop:
+            stop = min(self.next_position() - 1, limit)
+            while (due := self.next_due()) <= stop:
                 rule = self.rules[self.dues[0][1]]
-                rule.pass_to(stop)
+                # What fails may be followed by another attempt at once.
+                rule.pass_to(due if rule.episodic else stop)
                 self.note(rule)
+                if self.GAP is not None:
+                    stop = min(stop, self.resume_at - 1)
+            position = self.next_position()
             if position > limit:
                 break
             self.visit(position)
@@ -347,11 +446,16 @@ class Unit(Nodes):
         """Come to the end of the trace; time has come to `end` before."""
         for rule in self.rules:
             rule.pass_to(end)
-        for rule, (_, _, place, *_) in zip(self.rules, self.RULES):  # noqa: B905
-            if place < 0 and self.origin is not None:
+        for rule in self.rules:
+            if rule.trigger < 0 and self.origin is not None:
                 rule.begin(self.last_position(end), end)
         for rule in self.rules:
             rule.reach(reached)
+
+    def is_told(self, index: int) -> bool:
+        """Whether the trigger of a requirement was ever true or false."""
+        place = self.TOLD[index]
+        return self.origin is not None and (place < 0 or self.v[place] == 2)
 
 
 def closures(parents: Sequence[int]) -> tuple[int, ...]:
