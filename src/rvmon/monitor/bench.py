@@ -31,7 +31,6 @@ class Open:
         doubtful_number: as `number`, if its trigger was not TRUE at first.
         clouded: whether its trigger was unknown while it ran.
         void: whether it cannot pass, since its episode was over before all was born.
-        episode: that it is an attempt of.
     """
 
     __slots__ = (
@@ -39,7 +38,6 @@ class Open:
         "clouded",
         "doubt",
         "doubtful_number",
-        "episode",
         "number",
         "seen",
         "sure",
@@ -59,7 +57,6 @@ class Open:
         self.doubtful_number = 0
         self.clouded = False
         self.void = False
-        self.episode: Episode | None = None
 
 
 class Clerk(Protocol):
@@ -86,6 +83,7 @@ class Bench(ABC):
         due: an instant before which, the letters staying, no attempt can be decided.
         restless: whether attempts may move at the next position though the letters stay.
         position: the one visited last.
+        episode: follows its attempts, one after the other, if they are episodes.
     """
 
     def __init__(
@@ -106,6 +104,7 @@ class Bench(ABC):
         self.due = INFINITY
         self.restless = False
         self.position = -TIME_LIMIT
+        self.episode: Episode | None = None
 
     @abstractmethod
     def new_attempt(self, t: int, triggered: int) -> Open:

@@ -177,6 +177,12 @@ class CompiledRequirement:
         """The same where no trigger is sure."""
         return self._beside(self.obligation.doubted)
 
+    @property
+    def judges(self) -> Mapping[str, CompiledRequirement]:
+        """What judges its attempts: it, and those that are in doubt."""
+        beside = {"": self, "?": self.hidden, "??": self.doubted}
+        return {kind: one for kind, one in beside.items() if one is not None}
+
     def _beside(self, obligation: Obligation | None) -> CompiledRequirement | None:
         if obligation is None:
             return None

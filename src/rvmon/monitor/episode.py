@@ -41,6 +41,7 @@ class Episode:
         self.judge = judge
         self._flow = flow
         self._doubted = doubted
+        judge.episode = self
         self._start = start
         self._sure = sure
         obligation = judge.compiled.obligation
@@ -68,7 +69,6 @@ class Episode:
         """Start an attempt at the position `t`, which the flow is at."""
         value = self._flow.values[self.place]
         attempt = self.judge.new_attempt(t, triggered)
-        attempt.episode = self
         self.current, self.failed_at = attempt, None
         if value != TRUE or self._doubted:
             self._start(attempt)

@@ -21,6 +21,7 @@ from rvmon.codegen.runtime.nodes import MISSING
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow import since as flowing
+from rvmon.dataflow.doubt import Doubt
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Inputs, Slot
 from rvmon.dataflow.network import Network
@@ -28,6 +29,7 @@ from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.positions import Positions
 from rvmon.errors import SnapshotError
 from rvmon.monitor.bench import Open
+from rvmon.monitor.episode import Episode
 from rvmon.monitor.generated import GeneratedLanes, GeneratedMonitor
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.hosted import HostedRule
@@ -58,7 +60,7 @@ _UNIT = (
 _KEPT: Mapping[type, tuple[str, ...]] = {
     Monitor: _MONITOR,
     GeneratedMonitor: (*_MONITOR, "_floor"),
-    Ledger: ("attempts", "_counts"),
+    Ledger: ("attempts", "_counts", "_doubts", "void"),
     HealthLog: ("began", "_seen"),
     Intake: ("floor", "conflicts", "late", "crowded", "_held", "_taken"),
     Conflicts: ("_seen",),
@@ -69,12 +71,16 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
         *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
         *("before", "running", "current", "failed_at", "clouded", "eyed"),
     ),
-    HostedRule: ("judge", "due", "restless", "before", "running", "failed_at", "eyed"),
+    HostedRule: (
+        *("_judge", "_episode", "due", "restless", "before", "running", "failed_at", "eyed"),
+    ),
+    Episode: ("current", "failed_at"),
     Lane: (
-        *("flow", "judges", "starters", "waiting", "_restless", "_repeating"),
+        *("flow", "judges", "starters", "episodes", "waiting", "_restless", "_repeating"),
+        "_failed",
         *("_soonest", "_awaited"),
     ),
-    Starter: ("trigger",),
+    Starter: ("trigger", "since"),
     Trigger: ("before", "running"),
     Judge: (*_BENCH, "letters"),
     NetworkJudge: (
@@ -86,9 +92,22 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
         *("_dirty", "_fading", "_wakes", "_left"),
     ),
     Inputs: ("slots", "occurrences", "updated", "expired", "changed"),
-    Slot: (*("value", "updates", "first_at", "last", "at", "before", "before_at", "stale_at"),),
+    Slot: (
+        *(
+            "value",
+            "updates",
+            "first_at",
+            "last",
+            "at",
+            "before",
+            "before_at",
+            "stale_at",
+            "births",
+        ),
+    ),
     flowing.Since: ("optimistic", "pessimistic", "wake"),
     flowing.Previous: ("seen", "wake"),
+    Doubt: ("_now", "_value", "wake"),
 }
 """Per class the fields that a run changes, in an order in which what is pointed at comes first."""
 

@@ -13,7 +13,7 @@ from rvmon.codegen.runtime.unit import Unit
 from rvmon.monitor.bench import Bench
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.hosted import HostedRule
-from rvmon.monitor.lanes import Lanes
+from rvmon.monitor.lanes import Lanes, Shape
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import can_feed, plan_requirements
@@ -96,7 +96,7 @@ class GeneratedLanes(Lanes):
         for index, one in enumerate(judged):
             if forms.machines[index] is None and one is not None:
                 unit.rules[index] = rule = HostedRule(index, one, forms.plan, unit, ledger)
-                if index < len(forms.requirements) and one.network_plan.looks_back:
+                if one.network_plan.looks_back:
                     # What it owes depends on what was before.
                     rule.judge.restless = rule.restless = True
                     unit.restless |= 1 << index
@@ -150,6 +150,22 @@ class GeneratedLanes(Lanes):
         super().finish(end, reached)
         if self.alone:
             self._show_inputs()
+
+    def shape(self) -> Shape:
+        """See `Lanes`."""
+        instances, lanes, unopened, _ = super().shape()
+        rules = self.unit.rules
+        hosted = [rule.index for rule in rules if isinstance(rule, HostedRule) and rule.runs]
+        return instances, lanes, unopened, hosted
+
+    def rebuild(self, shape: Shape) -> None:
+        """See `Lanes`."""
+        super().rebuild(shape)
+        for index in shape[3]:
+            rule = self.unit.rules[index]
+            if isinstance(rule, HostedRule):
+                rule.stand()
+                _ = rule.judge  # it is made when it is asked for
 
     def untold(self) -> list[str]:
         """See `Lanes`."""

@@ -27,10 +27,15 @@ Start = Callable[[int, int], None]
 """Starts an attempt; see `rvmon.monitor.lane.Starter`."""
 
 Shape = tuple[
-    list[tuple[str, list[tuple[Scalar, int]]]], list[tuple[str, dict[str, Scalar], Scalar, bool]]
+    list[tuple[str, list[tuple[Scalar, int]]]],
+    list[tuple[str, str, dict[str, Scalar], Scalar, bool]],
+    list[str],
+    list[int],
 ]
 """Per requirement the values of its instances with their first instants; per lane its requirement,
-captured values, the value of its instance, and whether attempts start in it."""
+which of its judges it has, captured values, the value of its instance, and whether attempts start
+in it; the requirements of which all values were known so far; the rules of generated code that had
+a judge of their own."""
 
 
 class Lanes:
@@ -76,6 +81,7 @@ class Lanes:
         self._lanes: list[tuple[Lane, Instance | None]] = [(self.main, None)]
         for compiled in shared:
             self._seat(self.main, compiled, {}, None)
+        self._doubted: list[Instance] = []
         self._unopened: dict[str, tuple[Lane, list[Starter], list[Start]]] = {}
         for compiled, each in self._each:
             self._make_doubted(compiled, each)
@@ -146,16 +152,18 @@ class Lanes:
             for name, known in self._instances.items()
         ]
         lanes = [
-            (
-                lane.made_for[0].requirement.id,
-                dict(lane.made_for[1]),
-                None if instance is None else instance.value,
-                bool(lane.starters),
-            )
+            (*self._kind(lane.made_for[0]), dict(lane.made_for[1]), _value(instance), starts)
             for lane, instance in self._lanes
-            if lane.made_for is not None
+            for starts in (bool(lane.starters),)
+            if lane.made_for is not None and not (starts and instance in self._doubted)
         ]
-        return instances, lanes
+        return instances, lanes, list(self._unopened), []
+
+    def _kind(self, compiled: CompiledRequirement) -> tuple[str, str]:
+        """The requirement, and which of its judges it is."""
+        name = compiled.requirement.id
+        found = self._by_id[name].judges
+        return name, next(kind for kind, one in found.items() if one is compiled)
 
     def rebuild(self, shape: Shape) -> None:
         """Make the lanes that another run had; what they hold is to be set afterwards.
@@ -163,16 +171,22 @@ class Lanes:
         Args:
             shape: of the other run.
         """
-        instances, lanes = shape
+        instances, lanes, unopened, _ = shape
         each_of = {compiled.requirement.id: each for compiled, each in self._each}
         for name, found in instances:
             self._instances[name] = {
                 value: Instance(rank, each_of[name].value, value, first)
                 for rank, (value, first) in enumerate(found, start=1)
             }
-        for name, captured, value, starts in lanes:
-            compiled = self._by_id[name]
-            instance = None if value is None else self._instances[name][value]
+        for name in [name for name in self._unopened if name not in unopened]:
+            _open(*self._unopened.pop(name), 0)
+        for name, kind, captured, value, starts in lanes:
+            compiled = self._by_id[name].judges[kind]
+            instance = None
+            if value is not None:
+                instance = self._instances[name][value]
+            elif name in each_of:
+                instance = next(one for one in self._doubted if one.source == each_of[name].value)
             graph = compiled.shared_graph if starts else compiled.consequent_graph
             lane = Lane(self._flow(graph, captured), (compiled, captured))
             if starts:
@@ -355,6 +369,7 @@ class Lanes:
         """A lane for the occurrences whose value is not known; nothing starts in it before one."""
         captured = {each.name: None}
         instance = Instance(0, each.value, None, 0)
+        self._doubted.append(instance)
         lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
         starters = self._seat(lane, compiled, captured, instance)
         starts = [starter.start for starter in starters]
@@ -387,6 +402,10 @@ class Lanes:
         # The main lane may stand at an earlier position, where nothing of its own has changed.
         lane.through(t - 1)
         return lane
+
+
+def _value(instance: Instance | None) -> Scalar:
+    return None if instance is None else instance.value
 
 
 def _capture(value: Numeric, flow: Flow, captured: Captured) -> Scalar:

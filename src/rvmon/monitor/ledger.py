@@ -28,7 +28,8 @@ class Ledger:
 
     Attributes:
         attempts: all records given out.
-        void: attempts that have met what they owe, but say nothing.
+        void: attempts that have met what they owe, but say nothing: the place of the requirement,
+            the attempt, its record without a number.
         told: decisions whose records are made: the instant, the place of the requirement in the
             file, the number of the attempt, the record.
     """
@@ -39,7 +40,7 @@ class Ledger:
         self._started: list[tuple[int, int, Bench, Open]] = []
         self._doubtful: list[tuple[int, int, Bench, Open]] = []
         self._doubts: dict[str, int] = {}
-        self.void: list[tuple[Bench, Open]] = []
+        self.void: list[tuple[int, Open, Attempt]] = []
         self._decided: list[tuple[Bench, Open, Attempt]] = []
         self.told: list[tuple[int, int, int, Attempt]] = []
 
@@ -66,14 +67,14 @@ class Ledger:
     def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """See `rvmon.monitor.bench.Clerk`."""
         if verdict and attempt.void:
-            self.void.append((judge, attempt))
+            self.say_nothing(judge, attempt)
             return
         if not attempt.sure:
             if not verdict:
-                self.void.append((judge, attempt))
+                self.say_nothing(judge, attempt)
             return  # if met, triggered or not
-        if attempt.episode is not None and not verdict:
-            attempt.episode.fail(attempt, t)
+        if judge.episode is not None and not verdict:
+            judge.episode.fail(attempt, t)
         upon_end = judge.compiled.obligation.trigger is None
         why = why_decided(judge, attempt, verdict, t, before)
         record = _record(
@@ -109,20 +110,23 @@ class Ledger:
             record = replace(record, forecast=outlook(judge, attempt, now))
         self._decided.append((judge, attempt, record))
 
-    def close(self) -> None:
-        """Take the attempts that were void as undecided, which they stay."""
-        for judge, attempt in self.void:
-            self._decided.append((judge, attempt, self._void_record(judge, attempt)))
-        self.void.clear()
-
-    def _void_record(self, judge: Bench, attempt: Open) -> Attempt:
+    def say_nothing(self, judge: Bench, attempt: Open) -> None:
+        """Take an attempt that stays undecided, whatever comes."""
         why = Explanation("it was over before all that it speaks of had a value")
-        return _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
+        record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
+        self.void.append((judge.compiled.rank, attempt, record))
 
     @property
     def void_records(self) -> Sequence[Attempt]:
-        """The records of the attempts that are void by now."""
-        return [self._void_record(judge, attempt) for judge, attempt in self.void]
+        """The records of these attempts; all of them are numbered."""
+        return [replace(one, number=_number(attempt)) for _, attempt, one in self.void]
+
+    def close(self) -> Sequence[Attempt]:
+        """Give the last records, when all attempts are decided or ended."""
+        found = [*self.flush(), *self.void_records]
+        self.attempts += self.void_records
+        self.void.clear()
+        return found
 
     def open_record(self, judge: Bench, attempt: Open, now: int) -> Attempt:
         """The record of an attempt that is still running; `now` as in `why_open`."""

@@ -189,7 +189,6 @@ class Monitor:
             self._lanes.through(end)
             self._lanes.finish(end, reached)
         self._ledger.close()
-        self._ledger.flush()
         return report_of(
             [compiled.requirement.id for compiled in self._requirements],
             self._ledger.attempts,

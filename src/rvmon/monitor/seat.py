@@ -103,7 +103,7 @@ class Seat(Witness):
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
         if verdict and attempt.void:
-            self._ledger.void.append((self.judge_now(rule), attempt))
+            self._ledger.say_nothing(self.judge_now(rule), attempt)
             return
         if not attempt.sure:
             return  # met, triggered or not

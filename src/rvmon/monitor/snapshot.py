@@ -49,7 +49,7 @@ def snapshot(monitor: Monitor) -> bytes:
             for judge, machine in _progressing(monitor)
         },
     }
-    freezer = Freezer(_Plans(choice.compiled))
+    freezer = Freezer(_plans(choice.compiled))
     document["lanes"] = freezer.freeze(lanes.shape())
     document["state"] = freezer.freeze(monitor)
     body = json.dumps(document, separators=(",", ":")).encode()
@@ -96,7 +96,7 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
     choice = monitor.choice
     if document["machines"] != [_machine(one, choice.engine) for one in choice.requirements]:
         raise SnapshotError("the snapshot was made with other automata: was rvmon changed?")
-    thawer = Thawer(_Plans(compiled))
+    thawer = Thawer(_plans(compiled))
     monitor.lanes.rebuild(thawer.thaw(document["lanes"]))
     thawer.into(monitor, document["state"])
     moved: dict[str, list[int]] = {}
@@ -191,17 +191,10 @@ def _machine(compiled: CompiledRequirement, engine: str) -> str:
     return hashlib.sha256(said.encode()).hexdigest()
 
 
-class _Plans(Mapping[str, "Plan"]):
-    """The plans of networks by requirement."""
-
-    def __init__(self, compiled: CompiledSpec) -> None:
-        self._compiled = compiled
-
-    def __getitem__(self, name: str) -> Plan:
-        return self._compiled.requirements[name].network_plan
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._compiled.requirements)
-
-    def __len__(self) -> int:
-        return len(self._compiled.requirements)
+def _plans(compiled: CompiledSpec) -> Mapping[str, Plan]:
+    """The plans of networks, those of attempts in doubt behind their requirement's name."""
+    return {
+        name + kind: judge.network_plan
+        for name, one in compiled.requirements.items()
+        for kind, judge in one.judges.items()
+    }

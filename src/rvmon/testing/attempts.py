@@ -55,6 +55,13 @@ class Start:
         """The instant of the trigger, ticks."""
         return self.word.letters[self.position].instant
 
+    @property
+    def may_be_over(self) -> bool:
+        """Whether it is an episode that ran to the end, and may have been over before."""
+        if self.view.requirement.mode is Mode.UPON or self.stop is not None:
+            return False
+        return any(self.view.trigger[k] is Truth.UNKNOWN for k in self.owes)
+
     def captured_at(self, position: int) -> Mapping[str, Scalar]:
         """The captured values by which it is judged what is owed at a position."""
         if not self.blurred:
@@ -225,8 +232,6 @@ def obligation(start: Start, readings: Readings) -> Truth:
     if requirement.mode is Mode.UPON and start.sure is not None:
         return owed[0]
     rest = Truth.TRUE if ended else truths.release_rest(opened=True)
-    if rest is Truth.FALSE and any(view.trigger[k] is Truth.UNKNOWN for k in start.owes):
-        rest = Truth.UNKNOWN  # the episode may have been over before
     value = conjunction([*owed, rest])
     if value is Truth.FALSE and start.sure is None:
         return Truth.UNKNOWN

@@ -158,6 +158,7 @@ def _settle(requirement: Requirement, start: Start) -> tuple[Verdict, Decision]:
         return obligation(start, start.view.readings(rest))
 
     open_ = (Verdict.INCONCLUSIVE, Decision.OPEN)
+    certain = start.sure is not None and not start.may_be_over
     match requirement.at_end:
         case EndPolicy.DEFAULT:
             held = under(Rest.END) is Truth.TRUE
@@ -168,9 +169,9 @@ def _settle(requirement: Requirement, start: Start) -> tuple[Verdict, Decision]:
             return (Verdict.PASS, Decision.POLICY) if under(Rest.WEAK) is Truth.TRUE else open_
         case EndPolicy.STRONG:
             failed = under(Rest.STRONG) is Truth.FALSE
-            return (Verdict.FAIL, Decision.POLICY) if failed else open_
+            return (Verdict.FAIL, Decision.POLICY) if failed and certain else open_
         case EndPolicy.PASS | EndPolicy.FAIL:
-            if start.sure is None or Truth.UNKNOWN in (under(Rest.WEAK), under(Rest.STRONG)):
+            if not certain or Truth.UNKNOWN in (under(Rest.WEAK), under(Rest.STRONG)):
                 return open_
             passed = requirement.at_end is EndPolicy.PASS
             return (Verdict.PASS if passed else Verdict.FAIL), Decision.POLICY

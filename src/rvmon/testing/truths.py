@@ -24,7 +24,7 @@ from rvmon.spec.checked import (
 )
 from rvmon.testing.kleene import Truth, conjunction, disjunction, negation, truth_of
 from rvmon.testing.numbers import compare
-from rvmon.testing.walk import is_proposition
+from rvmon.testing.walk import is_proposition, speaks_of_future
 from rvmon.testing.word import Letter, Word
 from rvmon.trace.sample import Scalar
 
@@ -210,7 +210,8 @@ class Truths:
             case UnaryOp.HISTORICALLY:
                 return self._historically(operand, i, interval)
             case UnaryOp.HELD:
-                return self._held(operand, i, interval)
+                mortal = not speaks_of_future(formula.operand)
+                return self._held(operand, i, interval, mortal)
             case UnaryOp.RISE:  # φ and not previous φ
                 before = _born_or_true(negated(i - 1)) if i else Truth.TRUE
                 return conjunction([operand(i), before])
@@ -338,7 +339,7 @@ class Truths:
     def _historically(self, operand: Operand, i: int, interval: Interval) -> Truth:
         return negation(self._since(_true, _not(operand), i, interval))
 
-    def _held(self, operand: Operand, i: int, interval: Interval) -> Truth:
+    def _held(self, operand: Operand, i: int, interval: Interval, mortal: bool) -> Truth:
         """All positions of the window had it, which has to lie behind its birth whole.
 
         What is unknown may not be born either: it tells nothing of where the birth was.
@@ -346,7 +347,7 @@ class Truths:
         start, now = self._letters[0].instant, self._letters[i].instant
         window = [k for k in range(i + 1) if _within(now - self._letters[k].instant, interval)]
         values = [operand(k) for k in window]
-        if not {Truth.TRUE, Truth.FALSE}.intersection(values):
+        if mortal and not {Truth.TRUE, Truth.FALSE}.intersection(values):
             return disjunction(values)
         long_enough = interval.high is not None and now - start >= interval.high
         return conjunction([truth_of(long_enough), *(_born_or_false(value) for value in values)])
