@@ -58,6 +58,13 @@ class Open:
         self.clouded = False
         self.void = False
 
+    def unsplit(self) -> Open:
+        """The same, as if only the run that takes the unknown for the worse were there."""
+        made = Open(self.triggered, self.token, self.seen)
+        made.number, made.doubtful_number = self.number, self.doubtful_number
+        made.doubt = self.doubt
+        return made
+
 
 class Clerk(Protocol):
     """Keeps the records."""

@@ -372,11 +372,13 @@ class Lanes:
         self._doubted.append(instance)
         lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
         starters = self._seat(lane, compiled, captured, instance)
+        self._lanes.append((lane, instance))
+        if self.sources is not None and each.value.event not in self.sources:
+            return  # whatever occurs is unknown, from the first position on
         starts = [starter.start for starter in starters]
         for starter in starters:
             starter.start = _never
         self._unopened[compiled.requirement.id] = (lane, starters, starts)
-        self._lanes.append((lane, instance))
 
     def _instance_lane(
         self, compiled: CompiledRequirement, captured: Captured, instance: Instance, t: int

@@ -100,14 +100,14 @@ class Ledger:
         if verdict is Verdict.PASS and not attempt.sure:
             return
         now = max(2 * reached, 2 * end + 1)
-        why = why_open(judge, attempt, now, end)
+        why = _why_open(judge, attempt, now, end)
         if decision is not Decision.OPEN:
             reason = _SETTLED[decision].format(policy=requirement.at_end)
             why = replace(why, reason=reason)
         decided = None if decision is Decision.OPEN else end
         record = _record(judge, attempt, decided, verdict, decision, why)
         if decided is None:
-            record = replace(record, forecast=outlook(judge, attempt, now))
+            record = replace(record, forecast=_outlook(judge, attempt, now))
         self._decided.append((judge, attempt, record))
 
     def say_nothing(self, judge: Bench, attempt: Open) -> None:
@@ -130,9 +130,9 @@ class Ledger:
 
     def open_record(self, judge: Bench, attempt: Open, now: int) -> Attempt:
         """The record of an attempt that is still running; `now` as in `why_open`."""
-        why = why_open(judge, attempt, now)
+        why = _why_open(judge, attempt, now)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
-        return replace(record, forecast=outlook(judge, attempt, now))
+        return replace(record, forecast=_outlook(judge, attempt, now))
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
@@ -191,6 +191,19 @@ def _record(
         why.blame,
         in_doubt=not attempt.sure,
     )
+
+
+def _why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> Explanation:
+    """What an undecided attempt waits for; one in doubt waits for nothing but to be met."""
+    if attempt.sure:
+        return why_open(judge, attempt, now, end)
+    if attempt.token[0] == FAILED:
+        return Explanation(f"it is not known whether there was a trigger; {attempt.doubt}")
+    return why_open(judge, attempt.unsplit(), now, end)
+
+
+def _outlook(judge: Bench, attempt: Open, now: int) -> Verdict | None:
+    return outlook(judge, attempt, now) if attempt.sure and not attempt.void else None
 
 
 def _number(attempt: Open) -> int:
