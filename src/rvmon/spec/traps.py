@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked import (
+    Atom,
     Binary,
     BinaryOp,
     Bound,
@@ -23,7 +24,7 @@ from rvmon.spec.instant import FIRST, Facts, facts_of, truth_at
 from rvmon.spec.items import LetClause
 from rvmon.spec.printer import format_duration, format_formula
 from rvmon.spec.rules import traps as rules
-from rvmon.spec.tense import fields_in, is_pulse
+from rvmon.spec.tense import fields_in, is_pulse, subformulas
 
 _STEPS = frozenset((UnaryOp.RISE, UnaryOp.FALL))
 
@@ -39,7 +40,7 @@ def traps_at_trigger(
         time: the time model.
         span: of the requirement, for what has no place of its own.
     """
-    said = facts_of(trigger)
+    said = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
     for part in _owed_at_once(consequent):
         if truth_at(part, {}) is None:
             yield from _at_trigger(part, said, time, part.span or span)
@@ -136,24 +137,38 @@ def _from_later_on(part: Binary, time: TimeModel) -> str:
         return f"let it begin at the next position: `next ({format_formula(part)})`"
     low, high = (part.interval.low, part.interval.high) if part.interval else (0, None)
     end = "inf)" if high is None else f"{format_duration(high)}]"
-    left, right = format_formula(part.left), format_formula(part.right)
-    later = f"({right}) R[1 ns, {end} ({left})"
+    left, right = _operand(part.left), _operand(part.right)
+    later = f"{right} R[1 ns, {end} {left}"
     if part.op is BinaryOp.UNTIL:
         window = "" if not low and high is None else f"[{format_duration(low)}, {end}"
-        later = f"({later}) and eventually{window} ({right})"
+        later = f"({later}) and eventually{window} {right}"
     return f"let it begin a tick later: `{later}`"
 
 
 def _later(part: Formula) -> str:
     """How what looks back is owed only where there is something to look at."""
-    match part:
-        case Unary(op=UnaryOp.HELD, interval=window) if window and window.high:
-            due = window.high
-        case Unary(op=UnaryOp.ONCE, interval=window) if window:
-            due = window.low
-        case Binary(op=BinaryOp.SINCE, interval=window) if window and window.low:
-            due = window.low
-        case _:
-            return f"leave out the first instant: `start or ({format_formula(part)})`"
+    due = max(map(_reach, subformulas(part)))
+    if not due:
+        return f"leave out the first instant: `start or {_operand(part)}`"
     begin = format_duration(due)
-    return f"let it begin when so much has passed: `always[{begin}, inf) {format_formula(part)}`"
+    return f"let it begin when so much has passed: `always[{begin}, inf) {_operand(part)}`"
+
+
+def _reach(part: Formula) -> int:
+    """How long ago the latest instant is that an operator looks at, ticks."""
+    match part:
+        case Unary(op=UnaryOp.HELD, interval=window) if window is not None:
+            return window.high or 0
+        case Unary(op=UnaryOp.ONCE, interval=window) if window is not None:
+            return window.low
+        case Binary(op=BinaryOp.SINCE, interval=window) if window is not None:
+            return window.low
+        case _:
+            return 0
+
+
+def _operand(formula: Formula) -> str:
+    """A formula as it stands beside an operator of time."""
+    text = format_formula(formula)
+    is_call = isinstance(formula, Unary) and formula.op in (_STEPS | {UnaryOp.HELD})
+    return text if is_call or isinstance(formula, Atom) else f"({text})"

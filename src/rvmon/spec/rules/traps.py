@@ -136,7 +136,7 @@ def false_at_trigger(span: Span, part: str, escape: str, mend: str) -> Diagnosti
     return finding(
         AT_TRIGGER,
         f"`{short(part)}` is false at the trigger itself, by what that says: it fails there"
-        + (unless or ", on every run"),
+        + (unless or " each time"),
         span,
         mend=mend,
     )
