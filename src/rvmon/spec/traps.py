@@ -26,6 +26,7 @@ from rvmon.spec.printer import format_duration, format_formula
 from rvmon.spec.rules import traps as rules
 from rvmon.spec.tense import fields_in, is_pulse, subformulas
 
+_FIRST = "at the first instant"
 _STEPS = frozenset((UnaryOp.RISE, UnaryOp.FALL))
 
 
@@ -70,9 +71,6 @@ def traps_at_start(
             yield rules.false_at_first(place, when, mend)
         elif truth_at(part, FIRST) is False:
             yield rules.false_at_first(place, _FIRST, _later(part))
-
-
-_FIRST = "at the first instant"
 
 
 def capture_traps(
