@@ -54,6 +54,7 @@ class Spec:
                 name: {field: type_.kind for field, type_ in event.fields.items()}
                 for name, event in self.checked.events.items()
             },
+            self.checked.ignoring,
         )
 
     @cached_property

@@ -83,8 +83,12 @@ class ValueWriter:
             yield from indented(self._occurs(variable, name))
             return
         signal = self.plan.signals.index(name)
-        yield f"if {variable} != {variable}:"
-        yield f"    {variable} = None"
+        if self.plan.spec.signals[name].ignores_nan:
+            yield f"if {variable} is None or {variable} != {variable}:"
+            yield "    return dirty"
+        else:
+            yield f"if {variable} != {variable}:"
+            yield f"    {variable} = None"
         yield from self._on_every_update(variable, name)
         yield f"if self.first[{signal}] is None:"
         yield f"    self.first[{signal}] = t"

@@ -51,17 +51,11 @@ class HealthLog:
         import numpy as np
 
         for name, column in columns.items():
-            if column.dtype.kind != "f":
-                continue
-            # Mostly one sum tells that there is none.
-            with np.errstate(invalid="ignore", over="ignore"):
-                total = np.add.reduce(column)
-            if np.isnan(total):
+            if holds_nan(column):
                 rows = np.flatnonzero(np.isnan(column))
-                if len(rows):
-                    key = (HealthKind.NAN, name, name)
-                    count, first = self._seen.get(key, (0, int(times[rows[0]])))
-                    self._seen[key] = (count + len(rows), first)
+                key = (HealthKind.NAN, name, name)
+                count, first = self._seen.get(key, (0, int(times[rows[0]])))
+                self._seen[key] = (count + len(rows), first)
 
     def _add(self, shown: str, name: str, value: object, t: int) -> None:
         key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
@@ -124,6 +118,18 @@ class HealthLog:
                     Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since + when)
                 )
         return found
+
+
+def holds_nan(column: NDArray[Any]) -> bool:
+    """Whether a column of signals or events holds NaN."""
+    import numpy as np
+
+    if column.dtype.kind != "f":
+        return False
+    # Mostly one sum tells that there is none; that of infinities may be NaN, too.
+    with np.errstate(invalid="ignore", over="ignore"):
+        total = np.add.reduce(column)
+    return bool(np.isnan(total) and np.isnan(column).any())
 
 
 def by_name(entry: Health) -> tuple[str, HealthKind]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TextIO
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Value
@@ -117,7 +117,8 @@ class FileRecording:
                     "with `max delay` in the spec"
                 )
             last = t
-            yield Sample(t, values)
+            # Before equal stamps are merged: what is no update is no other value, either.
+            yield Sample(t, updates_in(values, self._schema.ignoring))
         if last is None:
             raise TraceError("holds no sample")
 

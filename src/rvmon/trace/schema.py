@@ -23,7 +23,9 @@ class Schema:
     Attributes:
         signals: kind by name.
         events: for each event the kinds of its payload's fields.
+        ignoring: the signals of which NaN and null are no update.
     """
 
     signals: Mapping[str, Kind]
     events: Mapping[str, Mapping[str, Kind]]
+    ignoring: frozenset[str] = frozenset()

@@ -13,13 +13,13 @@ from rvmon.dataflow.numbers import operands
 from rvmon.formula.state import Leaf
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
-from rvmon.monitor.columns.leaves import Columns
+from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
 from rvmon.monitor.columns.moves import Moves, moves_of
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.health import HealthLog
+from rvmon.monitor.health import HealthLog, holds_nan
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.planned import can_generate, plan_requirements
 from rvmon.spec.checked import (
@@ -84,6 +84,7 @@ class ColumnJudge:
                 if bound is not None:
                     self._stale[name] = bound
         self._timeline = Timeline(plan, names, asked)
+        self._ignoring = compiled.checked.ignoring
         self._health = HealthLog()
         self._inputs = Inputs(compiled.checked, names)
         self._last: int | None = None
@@ -102,6 +103,8 @@ class ColumnJudge:
             own = times[start : start + CHUNK]
             self._note_stale(own if self._last is None else np.append(self._last, own))
             piece = {name: column[start : start + CHUNK] for name, column in columns.items()}
+            if any(holds_nan(piece[name]) for name in self._ignoring & piece.keys()):
+                raise NotByColumnsError
             self._health.count_columns(own, piece)
             made = self._timeline.take(own, piece)
             for rule in self._rules:
