@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rvmon.report.afterword import full_reason
 from rvmon.report.forecast import forecast_sentence
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks
@@ -55,7 +56,7 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
             console.print(_miss_text(name, report.misses[name]))
         for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             for attempt in islice(report.of(name, verdict), SHOWN_PER_REQUIREMENT):
-                console.print(_attempt_text(attempt, requirement))
+                console.print(_attempt_text(attempt, requirement, report))
             rest = report.counts.get(name, {}).get(verdict, 0) - SHOWN_PER_REQUIREMENT
             if rest > 0:
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")
@@ -121,7 +122,7 @@ def _miss_text(name: str, miss: str) -> Text:
     return Text.assemble((f"{name} ", "bold"), mark, f"  never triggered\n  {miss}\n")
 
 
-def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
+def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report) -> Text:
     from rich.text import Text
 
     from rvmon.diagnostics.snippet import snippet
@@ -136,7 +137,7 @@ def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
         (f"{attempt.requirement} ", "bold"), verdict_text(attempt.verdict), f"  {when}\n"
     )
     if attempt.reason:
-        text.append(f"  {attempt.reason}\n")
+        text.append(f"  {full_reason(attempt, report)}\n")
     if attempt.forecast is not None:
         text.append(f"  {forecast_sentence(attempt.forecast)}\n")
     span = requirement.span

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.explain.anatomy import Anatomy, Strand
 from rvmon.explain.spans import Spans
+from rvmon.report.afterword import with_afterword
 from rvmon.report.forecast import forecast_sentence
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.spec.checked import Requirement
@@ -53,7 +54,7 @@ def _sentences(anatomy: Anatomy, requirement: Requirement) -> Iterator[str]:
     for name, value in attempt.captured.items():
         yield f"{name} = {value}"
     if attempt.reason:
-        yield attempt.reason
+        yield with_afterword(attempt, anatomy.late)
     if attempt.forecast is not None:
         yield forecast_sentence(attempt.forecast)
 
