@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 
 from rvmon.explain.eye import subformulas
@@ -80,9 +81,9 @@ def late_arrivals(
             truths = state_truths(spec, [state], samples, end, instance, attempt.captured, names)
             seen[key] = truths[state].sure
         deadline = attempt.blame.window[1] or 0
-        came = next((low for low, _ in seen[key] if low > deadline), None)
-        if came is not None:
-            found[attempt.number] = came
+        place = bisect_right(seen[key], deadline, key=lambda span: span[0])
+        if place < len(seen[key]):
+            found[attempt.number] = seen[key][place][0]
     return found
 
 

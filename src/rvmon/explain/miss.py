@@ -114,9 +114,7 @@ def _holds(spans: Spans, t: int) -> bool:
 def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], start: int, end: int) -> str:
     if not miss.missing:
         when = "" if miss.at is None else f" at {format_ticks(miss.at)}"
-        return (
-            f"its trigger was true{when}, but not known to be false just before: no edge was seen"
-        )
+        return f"its trigger was true{when}, but not known to be false before: no edge was seen"
     if miss.at is None:
         return "; ".join(_apart(miss.parts, seen, start, end))
     at = miss.at
