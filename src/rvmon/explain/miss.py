@@ -123,8 +123,8 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], start: int, end: int) 
         rest = Binary(BinaryOp.AND, rest, part)
     unknown = any(_holds(seen[part].may, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
-    first = f"at {format_ticks(at)} for the first time"
-    return f"{_listed(miss.missing)} {lacking} while `{format_formula(rest)}` was, {first}"
+    while_ = f"while `{format_formula(rest)}` was (first at {format_ticks(at)})"
+    return f"{_listed(miss.missing)} {lacking} {while_}"
 
 
 def _apart(

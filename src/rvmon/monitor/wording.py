@@ -248,7 +248,7 @@ def all_of(parts: Sequence[str]) -> str:
     '`p` and `q` by 7 s'
     """
     kept = dict.fromkeys(part for part in parts if part)
-    dated = tuple(part.rpartition(word)[0] for part in kept for word in (" by ", " until "))
+    dated = {f"{part.rpartition(word)[0]}`" for part in kept for word in ("` by ", "` until ")}
     return " and ".join(part for part in kept if part not in dated)
 
 

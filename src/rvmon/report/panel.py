@@ -24,7 +24,7 @@ class Panel:
         ghost: the nearest passing attempt, for a failed one.
         strands: the truth of each part of the requirement over the view; empty if that would take
             too long.
-        late: when what the attempt had awaited came after its deadline, ticks; `None` if it did not.
+        late: when what the attempt had awaited came after its deadline, ticks; `None`: it did not.
         miss: if it was never triggered, what the trigger lacked when it was nearest.
     """
 

@@ -234,7 +234,7 @@ def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):
         "  upon e and a\n  then within 1 s b\n"
     )
     trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n")
-    miss = "`a` never true while `e`, as first at 1 s"
+    miss = "`a` was never true while `e` was (first at 1 s)"
     assert main(["run", str(spec), str(trace), "--junit", str(junit)]) == 0
     assert miss in capsys.readouterr().out
     assert miss in junit.read_text()
