@@ -111,3 +111,11 @@ def test_until_is_the_end_that_is_judged(tmp_path, capsys):
     assert "a recording more than 3 s longer would have decided it" in " ".join(
         capsys.readouterr().out.split()
     )
+
+
+def test_it_says_how_late_what_was_awaited_came(door, capsys):
+    """The whole recording tells what came after the deadline."""
+    (door / "slow.csv").write_text("t,closed,knock\n0,1,\n1,,1\n3.02,0,\n5,,\n")
+    assert main(["why", "door.rv", "slow.csv", "D1"]) == 0
+    told = "it came at 3.02 s, 20 ms after the deadline"
+    assert told in " ".join(capsys.readouterr().out.split())

@@ -148,16 +148,6 @@ def test_what_time_has_ruled_out_is_owed_no_more(engine):
     assert left.owed == "`within 9 ns q` by 9 ns"
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_an_attempt_that_the_input_left_open_says_which_input(engine):
-    """An I that is due to unknown input names it and the instant."""
-    samples = [(0, {"distance": 1.0}), (2, {"go": True})]
-    _, [left] = run("upon go\nthen immediately distance > 5 cm", samples, engine=engine)
-    assert left.reason == (
-        "left open by the input: `distance` was not known from 1 s on: no update for 1 s (stale)"
-    )
-
-
 def test_captured_values_are_recorded():
     """`let` shows in the record."""
     _, [attempt] = run(
@@ -206,3 +196,56 @@ def test_the_deadline_of_what_ends_an_obligation_is_that_of_its_window(engine):
     monitor.step_ns(2, {"p": True, "q": True})
     (attempt,) = monitor.step_ns(5, {"p": False})
     assert (attempt.decided, attempt.deadline) == (4, 3)
+
+
+UNKNOWN = {
+    "stale": (
+        [(0, {"distance": 1.0}), (2, {"go": True}), (4, {"distance": 1.0})],
+        "`distance` was not known from 1 s to 4 s: no update for 1 s (stale)",
+    ),
+    "NaN": (
+        [(0, {"distance": 1.0}), (0.5, {"distance": float("nan")}), (2, {"go": True})],
+        "`distance` was not known from 0.5 s on: NaN at 0.5 s",
+    ),
+    "None, and stale after that": (
+        [(0, {"distance": 1.0}), (0.5, {"distance": None}), (2, {"go": True}), (3, {})],
+        "`distance` was not known from 0.5 s on: None at 0.5 s",
+    ),
+    "not yet": (
+        [(0, {}), (2, {"go": True}), (2.5, {"distance": None}), (2.75, {"distance": 1.0})],
+        "`distance` had no value before 2.75 s",
+    ),
+    "never": ([(0, {"near": True}), (2, {"go": True})], "`distance` never had a value"),
+}
+
+
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "network"])
+@pytest.mark.parametrize("name", UNKNOWN)
+def test_an_attempt_that_the_input_left_open_says_from_when_to_when_and_why(name, engine):
+    """The cause of an I is the stretch over which a signal was not known."""
+    samples, told = UNKNOWN[name]
+    _, [left] = run("upon go\nthen immediately distance > 5 cm", samples, engine=engine)
+    assert left.reason == f"left open by the input: {told}"
+
+
+@pytest.mark.parametrize("engine", ["python", "automaton"])
+def test_what_was_not_known_when_a_run_was_interrupted_may_end_after_that(engine):
+    """A snapshot keeps which stretch an attempt waits to hear the end of."""
+    spec = rvmon.loads(f"{HEAD}requirement R\nupon go\nthen immediately distance > 5 cm\n")
+    first = spec.monitor(engine=engine)
+    first.step(0, {"distance": 1.0})
+    first.step(2, {"go": True})
+    second = spec.restore(first.snapshot())
+    second.step(4, {"distance": 1.0})
+    [left] = second.finish().attempts
+    assert "from 1 s to 4 s" in left.reason
+
+
+def test_a_name_without_a_source_is_said_to_have_none():
+    """What has no source is not what was lost."""
+    spec = rvmon.loads(f"{HEAD}requirement R\nupon go\nthen immediately near\n")
+    for engine in ("python", "automaton"):
+        monitor = spec.monitor(engine=engine, sources=["go"])
+        monitor.step(0, {"go": True})
+        [left] = monitor.finish().attempts
+        assert left.reason == "left open by the input: `near` has no source"
