@@ -67,7 +67,7 @@ def test_what_came_too_late_is_found_with_its_instant(name, time):
     text, rows, expected = CASES[name]
     spec = rvmon.loads(HEAD.format(time=time) + text + "\n")
     samples = [Sample(round(t * SECOND), values) for t, values in rows]
-    report = spec.evaluate(samples)
+    report = spec.evaluate(rows)
     found = late_arrivals(
         spec.checked, spec.requirements["R"], report.attempts, samples, report.end
     )
