@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from itertools import islice
+from itertools import islice, takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,6 @@ from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 
 if TYPE_CHECKING:
-    from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
     from rvmon.verdict.verdict import Verdict
 
@@ -23,7 +22,7 @@ MOST_LATE = 1000
 """Failures of a requirement of which it is looked up whether what they awaited came late."""
 
 
-def in_order(recording: Recording) -> list[Sample]:
+def in_order(recording: Iterable[Sample]) -> list[Sample]:
     """The samples in order of time, equal stamps merged (under `max delay` they may come late)."""
     merged: dict[int, Sample] = {}
     for sample in recording:
@@ -61,7 +60,10 @@ def second_look(
 
     @cache
     def samples() -> Sequence[Sample]:
-        return [sample for sample in in_order(spec.recording(trace)) if sample.t <= end]
+        read: Iterable[Sample] = spec.recording(trace)
+        if spec.checked.max_delay is None:  # what comes behind may be broken
+            read = takewhile(lambda sample: sample.t <= end, read)
+        return [sample for sample in in_order(read) if sample.t <= end]
 
     if goals and spec.checked.covers:
         report = replace(report, goals=_goals(spec, trace, end, names, samples))
