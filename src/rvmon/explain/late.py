@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 
-from rvmon.explain.eye import subformulas
+from rvmon.explain.eye import positions_of, subformulas
 from rvmon.explain.log import state_truths
 from rvmon.explain.spans import Spans
 from rvmon.explain.states import state_of
@@ -67,12 +67,14 @@ def late_arrivals(
 
     Cost: one pass over the samples for each choice of captured values.
     """
-    begin = samples[0].t if samples else 0
+    if not samples:
+        return {}
+    begin, positions = samples[0].t, positions_of(spec, samples, end)
     seen: dict[tuple[Formula, tuple[tuple[str, Scalar], ...]], Spans] = {}
     found = {}
     for attempt in attempts:
         formula = awaited(requirement, attempt)
-        if formula is None or attempt.blame is None or not samples:
+        if formula is None or attempt.blame is None:
             continue
         key = (formula, tuple(attempt.captured.items()))
         if key not in seen:
@@ -81,10 +83,23 @@ def late_arrivals(
             truths = state_truths(spec, [state], samples, end, instance, attempt.captured, names)
             seen[key] = truths[state].sure
         deadline = attempt.blame.window[1] or 0
-        place = bisect_right(seen[key], deadline, key=lambda span: span[0])
-        if place < len(seen[key]):
-            found[attempt.number] = seen[key][place][0]
+        came = _first_after(deadline, seen[key], positions)
+        if came is not None:
+            found[attempt.number] = came
     return found
+
+
+def _first_after(deadline: int, spans: Spans, positions: Sequence[int] | None) -> int | None:
+    """The first position (`None`: every tick is one) after an instant that lies in a span."""
+    place = bisect_right(spans, deadline, key=lambda span: span[1])
+    for low, high in spans[place:]:
+        first = max(low, deadline + 1)
+        if positions is None:
+            return first
+        index = bisect_left(positions, first)
+        if index < len(positions) and positions[index] <= high:
+            return positions[index]
+    return None
 
 
 def _instance(
