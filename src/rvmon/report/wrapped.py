@@ -19,9 +19,8 @@ def wrapped(sentence: str, width: int) -> str:
         width: columns that a line may take.
 
     >>> print(wrapped("`released` occurred at 4.75 s, 0.75 s after the trigger", 32))
-      `released` occurred at
-        4.75 s, 0.75 s after the
-        trigger
+      `released` occurred at 4.75 s,
+        0.75 s after the trigger
     """
     whole = _BEFORE_UNIT.sub(_TOGETHER, sentence)
     lines = textwrap.fill(
