@@ -89,6 +89,8 @@ class ValueWriter:
         else:
             yield f"if {variable} != {variable}:"
             yield f"    {variable} = None"
+            yield f"    if s[{signal}] is not None:"
+            yield f"        self.clerk.lost({signal}, t, 'nan')"
         yield from self._on_every_update(variable, name)
         yield f"if self.first[{signal}] is None:"
         yield f"    self.first[{signal}] = t"
@@ -113,8 +115,11 @@ class ValueWriter:
     def kept(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
         """Keep another value of a signal."""
         signal = self.plan.signals.index(name)
-        yield f"if s[{signal}] is None and self.first[{signal}] is None:"
-        yield f"    self.first[{signal}] = t"
+        yield f"if s[{signal}] is None:"
+        yield f"    self.found({signal}, t)"
+        if not given:
+            yield f"if {variable} is None:"
+            yield f"    self.clerk.lost({signal}, t, 'none')"
         known = variable if given else f"MISSING if {variable} is None else {variable}"
         yield f"self.last{signal} = {known}"
         yield f"s[{signal}] = {variable}"

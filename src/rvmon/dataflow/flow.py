@@ -9,6 +9,7 @@ from typing import assert_never
 from rvmon.dataflow.graph import Graph
 from rvmon.dataflow.inputs import NEVER, Inputs, Reported
 from rvmon.dataflow.leaves import Evaluate, evaluator
+from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.since import Previous, Since
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf, State, StateOp
 from rvmon.spec.checked import ProbeAtom
@@ -142,6 +143,11 @@ class Flow:
     def last_with(self, place: int, value: int, t: int) -> int | None:
         """The last position up to `t`, not before the present one, at which a node had a value."""
         return t if self.values[place] == value else self._until.get((place, value))
+
+    @property
+    def outages(self) -> Mapping[str, Outage]:
+        """By name what is not known now, and since when."""
+        return self.inputs.outages
 
     @property
     def next_change(self) -> int:

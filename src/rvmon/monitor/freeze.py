@@ -25,9 +25,11 @@ from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Inputs, Slot
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.positions import Positions
 from rvmon.errors import SnapshotError
 from rvmon.monitor.bench import Open
+from rvmon.monitor.doubt import Doubt
 from rvmon.monitor.generated import GeneratedLanes, GeneratedMonitor
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.hosted import HostedRule
@@ -62,7 +64,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Intake: ("floor", "conflicts", "late", "crowded", "_held", "_taken"),
     Conflicts: ("_seen",),
     Lanes: _LANES,
-    GeneratedLanes: ("unit", "_counts", *_LANES),
+    GeneratedLanes: ("outages", "unit", "_counts", *_LANES),
     Unit: _UNIT,
     Rule: (
         *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
@@ -84,7 +86,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
         *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
         *("_dirty", "_fading", "_wakes", "_left"),
     ),
-    Inputs: ("slots", "occurrences", "updated", "expired", "changed"),
+    Inputs: ("slots", "occurrences", "updated", "expired", "changed", "outages"),
     Slot: (*("value", "updates", "first_at", "last", "at", "before", "before_at", "stale_at"),),
     flowing.Since: ("optimistic", "pessimistic", "wake"),
     flowing.Previous: ("seen", "wake"),
@@ -94,7 +96,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
 _MADE: Mapping[str, type] = {
     one.__name__: one
     for one in (
-        *(Attempt, Blame, Open, Network, Positions, Run),
+        *(Attempt, Blame, Doubt, Outage, Open, Network, Positions, Run),
         *(generated.History, generated.Since, flowing._Run),
     )
 }

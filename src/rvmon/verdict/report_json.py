@@ -21,6 +21,7 @@ from rvmon.verdict.verdict import Verdict
 class _AttemptsJson(msgspec.Struct):
     attempts: list[dict[str, Any]]
     nearest_miss: str = ""
+    late: dict[int, int] = {}
 
 
 class _ReportJson(msgspec.Struct):
@@ -55,6 +56,8 @@ def _document(report: Report, attempts: Mapping[str, Sequence[str]]) -> Iterator
         rest: dict[str, object] = {"counts": report.counts[name]}
         if name in report.misses:
             rest["nearest_miss"] = report.misses[name]
+        if report.late.get(name):
+            rest["late"] = report.late[name]
         yield f"],{encoded(rest)[1:]}"
     tail: dict[str, object] = {"health": report.health}
     if report.goals:
@@ -112,4 +115,5 @@ def decode(text: str | bytes) -> Report:
     )
     found = {name: entry.nearest_miss for name, entry in document.requirements.items()}
     misses = {name: miss for name, miss in found.items() if miss}
-    return replace(report, misses=misses, goals=document.goals)
+    late = {name: entry.late for name, entry in document.requirements.items() if entry.late}
+    return replace(report, misses=misses, late=late, goals=document.goals)

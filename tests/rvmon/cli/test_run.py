@@ -74,7 +74,7 @@ def test_a_failure_shows_cause_window_and_spec_line(files, capsys):
     """Every F says why, over which window, and where in the spec."""
     assert main(["run", "door.rv", "F.csv"]) == 1
     shown = capsys.readouterr().out
-    assert "[1 s, 3 s]" in shown
+    assert "between 1 s and 3 s" in shown
     assert "door.rv:7" in shown
     assert "within 2 s not closed" in shown
     assert "^" in shown
@@ -141,7 +141,7 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys, engine):
     assert main(["run", "door.rv", "cut.csv", "--engine", engine]) == 2
     told = capsys.readouterr().err
     assert "cut.csv: line 6: column `closed`: `maybe`" in told
-    assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: window" in told
+    assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
     assert "Traceback" not in told
 
 
@@ -234,7 +234,7 @@ def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):
         "  upon e and a\n  then within 1 s b\n"
     )
     trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n")
-    miss = "`a` never true while `e`, as first at 1 s"
+    miss = "`a` was never true while `e` was (first at 1 s)"
     assert main(["run", str(spec), str(trace), "--junit", str(junit)]) == 0
     assert miss in capsys.readouterr().out
     assert miss in junit.read_text()
@@ -317,3 +317,16 @@ def test_a_specification_without_requirements_is_told(tmp_path, capsys):
     assert "there are none" in capsys.readouterr().err
     assert main(["explain", spec]) == 2
     assert "there is nothing to explain" in capsys.readouterr().err
+
+
+def test_a_failure_says_how_late_what_it_awaited_came(files, capsys):
+    """Text, JSON and JUnit name the instant where the recording shows it."""
+    (files / "slow.csv").write_text("t,closed,knock\n0,1,\n1,,1\n3.02,0,\n5,,\n")
+    assert main(["run", "door.rv", "slow.csv", "--junit", "v.xml"]) == 1
+    told = "it came at 3.02 s, 20 ms after the deadline"
+    assert told in " ".join(capsys.readouterr().out.split())
+    assert told in (files / "v.xml").read_text()
+    assert main(["run", "door.rv", "slow.csv", "--format", "json"]) == 1
+    text = capsys.readouterr().out
+    assert json.loads(text)["requirements"]["D1"]["late"] == {"1": 3_020_000_000}
+    assert Report.from_json(text).late == {"D1": {1: 3_020_000_000}}

@@ -65,6 +65,12 @@ class Monitor:
 
     # What the generated code calls.
 
+    def lost(self, signal: int, t: int, why: str) -> None:
+        """Records have no reasons: since when a signal is not known is not asked for."""
+
+    def found(self, signal: int, t: int) -> None:
+        """Nor until when."""
+
     def opened(self, rule: Rule, triggered: int, token: Any) -> Open:
         """A new attempt."""
         self.counts[rule.index] += 1

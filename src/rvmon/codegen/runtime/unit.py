@@ -40,7 +40,6 @@ class Unit(Nodes):
         "after",
         "awaited",
         "began",
-        "clerk",
         "dirty",
         "due_at",
         "dues",

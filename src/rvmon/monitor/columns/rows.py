@@ -125,6 +125,11 @@ def _rows_that_matter(
     shortest = min((bound for bound in bounds if bound is not None), default=None)
     if shortest is not None:
         matters |= _refreshing(times[before:stop], shortest)
+    for column in own.values():
+        if column.dtype.kind == "f":
+            # From when to when a signal was not known is told, whatever is made of it.
+            lost = np.isnan(column)
+            matters[1:] |= lost[1:] != lost[:-1]
     if before < start:
         matters[0] = False
     return np.flatnonzero(matters) + before
