@@ -35,7 +35,13 @@ def can_be_read_again(trace: str) -> bool:
 
 
 def second_look(
-    spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
+    spec: Spec,
+    trace: str,
+    report: Report,
+    names: frozenset[str] | None,
+    *,
+    goals: bool,
+    nan: str,
 ) -> Report:
     """The report with what the triggers lacked that never came true, and with the cover goals.
 
@@ -47,18 +53,21 @@ def second_look(
         report: on it.
         names: the signals and events that have a source; `None`: all.
         goals: whether the cover goals are asked for.
+        nan: what NaN says, as for `Spec.evaluate`.
     """
     silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
     end = report.end
     if end is None or not can_be_read_again(trace):
         return report
 
+    by_columns = nan == "unknown"
+
     @cache
     def samples() -> Sequence[Sample]:
-        return [sample for sample in in_order(spec.recording(trace)) if sample.t <= end]
+        return [sample for sample in in_order(spec.recording(trace, nan=nan)) if sample.t <= end]
 
     if goals and spec.checked.covers:
-        report = replace(report, goals=_goals(spec, trace, end, names, samples))
+        report = replace(report, goals=_goals(spec, trace, end, names, samples, by_columns))
     if not silent:
         return report
     from rvmon.explain.miss import nearest_miss, read_as_values
@@ -67,7 +76,7 @@ def second_look(
     for name in silent:
         requirement = spec.requirements[name]
         read = read_as_values(spec.checked, requirement)
-        few = None if read is None else _changes(spec, trace, read, end)
+        few = None if read is None or not by_columns else _changes(spec, trace, read, end)
         found[name] = nearest_miss(
             spec.checked, requirement, samples() if few is None else few, end, names
         )
@@ -96,6 +105,7 @@ def _goals(
     end: int,
     names: frozenset[str] | None,
     samples: Callable[[], Sequence[Sample]],
+    by_columns: bool,
 ) -> Mapping[str, Verdict]:
     from rvmon.monitor.batch_file import evaluate_file
     from rvmon.monitor.compiled import compile_spec
@@ -103,7 +113,7 @@ def _goals(
 
     goals = Spec(goals_as_requirements(spec.checked))
     report = None
-    if spec.checked.max_delay is None:
+    if spec.checked.max_delay is None and by_columns:
         report = evaluate_file(
             compile_spec(goals.checked),
             goals.schema,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.intake import MOST_HELD, Intake
+from rvmon.readers.alternation import Alternations
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
@@ -22,10 +23,12 @@ class HealthLog:
 
     Attributes:
         began: the instant of the first sample; `None` before it.
+        alternations: how known and unknown values of columns follow each other.
     """
 
     def __init__(self) -> None:
         self.began: int | None = None
+        self.alternations = Alternations()
         self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
 
     def note(self, t: int, values: Mapping[str, Value]) -> None:
@@ -56,12 +59,15 @@ class HealthLog:
             # Mostly one sum tells that there is none.
             with np.errstate(invalid="ignore", over="ignore"):
                 total = np.add.reduce(column)
-            if np.isnan(total):
-                rows = np.flatnonzero(np.isnan(column))
-                if len(rows):
-                    key = (HealthKind.NAN, name, name)
-                    count, first = self._seen.get(key, (0, int(times[rows[0]])))
-                    self._seen[key] = (count + len(rows), first)
+            unknown = np.isnan(column) if np.isnan(total) else None
+            if unknown is None or not unknown.any():
+                self.alternations.note_known(name, len(column))
+                continue
+            self.alternations.note_column(name, unknown)
+            rows = np.flatnonzero(unknown)
+            key = (HealthKind.NAN, name, name)
+            count, first = self._seen.get(key, (0, int(times[rows[0]])))
+            self._seen[key] = (count + len(rows), first)
 
     def _add(self, shown: str, name: str, value: object, t: int) -> None:
         key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
