@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import UnknownNameError
+from rvmon.readers.gaps import gaps_of
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.measured import Margins
     from rvmon.monitor.robustness import RobustnessMonitor
+    from rvmon.readers.gaps import Gaps
     from rvmon.spec.checked import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
@@ -146,48 +149,96 @@ class Spec:
         engine: str = "auto",
         only: Iterable[str] | None = None,
         until: float | None = None,
+        sources: Iterable[str] | None = None,
+        nan: str = "unknown",
+        no_update: Any = None,
     ) -> Report:
-        """Judge a finished trace.
+        r"""Judge a finished trace; the same content gives the same records, whatever holds it.
 
         Args:
-            trace: a path (`.csv`, `.jsonl`, `.parquet`), columns by name (arrays, an Arrow table),
-                a `Recording`, or an iterable of `(t, values)` with t in seconds.
-            time: the time column of columns, no signal; if its name ends in `_ns`, integer ticks.
+            trace: a path (`.csv`, `.jsonl`, `.parquet`), a table (arrays or lists by name, an
+                Arrow table, a data frame), a `Recording`, or an iterable of `(t, values)` with t
+                in seconds.
+            time: the time column of a table, no signal; if its name ends in `_ns`, integer ticks.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
+            sources: the signals and events that can arrive, the others are unknown throughout;
+                default the columns that there are, of JSON lines and pairs all that is declared.
+            nan: what NaN says: `unknown`, or `no update`, as in a merge of topics.
+            no_update: a further value that stands for no update; in tables `None`, nulls and masked
+                values do anyway.
 
         Raises:
             TraceError: the trace cannot be read; place and cause are named.
-            UnknownNameError: `only` or `engine` names what does not exist.
+            UnknownNameError: `only`, `engine`, `sources` or `nan` names what does not exist.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
+        >>> merged = {"t": [0, 1, 2], "x": [1.0, float("nan"), 2.0]}
+        >>> [spec.evaluate(merged, nan=nan).verdicts["R1"] for nan in ("unknown", "no update")]
+        [<Verdict.INCONCLUSIVE: 'I'>, <Verdict.PASS: 'P'>]
         """
         _expect_engine(engine)
         chosen = self._chosen(only)
         end = None if until is None else ticks_of_seconds(until)
         if chosen == () and engine == "c":
             engine = "auto"  # nothing to compile
-        from rvmon.monitor.batch_table import evaluate_table
-
-        report = evaluate_table(self._compiled, trace, time, only=chosen, engine=engine, until=end)
-        if report is not None:
-            return report
-        if isinstance(trace, str | Path):
-            report = self.evaluate_file(trace, engine=engine, only=chosen, until=until)
+        gaps, given = gaps_of(nan, no_update), self._sources(sources)
+        if given is None:
+            report = self._by_columns(trace, time, gaps, engine, chosen, until)
             if report is not None:
                 return report
-        recording = self.recording(trace, time=time)
+        recording = self.recording(trace, time=time, nan=nan, no_update=no_update)
+        if given is None and recording.names is not None:
+            given = frozenset(recording.names) & {*self.schema.signals, *self.schema.events}
+        if end is None:
+            end = recording.end
         if engine == "c":
             from rvmon.monitor.batch_c import evaluate_recording
 
-            return evaluate_recording(self._compiled, recording, only=chosen, until=end)
-        names = recording.names
-        if names is not None:
-            names = frozenset(names) & {*self.schema.signals, *self.schema.events}
-        monitor = self.monitor(only=chosen, engine=engine, sources=names)
+            return evaluate_recording(
+                self._compiled, recording, sources=given, only=chosen, until=end
+            )
+        monitor = self.monitor(only=chosen, engine=engine, sources=given)
         for sample in recording:
             monitor.step_ns(sample.t, sample.values)
-        return monitor.finish_ns(recording.end if end is None else end)
+        report = monitor.finish_ns(end)
+        rows = getattr(recording, "rows", None)
+        return report if rows is None else replace(report, health=rows.told(report.health))
+
+    def _by_columns(
+        self,
+        trace: Any,
+        time: str,
+        gaps: Gaps,
+        engine: str,
+        only: tuple[str, ...] | None,
+        until: float | None,
+    ) -> Report | None:
+        """Judge a trace by its columns; `None` if it has none, or each row has to be looked at."""
+        if isinstance(trace, str | Path):
+            if gaps:
+                return None
+            return self.evaluate_file(trace, engine=engine, only=only, until=until)
+        from rvmon.readers.tables import columns_by_name
+
+        columns = columns_by_name(trace)
+        if columns is None:
+            return None
+        from rvmon.monitor.batch_table import evaluate_table
+
+        return evaluate_table(
+            self._compiled,
+            self.schema,
+            columns,
+            time,
+            gaps,
+            only=only,
+            engine=engine,
+            until=None if until is None else ticks_of_seconds(until),
+        )
 
     def evaluate_many(
         self,
@@ -338,15 +389,20 @@ class Spec:
             self._compiled, only=chosen, settle=settle, sources=given, streams=streams
         )
 
-    def recording(self, trace: Any, *, time: str = "t") -> Recording:
-        """Whatever `evaluate` takes as a trace, as a recording.
+    def recording(
+        self, trace: Any, *, time: str = "t", nan: str = "unknown", no_update: Any = None
+    ) -> Recording:
+        """Whatever `evaluate` takes as a trace, as a recording; so are the arguments.
 
         Raises:
             TraceError: the trace cannot be read.
+            UnknownNameError: there is no such reading of NaN.
         """
         from rvmon.readers.any_trace import recording_of
 
-        return recording_of(trace, self.schema, time=time, ordered=self.checked.max_delay is None)
+        ordered = self.checked.max_delay is None
+        gaps = gaps_of(nan, no_update)
+        return recording_of(trace, self.schema, time=time, ordered=ordered, gaps=gaps)
 
 
 def _expect_engine(name: str) -> None:

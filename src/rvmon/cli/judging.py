@@ -14,9 +14,9 @@ from rvmon.cli.progress import shown_while_reading
 from rvmon.cli.second_look import can_be_read_again, second_look
 from rvmon.errors import TraceError
 from rvmon.loading import load
+from rvmon.readers.gaps import gaps_of
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec
-from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 
@@ -36,6 +36,7 @@ class Options:
         until: the instant in seconds to which recordings are judged; default their last sample.
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
+        nan: what NaN says, as for `Spec.evaluate`.
     """
 
     only: tuple[str, ...] | None = None
@@ -43,6 +44,7 @@ class Options:
     until: float | None = None
     strict_columns: bool = False
     robustness: bool = False
+    nan: str = "unknown"
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,13 +118,13 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         if not again and trace.endswith((".csv", ".parquet")):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
         ordered = spec.checked.max_delay is None
-        recording = FileRecording(trace, spec.schema, ordered=ordered)
+        recording = _opened(spec, trace, options)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
         end = None if options.until is None else ticks_of_seconds(options.until)
         report = None
         meter = None
-        if again and not options.robustness:
+        if again and not options.robustness and options.nan == "unknown":
             report = spec.evaluate_file(
                 trace,
                 engine=options.engine,
@@ -156,16 +158,24 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(_shown(trace), None, tuple(before), place + message)
-    report = second_look(spec, trace, report, recording.names, goals=options.only is None)
+    report = second_look(
+        spec, trace, report, recording.names, goals=options.only is None, nan=options.nan
+    )
     trace = _shown(trace)
-    return Judged(trace, _named(report, trace, recording.health()))
+    health = (*recording.rows.alternations.remarked(report.health), *recording.health())
+    return Judged(trace, replace(report, trace=trace, health=health))
+
+
+def _opened(spec: Spec, trace: str, options: Options) -> FileRecording:
+    ordered, gaps = spec.checked.max_delay is None, gaps_of(options.nan, None)
+    return FileRecording(trace, spec.schema, ordered=ordered, gaps=gaps)
 
 
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
     """What is decided up to the place where a recording breaks off."""
     found: list[Attempt] = []
     with suppress(TraceError):
-        recording = FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)
+        recording = _opened(spec, trace, options)
         monitor = spec.monitor(only=options.only, sources=recording.names)
         for sample in recording:
             found.extend(monitor.step_ns(sample.t, sample.values))
@@ -210,13 +220,8 @@ def _shown(trace: str) -> str:
     return os.fsencode(trace).decode("utf-8", "replace")
 
 
-def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:
-    """The report with its recording's name, and with what the reader noticed."""
-    return replace(report, trace=trace, health=(*report.health, *health))
-
-
 def _refuse_mismatch(recording: FileRecording, spec: Spec) -> None:
-    ignored = [health.name for health in recording.health() if health.kind is HealthKind.IGNORED]
+    ignored = list(recording.ignored)
     declared = {*spec.schema.signals, *spec.schema.events}
     missing = sorted(declared - (recording.names or declared))
     faults = [

@@ -78,6 +78,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="exit with 1 if one of these (default: any) was triggered in no recording",
     )
     parser.add_argument(
+        "--nan",
+        choices=("unknown", "no-update"),
+        default="unknown",
+        help="what NaN says: unknown (default), or no update, as where topics were merged",
+    )
+    parser.add_argument(
         "--strict-columns",
         action="store_true",
         help="columns that are missing or not declared are errors",
@@ -100,6 +106,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.until,
         arguments.strict_columns,
         arguments.robustness,
+        arguments.nan.replace("-", " "),
     )
     must_trigger = _ids(arguments.require_triggered or None, spec)
     judged = list(
@@ -198,9 +205,11 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
 
+        nan = arguments.nan.replace("-", " ")
+
         def read(trace: str) -> list[Sample]:
             # What came over standard input is gone: its page has the verdicts, not the signals.
-            return [] if trace == "-" else list(spec.recording(trace))
+            return [] if trace == "-" else list(spec.recording(trace, nan=nan))
 
         def command(trace: str) -> str:
             return shlex.join(["rvmon", "run", arguments.spec, trace])

@@ -38,7 +38,13 @@ def can_be_read_again(trace: str) -> bool:
 
 
 def second_look(
-    spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
+    spec: Spec,
+    trace: str,
+    report: Report,
+    names: frozenset[str] | None,
+    *,
+    goals: bool,
+    nan: str,
 ) -> Report:
     """The report with the cover goals, and with what only the whole recording tells.
 
@@ -52,24 +58,27 @@ def second_look(
         report: on it.
         names: the signals and events that have a source; `None`: all.
         goals: whether the cover goals are asked for.
+        nan: what NaN says, as for `Spec.evaluate`.
     """
     silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
     end = report.end
     if end is None or not can_be_read_again(trace):
         return report
 
+    by_columns = nan == "unknown"
+
     @cache
     def samples() -> Sequence[Sample]:
-        read: Iterable[Sample] = spec.recording(trace)
+        read: Iterable[Sample] = spec.recording(trace, nan=nan)
         if spec.checked.max_delay is None:  # what comes behind may be broken
             read = takewhile(lambda sample: sample.t <= end, read)
         return [sample for sample in in_order(read) if sample.t <= end]
 
     if goals and spec.checked.covers:
-        report = replace(report, goals=_goals(spec, trace, end, names, samples))
+        report = replace(report, goals=_goals(spec, trace, end, names, samples, by_columns))
 
     def read(names: frozenset[str] | None) -> Sequence[Sample]:
-        few = None if names is None else _changes(spec, trace, names, end)
+        few = None if names is None or not by_columns else _changes(spec, trace, names, end)
         return samples() if few is None else few
 
     late = {
@@ -138,6 +147,7 @@ def _goals(
     end: int,
     names: frozenset[str] | None,
     samples: Callable[[], Sequence[Sample]],
+    by_columns: bool,
 ) -> Mapping[str, Verdict]:
     from rvmon.monitor.batch_file import evaluate_file
     from rvmon.monitor.compiled import compile_spec
@@ -145,7 +155,7 @@ def _goals(
 
     goals = Spec(goals_as_requirements(spec.checked))
     report = None
-    if spec.checked.max_delay is None:
+    if spec.checked.max_delay is None and by_columns:
         report = evaluate_file(
             compile_spec(goals.checked),
             goals.schema,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     _Block = tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]
 
 
-def _fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[str]:
+def fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[str]:
     """The names of which only the present value matters, not whether there was an update."""
     spec = compiled.checked
     chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
@@ -66,10 +66,10 @@ def evaluate_file(
     reader = reader_of(path, seen)
     if reader is None:
         return None
-    fillable = _fillable(compiled, only)
+    holding = fillable(compiled, only)
 
     def read() -> Iterator[_Block]:
-        found = ((block.times, block.columns) for block in reader(path, schema, fillable))
+        found = ((block.times, block.columns) for block in reader(path, schema, holding))
         return found if until is None or not cut else _up_to(until, found)
 
     try:

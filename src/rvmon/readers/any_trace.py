@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rvmon.trace.sample import Recording, Sample, Trace
+from rvmon.readers.gaps import Gaps
+from rvmon.trace.sample import Recording
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import ticks_of_seconds
 
 
-def recording_of(trace: Any, schema: Schema, *, time: str, ordered: bool) -> Recording:
+def recording_of(trace: Any, schema: Schema, *, time: str, ordered: bool, gaps: Gaps) -> Recording:
     """A trace as a recording; it need not be read yet.
 
     Args:
-        trace: a path, columns by name (arrays, an Arrow table), a recording, or an iterable of
-            `(t, values)` with t in seconds.
+        trace: a path, a table (columns by name, an Arrow table, a data frame), a recording, or an
+            iterable of `(t, values)` with t in seconds.
         schema: the declared names.
         time: the time column of columns; if its name ends in `_ns`, integer ticks.
-        ordered: whether a stamp of a file that is before the one above it is an error.
+        ordered: whether a stamp that is before the one above it is an error.
+        gaps: values that stand for no update; a recording says so itself.
 
     Raises:
         TraceError: the trace cannot be read.
@@ -27,14 +27,22 @@ def recording_of(trace: Any, schema: Schema, *, time: str, ordered: bool) -> Rec
     if isinstance(trace, str | Path):
         from rvmon.readers.recording import FileRecording
 
-        return FileRecording(trace, schema, ordered=ordered)
+        return FileRecording(trace, schema, ordered=ordered, gaps=gaps)
+    from rvmon.readers.rows import RowRecording, Rows
+    from rvmon.readers.tables import columns_by_name
+
+    columns = columns_by_name(trace)
+    if columns is not None:
+        from rvmon.readers.columns import Table
+
+        table = Table(columns, schema, time)
+        rows = Rows(schema, "row", ordered=ordered)
+        return RowRecording(table.layout.names, lambda: table.rows(gaps), rows)
     if hasattr(trace, "names") and hasattr(trace, "end"):
         recording: Recording = trace
         return recording
-    if isinstance(trace, Mapping) or hasattr(trace, "column_names"):
-        from rvmon.readers.columns import trace_of_columns
+    from rvmon.readers.pairs import expect_pairs, pair_rows
 
-        return trace_of_columns(trace, schema, time)
-    from rvmon.readers.pairs import pairs_of
-
-    return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in pairs_of(trace)))
+    expect_pairs(trace)
+    rows = Rows(schema, "item", ordered=ordered)
+    return RowRecording(None, lambda: pair_rows(trace, schema, gaps), rows)

@@ -1,113 +1,95 @@
-"""Columns in memory (NumPy arrays, lists, an Arrow table) as samples."""
+"""Columns in memory as samples, row by row."""
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.trace.sample import Sample, Trace
+from rvmon.readers.csv_rows import Layout, layout_of, row_values
+from rvmon.readers.gaps import Gaps
+from rvmon.readers.tables import cells_of
+from rvmon.readers.values import plain
+from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 
 
-def trace_of_columns(table: Any, schema: Schema, time: str) -> Trace:
-    """Columns as a recording; see `columns_of` and `column_samples` for what is taken and raised.
-
-    >>> trace_of_columns({"t": [0, 1]}, Schema({}, {}), "t").names
-    frozenset()
-    """
-    columns = columns_of(table)
-    names = frozenset(columns) & {*schema.signals, *schema.events} - {time}
-    return Trace(tuple(column_samples(columns, schema, time)), names)
-
-
-def columns_of(table: Any) -> dict[str, list[Any]]:
-    """Turn a mapping of arrays, or an Arrow table, into lists.
+def time_column(names: Mapping[str, Any], time: str) -> str:
+    """The time column that is meant: `t_ns` stands for `t`, as in files, where there is no `t`.
 
     Raises:
-        TraceError: it is neither, a column is none, there are two of a name, or they differ in
-            length.
+        TraceError: there is no such column.
 
-    >>> columns_of({"t": [0, 1], "v": [2.0, 3.0]})
-    {'t': [0, 1], 'v': [2.0, 3.0]}
+    >>> time_column({"t_ns": []}, "t")
+    't_ns'
     """
-    if hasattr(table, "column_names"):
-        columns = _arrow_columns(table)
-    elif isinstance(table, Mapping):
-        columns = {str(name): _cells(name, column) for name, column in table.items()}
-    else:
-        raise TraceError(
-            f"expected a path, columns by name or (t, values) pairs, found {type(table).__name__}"
-        )
-    lengths = {name: len(column) for name, column in columns.items()}
-    if len(set(lengths.values())) > 1:
-        listed = ", ".join(f"`{name}` {length}" for name, length in lengths.items())
-        raise TraceError(f"columns differ in length: {listed}")
-    return columns
+    if time in names:
+        return time
+    if time == "t" and "t_ns" in names:
+        return "t_ns"
+    raise TraceError(f"no time column `{time}`: name it with time=…; there are {', '.join(names)}")
 
 
-def _arrow_columns(table: Any) -> dict[str, list[Any]]:
-    names = table.column_names
-    for name in names:
-        if names.count(name) > 1:
-            raise TraceError(f"column `{name}` stands twice in the table")
-    return {name: arrow_cells(table.column(name)) for name in names}
+class Table:
+    """Columns as rows, all of which are in memory.
+
+    Attributes:
+        layout: what the columns are.
+
+    >>> from rvmon.readers.gaps import NO_GAPS
+    >>> from rvmon.trace.schema import Kind
+    >>> table = Table({"t": [0, 1], "v": [2, None]}, Schema({"v": Kind.REAL}, {}), "t")
+    >>> list(table.rows(NO_GAPS))
+    [(0, 0, {'v': 2.0}), (1, 1000000000, {})]
+    """
+
+    def __init__(self, columns: Mapping[str, Any], schema: Schema, time: str) -> None:
+        """Look at columns.
+
+        Args:
+            columns: see `rvmon.readers.tables.columns_by_name`; undeclared ones are passed over,
+                and so is a signal or event by the name of the time column, as in files.
+            schema: the declared names.
+            time: the column of seconds; if its name ends in `_ns`, of integer ticks.
+
+        Raises:
+            TraceError: there is no such time column, a column is none, or they differ in length.
+        """
+        self._time = time_column(columns, time)
+        self.layout: Layout = layout_of(list(columns), self._time, schema)
+        names = [self._time, *(column.called for column in self.layout.columns)]
+        cells = {name: cells_of(name, columns[name]) for name in names}
+        lengths = {name: len(column) for name, column in cells.items()}
+        if len(set(lengths.values())) > 1:
+            listed = ", ".join(f"`{name}` {length}" for name, length in lengths.items())
+            raise TraceError(f"columns differ in length: {listed}")
+        self._stamps = cells[self._time]
+        self._cells = [cells[column.called] for column in self.layout.columns]
+
+    def rows(self, gaps: Gaps) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
+        """Number from 0, ticks and values of each row.
+
+        Raises:
+            TraceError: an instant is no finite number; of ticks, no whole one.
+        """
+        in_ticks = self.layout.in_ticks
+        for row, (stamp, *cells) in enumerate(zip(self._stamps, *self._cells, strict=True)):
+            t = _ticks(stamp, self._time, row) if in_ticks else ticks_of_seconds(stamp)
+            yield row, t, values_of_cells(self.layout, cells, gaps)
 
 
-def arrow_cells(column: Any) -> list[Any]:
-    """The cells of an Arrow array; dates and durations as text: they are no numbers of seconds."""
-    from pyarrow import types
-
-    if types.is_temporal(column.type):
-        return [str(cell) for cell in column.to_numpy(zero_copy_only=False)]
-    cells: list[Any] = column.to_pylist()
-    return cells
-
-
-def _cells(name: Any, column: Any) -> list[Any]:
-    """The cells of an array or a list, as `arrow_cells` gives them."""
-    if getattr(column, "ndim", 1) > 0 and not isinstance(column, str | bytes):
-        if getattr(getattr(column, "dtype", None), "kind", None) in ("m", "M"):
-            return [str(cell) for cell in column]
-        try:
-            return list(column.tolist() if hasattr(column, "tolist") else column)
-        except TypeError:
-            pass
-    found = reprlib.repr(column)
-    raise TraceError(f"column `{name}`: expected an array or a list of values, found {found}")
-
-
-def column_samples(
-    columns: Mapping[str, Sequence[Any]], schema: Schema, time: str = "t"
-) -> Iterator[Sample]:
-    """One sample per row: every declared signal is updated, events occur where they are true.
+def values_of_cells(layout: Layout, cells: Sequence[Any], gaps: Gaps) -> dict[str, Value]:
+    """What a row of values says; `None` is absent.
 
     Args:
-        columns: of equal length; undeclared ones are passed over, and so is a signal or event by
-            the name of the time column, as in files.
-        schema: the declared names.
-        time: the column of seconds; if its name ends in `_ns`, of integer ticks.
-
-    Raises:
-        TraceError: there is no such time column, or an instant is no finite number; of ticks, no
-            whole one.
+        layout: what the columns are.
+        cells: in the order of its columns.
+        gaps: further values that stand for no update.
     """
-    if time not in columns:
-        raise TraceError(
-            f"no time column `{time}`: name it with time=…; there are {', '.join(columns)}"
-        )
-    names = [
-        name
-        for name in columns
-        if name != time and (name in schema.signals or name in schema.events)
-    ]
-    in_ticks = time.endswith("_ns")
-    for row, stamp in enumerate(columns[time]):
-        t = _ticks(stamp, time, row) if in_ticks else ticks_of_seconds(stamp)
-        yield Sample(t, {name: columns[name][row] for name in names})
+    found = zip(layout.columns, map(plain, cells), strict=True)
+    return row_values(((column, cell) for column, cell in found if cell is not None), gaps)
 
 
 def _ticks(stamp: Any, time: str, row: int) -> int:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.values import is_whole, scalar_of_text, shorten
+from rvmon.readers.gaps import NO_GAPS, Gaps
+from rvmon.readers.values import as_declared, is_whole, scalar_of_text, shorten
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.time import TIME_LIMIT, ticks_of_text
@@ -23,6 +25,11 @@ class Column:
     field: str | None
     kind: Kind
 
+    @property
+    def called(self) -> str:
+        """The name in the header."""
+        return self.name if self.field is None else f"{self.name}.{self.field}"
+
 
 @dataclass(frozen=True, slots=True)
 class Layout:
@@ -31,7 +38,7 @@ class Layout:
     Attributes:
         width: number of columns.
         time: index of the time column.
-        in_ticks: whether it is `t_ns`.
+        in_ticks: whether its name ends in `_ns`: it holds ticks.
         signals: columns of signals.
         events: columns of events and of their payload fields.
         ignored: names of the columns that the spec does not declare.
@@ -45,9 +52,14 @@ class Layout:
     ignored: tuple[str, ...]
 
     @property
+    def columns(self) -> tuple[Column, ...]:
+        """The columns that the spec reads, without the time."""
+        return self.signals + self.events
+
+    @property
     def names(self) -> frozenset[str]:
         """The declared names that have a column."""
-        return frozenset(column.name for column in (*self.signals, *self.events))
+        return frozenset(column.name for column in self.columns)
 
 
 def _other_separator(header: list[str]) -> str:
@@ -76,10 +88,21 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
             "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
             f"in the header; found {'both' if times else found}{_other_separator(header)}"
         )
+    return layout_of(header, times[0], schema)
+
+
+def layout_of(header: Sequence[str], time: str, schema: Schema) -> Layout:
+    """Match names, none of which stands twice, with the declared ones.
+
+    Args:
+        header: of all columns, in order.
+        time: that of the time column, one of them; it is no signal.
+        schema: the declared names.
+    """
     signals, events, ignored = [], [], []
-    for name, index in seen.items():
+    for index, name in enumerate(header):
         event, _, field = name.rpartition(".")
-        if name == times[0]:
+        if name == time:
             continue
         if name in schema.signals:
             signals.append(Column(index, name, None, schema.signals[name]))
@@ -91,8 +114,8 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
             ignored.append(name)
     return Layout(
         len(header),
-        seen[times[0]],
-        times[0] == "t_ns",
+        header.index(time),
+        time.endswith("_ns"),
         tuple(signals),
         tuple(events),
         tuple(ignored),
@@ -117,7 +140,7 @@ def split_lines(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
             yield reader.line_num, [cell.strip() for cell in row]
 
 
-def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
+def read_row(row: list[str], layout: Layout, gaps: Gaps) -> tuple[int, dict[str, Value]]:
     """Read one row: ticks and what it updates; an empty cell is no update.
 
     Raises:
@@ -126,40 +149,50 @@ def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
     if len(row) != layout.width:
         raise TraceError(f"{len(row)} cells where the header has {layout.width}")
     t = _ticks(row[layout.time], in_ticks=layout.in_ticks)
-    values: dict[str, Value] = {}
-    for column in layout.signals:
-        if cell := row[column.index]:
-            values[column.name] = _scalar(cell, column)
-    given = [(column, cell) for column in layout.events if (cell := row[column.index])]
-    return t, values | occurrences((column, _scalar(cell, column)) for column, cell in given)
+    absent = "" if gaps.no_update is None else str(gaps.no_update)
+    given = (
+        (column, _scalar(cell, column))
+        for column in layout.columns
+        if (cell := row[column.index]) and cell != absent
+    )
+    return t, row_values(given, gaps)
 
 
-def occurrences(cells: Iterable[tuple[Column, Scalar]]) -> dict[str, Value]:
-    """Events of a row: an event with a payload cell occurs unless its own cell says false.
+def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Value]:
+    """What a row says: the one reading of rows, whatever holds them.
+
+    A signal is updated by its cell. An event with a payload cell occurs unless its own cell says
+    false; one without occurs where its own cell is true.
 
     Args:
-        cells: those that say something, of the columns of events and of their fields.
+        cells: those that are not absent.
+        gaps: the values that stand for no update.
+
+    >>> columns = [Column(1, "pick", None, Kind.BOOL), Column(2, "pick", "id", Kind.INT)]
+    >>> [row_values(zip(columns, cells), NO_GAPS) for cells in ([True, 7.0], [False, 7], [1])]
+    [{'pick': {'id': 7}}, {'pick': False}, {'pick': True}]
     """
-    flags: dict[str, Scalar] = {}
+    values: dict[str, Any] = {}
     payloads: dict[str, dict[str, Scalar]] = {}
-    for column, value in cells:
+    for column, cell in cells:
+        if gaps and gaps.holds(cell):
+            continue
+        value = as_declared(cell, column.kind)
         if column.field is None:
-            flags[column.name] = value
+            values[column.name] = value
         else:
             payloads.setdefault(column.name, {})[column.field] = value
-    found: dict[str, Value] = dict(flags)
-    found.update(
-        (name, payload) for name, payload in payloads.items() if flags.get(name) is not False
-    )
-    return found
+    for name, payload in payloads.items():
+        if values.get(name) is not False:
+            values[name] = payload
+    return values
 
 
 def _scalar(cell: str, column: Column) -> Scalar:
     try:
         return scalar_of_text(cell, column.kind)
     except TraceError as error:
-        name = column.name if column.field is None else f"{column.name}.{column.field}"
-        raise TraceError(f"column `{name}`: {error}") from None
+        raise TraceError(f"column `{column.called}`: {error}") from None
 
 
 def _ticks(cell: str, *, in_ticks: bool) -> int:
@@ -177,7 +210,7 @@ def _ticks(cell: str, *, in_ticks: bool) -> int:
 
 
 def csv_samples(
-    rows: Iterator[tuple[int, list[str]]], layout: Layout
+    rows: Iterator[tuple[int, list[str]]], layout: Layout, gaps: Gaps = NO_GAPS
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
     """Line number, ticks and values of each row.
 
@@ -186,7 +219,7 @@ def csv_samples(
     """
     for line, row in rows:
         try:
-            t, values = read_row(row, layout)
+            t, values = read_row(row, layout, gaps)
         except TraceError as error:
             raise TraceError(f"line {line}: {error}") from None
         yield line, t, values

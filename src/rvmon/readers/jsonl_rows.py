@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 import msgspec
 
 from rvmon.errors import TraceError
-from rvmon.readers.values import DESCRIPTION, shorten
+from rvmon.readers.gaps import NO_GAPS, Gaps
+from rvmon.readers.values import DESCRIPTION, as_declared, fits, shorten
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 
 _MISSING = object()
 
+_NAN = re.compile(r"\bNaN\b")
+
 _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 """The first half of an escaped surrogate pair without the second."""
 
 
 def jsonl_samples(
-    lines: Iterable[str], schema: Schema, ignored: Counter[str]
+    lines: Iterable[str], schema: Schema, ignored: Counter[str], gaps: Gaps = NO_GAPS
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
     """Line number, ticks and values of each line that is not blank.
 
@@ -30,6 +35,7 @@ def jsonl_samples(
         lines: text, one JSON object a line.
         schema: the declared names.
         ignored: names that the spec does not declare are counted here.
+        gaps: values that stand for no update.
 
     Raises:
         TraceError: with the line's number.
@@ -41,7 +47,7 @@ def jsonl_samples(
         if not line.strip():
             continue
         try:
-            t, values = read_object(decode(line), schema, ignored)
+            t, values = read_object(_decoded(line, decode), schema, ignored, gaps)
         except msgspec.DecodeError as error:
             if "truncated" in str(error) and _HALF_PAIR.search(line):
                 raise TraceError(
@@ -56,8 +62,19 @@ def jsonl_samples(
         yield number, t, values
 
 
+def _decoded(line: str, decode: Callable[[str], Any]) -> Any:
+    """The value of a line; JSON has no NaN, but many that write JSON do."""
+    try:
+        return decode(line)
+    except msgspec.DecodeError:
+        if _NAN.search(line):
+            with suppress(ValueError):
+                return json.loads(line)
+        raise
+
+
 def read_object(
-    decoded: object, schema: Schema, ignored: Counter[str]
+    decoded: object, schema: Schema, ignored: Counter[str], gaps: Gaps = NO_GAPS
 ) -> tuple[int, dict[str, Value]]:
     """Read one decoded line: ticks and what it updates.
 
@@ -82,7 +99,7 @@ def read_object(
                 values[name] = True
             else:
                 ignored[name] += 1
-    _collect(fields, "", schema, values, ignored)
+    _collect(fields, "", schema, values, ignored, gaps)
     return t, values
 
 
@@ -124,54 +141,48 @@ def _collect(
     schema: Schema,
     values: dict[str, Value],
     ignored: Counter[str],
+    gaps: Gaps,
 ) -> None:
     for key, value in fields.items():
         name = prefix + key
+        if gaps and gaps.holds(value) and (name in schema.signals or name in schema.events):
+            continue
         if name in schema.signals:
             values[name] = _scalar(value, schema.signals[name], name)
         elif name in schema.events:
-            values[name] = _occurrence(value, schema.events[name], name)
+            values[name] = _occurrence(value, schema.events[name], name, gaps)
         elif isinstance(value, dict):
-            _collect(value, name + ".", schema, values, ignored)
+            _collect(value, name + ".", schema, values, ignored, gaps)
         else:
             ignored[name] += 1
 
 
-def _occurrence(value: object, fields: Mapping[str, Kind], name: str) -> Value:
-    if value is None or isinstance(value, bool):
-        return value
+def _occurrence(value: object, fields: Mapping[str, Kind], name: str, gaps: Gaps) -> Value:
+    made = as_declared(value, Kind.BOOL)
+    if made is None or isinstance(made, bool):
+        return made
     if isinstance(value, dict):
-        return _payload(value, fields, name)
+        return _payload(value, fields, name, gaps)
     if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
-        return tuple(_payload(item, fields, name) for item in value)
+        return tuple(_payload(item, fields, name, gaps) for item in value)
     raise TraceError(
         f"event `{name}`: expected true, false or a payload such as {{...}}, "
         f"found `{_written(value)}`"
     )
 
 
-def _payload(value: Mapping[str, object], fields: Mapping[str, Kind], name: str) -> Payload:
+def _payload(
+    value: Mapping[str, object], fields: Mapping[str, Kind], name: str, gaps: Gaps
+) -> Payload:
     return {
         key: _scalar(item, fields[key], f"{name}.{key}")
         for key, item in value.items()
-        if key in fields
+        if key in fields and not gaps.holds(item)
     }
 
 
 def _scalar(value: object, kind: Kind, name: str) -> Scalar:
-    match kind, value:
-        case _, None:
-            return None
-        case Kind.BOOL, bool():
-            return value
-        case Kind.BOOL, 0 | 1:
-            return value == 1
-        case ((Kind.INT | Kind.REAL), bool()):
-            pass
-        case Kind.INT, int():
-            return value
-        case Kind.REAL, int() | float():
-            return float(value)
-        case Kind.LABEL, str():
-            return value
+    made = as_declared(value, kind)
+    if fits(made, kind):
+        return made  # type: ignore[no-any-return]
     raise TraceError(f"field `{name}`: `{_written(value)}` is not {DESCRIPTION[kind]}")

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.columns import arrow_cells
-from rvmon.readers.csv_rows import Column, Layout, occurrences, read_layout
+from rvmon.readers.columns import values_of_cells
+from rvmon.readers.csv_rows import Column, Layout, read_layout
+from rvmon.readers.gaps import NO_GAPS, Gaps
+from rvmon.readers.tables import arrow_cells
 from rvmon.readers.values import shorten
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind, Schema
@@ -113,7 +115,7 @@ def parquet_blocks(
 
 def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) -> Iterator[Block]:
     layout = parquet_layout(path, schema)
-    columns = (*layout.signals, *layout.events)
+    columns = layout.columns
     if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
         raise NotPlainError
     stamp = "t_ns" if layout.in_ticks else "t"
@@ -185,7 +187,7 @@ def _values_held(
 
 
 def parquet_samples(
-    path: str | Path, schema: Schema
+    path: str | Path, schema: Schema, gaps: Gaps = NO_GAPS
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
     """Row number from 1, ticks and values of each row; a null is no update.
 
@@ -195,40 +197,13 @@ def parquet_samples(
     """
     layout = parquet_layout(path, schema)
     stamp = "t_ns" if layout.in_ticks else "t"
-    columns = (*layout.signals, *layout.events)
-    names = [stamp, *(_called(column) for column in columns)]
-    truths = [_called(column) for column in columns if column.kind is Kind.BOOL]
+    names = [stamp, *(column.called for column in layout.columns)]
     row = 0
     for batch in _batches(path, names):
-        for own in zip(*(arrow_cells(batch.column(name)) for name in names), strict=True):
+        for t, *cells in zip(*(arrow_cells(batch.column(name)) for name in names), strict=True):
             row += 1
-            cells = dict(zip(names, own, strict=True))
-            _refuse_numbers_as_truths(cells, truths, row)
-            yield row, _ticks(cells[stamp], row, in_ticks=layout.in_ticks), _values(cells, layout)
-
-
-def _refuse_numbers_as_truths(cells: Mapping[str, Any], names: Sequence[str], row: int) -> None:
-    for name in names:
-        cell = cells[name]
-        if isinstance(cell, int | float) and not isinstance(cell, bool):
-            raise TraceError(
-                f"row {row}: column `{shorten(name)}`: the number `{cell}` is no truth value: "
-                "cast the column to bool"
-            )
-
-
-def _called(column: Column) -> str:
-    return column.name if column.field is None else f"{column.name}.{column.field}"
-
-
-def _values(cells: Mapping[str, Any], layout: Layout) -> dict[str, Value]:
-    given = {
-        column.name: cells[column.name]
-        for column in layout.signals
-        if cells[column.name] is not None
-    }
-    found = [(column, cells[_called(column)]) for column in layout.events]
-    return given | occurrences((column, value) for column, value in found if value is not None)
+            ticks = _ticks(t, row, in_ticks=layout.in_ticks)
+            yield row, ticks, values_of_cells(layout, cells, gaps)
 
 
 def _ticks(stamp: Any, row: int, *, in_ticks: bool) -> int:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
-from rvmon.errors import TimeOrderError, TraceError
-from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
+from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
+from rvmon.readers.gaps import NO_GAPS, Gaps
+from rvmon.readers.rows import Row, Rows
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import format_ticks
 
 FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet"}
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
@@ -29,27 +29,31 @@ class FileRecording:
         names: declared names that have a column; `None` for JSON lines, where any may come.
         end: `None`: these formats end with their last sample.
         ignored: the names that are not declared, counted as they are read.
+        rows: what makes samples of it.
     """
 
     end: int | None = None
 
-    def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
+    def __init__(
+        self, path: str | Path, schema: Schema, *, ordered: bool = True, gaps: Gaps = NO_GAPS
+    ) -> None:
         """Open the recording and read its header.
 
         Args:
             path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`.
             schema: the names that the spec declares.
             ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+            gaps: values that stand for no update.
 
         Raises:
             TraceError: the file cannot be opened, its ending is unknown or its header wrong.
         """
         self.path = str(path)
         self._schema = schema
-        self._ordered = ordered
-        self._conflicts = Conflicts()
+        self._gaps = gaps
         self.ignored: Counter[str] = Counter()
         self._format = _format_of(self.path)
+        self.rows = Rows(schema, "row" if self._format == "parquet" else "line", ordered=ordered)
         self._open_text: TextIO | None = None
         self.names: frozenset[str] | None = None
         if self._format == "csv" and self.path != "-":
@@ -76,20 +80,23 @@ class FileRecording:
             from rvmon.readers.parquet import parquet_samples
 
             with self._named_errors():
-                yield from self._merged(parquet_samples(self.path, self._schema))
+                yield from self._merged(parquet_samples(self.path, self._schema, self._gaps))
             return
         with self._text() as text:
             self._open_text = text
             if self._format == "csv":
                 rows = split_lines(text)
-                yield from self._merged(csv_samples(rows, self._layout(rows)))
+                yield from self._merged(csv_samples(rows, self._layout(rows), self._gaps))
             else:
                 from rvmon.readers.jsonl_rows import jsonl_samples
 
-                yield from self._merged(jsonl_samples(text, self._schema, self.ignored))
+                lines = jsonl_samples(text, self._schema, self.ignored, self._gaps)
+                yield from self._merged(lines)
 
-    def _merged(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
-        return coalesce(self._in_order(lines), self._schema.events, self._conflicts)
+    def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
+        yield from self.rows.samples(rows)
+        if not self.rows.count:
+            raise TraceError("holds no sample")
 
     @property
     def fraction_read(self) -> float:
@@ -104,23 +111,7 @@ class FileRecording:
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
         ]
-        return ignored + self._conflicts.health()
-
-    def _in_order(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
-        last: int | None = None
-        unit = "row" if self._format == "parquet" else "line"
-        for line, t, values in lines:
-            if self._ordered and last is not None and t < last:
-                raise TimeOrderError(
-                    f"{unit} {line}: time goes backwards, from {format_ticks(last)} to "
-                    f"{format_ticks(t)}: sort the recording by time, or allow for late samples "
-                    "with `max delay` in the spec"
-                )
-            last = t
-            # Before equal stamps are merged: what is no update is no other value, either.
-            yield Sample(t, updates_in(values, self._schema.ignoring))
-        if last is None:
-            raise TraceError("holds no sample")
+        return ignored + self.rows.conflicts()
 
     def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:
         try:

@@ -65,15 +65,15 @@ def test_seconds_up_to_the_limits_are_taken(last):
 
 @pytest.mark.parametrize("rows", [3, 3000])
 @pytest.mark.parametrize("engine", ["auto", "python", "automaton"])
-def test_what_a_mask_hides_is_unknown(engine, rows):
-    """A masked cell is no value, as None in a list is none."""
+def test_what_a_mask_hides_is_no_update(engine, rows):
+    """A masked cell says nothing, as None in a list does not: the value before is held."""
     spec = rvmon.loads(BOUND)
     values = np.resize([1.0, 9.0, 1.0], rows)
     columns = {"t": np.arange(float(rows)), "x": np.ma.array(values, mask=values > 5)}
     report = spec.evaluate(columns, engine=engine)
     lists = {"t": list(range(rows)), "x": np.where(values > 5, None, values).tolist()}
     assert report == spec.evaluate(lists, engine="automaton")
-    assert report.verdicts["R1"] == "I"
+    assert report.verdicts["R1"] == "P"
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton"])

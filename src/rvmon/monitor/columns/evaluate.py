@@ -161,7 +161,7 @@ class ColumnJudge:
                 name: {verdict: counts[verdict] for verdict in _ATTEMPT_VERDICTS}
                 for name, counts in found.items()
             },
-            health=tuple(health),
+            health=self._health.alternations.remarked(health),
             origin=self._health.began or 0,
             end=end,
         )

@@ -95,7 +95,7 @@ class RowJudge:
         # Of the samples at which a signal was not known, only those that matter were judged.
         kept = [entry for entry in report.health if entry.kind is not HealthKind.NAN]
         health = sorted([*kept, *self._unknown.seen(self._chosen)], key=by_name)
-        return replace(report, health=tuple(health))
+        return replace(report, health=self._unknown.alternations.remarked(health))
 
 
 def _rows_that_matter(
