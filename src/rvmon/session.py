@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import replace
 from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.errors import UnknownNameError
+from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.schema import Schema
+from rvmon.trace.stamps import stamps_of
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
@@ -17,7 +21,10 @@ if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.measured import Margins
+    from rvmon.monitor.missing import Allowed
     from rvmon.monitor.robustness import RobustnessMonitor
+    from rvmon.readers.recording import FileRecording
+    from rvmon.readers.tables import Table
     from rvmon.spec.checked import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
@@ -47,7 +54,7 @@ class Spec:
 
     @cached_property
     def schema(self) -> Schema:
-        """The declared signals and events with the kinds of their values."""
+        """The declared names with the kinds of their values, and what recordings call them."""
         return Schema(
             {name: signal.type.kind for name, signal in self.checked.signals.items()},
             {
@@ -55,6 +62,45 @@ class Spec:
                 for name, event in self.checked.events.items()
             },
         )
+
+    def reading(self, *, time: str | None = None, columns: Mapping[str, str] | None = None) -> Spec:
+        r"""The same specification, for recordings that call things by other names.
+
+        Args:
+            time: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with `s`, `ms`,
+                `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name ends in
+                `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
+            columns: by declared name, of a payload's field `event.field`, the column.
+
+        Raises:
+            UnknownNameError: `columns` names what is not declared.
+            RvmonError: it names a column twice.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
+        >>> spec = spec.reading(time="stamp:ms", columns={"p": "Is P"})
+        >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
+        20000000
+        """
+        if time is None and not columns:
+            return self
+        schema = self.schema
+        fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
+        declared = [*schema.signals, *schema.events, *fields]
+        given = dict(columns or {})
+        for name, column in given.items():
+            if name not in declared:
+                meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
+                raise UnknownNameError(f"nothing named `{name}` to map `{column}` to: {meant}")
+            if list(given.values()).count(column) > 1:
+                raise RvmonError(f"column `{column}` is mapped to two names: one column, one name")
+        other = copy(self)
+        other.__dict__["schema"] = replace(
+            schema,
+            stamps=schema.stamps if time is None else stamps_of(time),
+            columns={**schema.columns, **given},
+        )
+        return other
 
     @cached_property
     def _compiled(self) -> CompiledSpec:
@@ -141,7 +187,9 @@ class Spec:
         self,
         trace: Any,
         *,
-        time: str = "t",
+        time: str | None = None,
+        columns: Mapping[str, str] | None = None,
+        allow_missing: Allowed = False,
         engine: str = "auto",
         only: Iterable[str] | None = None,
         until: float | None = None,
@@ -151,48 +199,105 @@ class Spec:
         Args:
             trace: a path (`.csv`, `.jsonl`, `.parquet`), columns by name (arrays, an Arrow table),
                 a `Recording`, or an iterable of `(t, values)` with t in seconds.
-            time: the time column of columns, no signal; if its name ends in `_ns`, integer ticks.
+            time: the time column of columns or a file, no signal, and its unit, as `reading` takes
+                it.
+            columns: what columns are called that have other names than declared; see `reading`.
+            allow_missing: whether a trace in columns may lack names that the requirements read, or
+                the names that it may lack: what reads them is inconclusive.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
 
         Raises:
+            MissingNameError: a trace in columns has none for a name that a requirement reads.
             TraceError: the trace cannot be read; place and cause are named.
-            UnknownNameError: `only` or `engine` names what does not exist.
+            UnknownNameError: `only`, `engine` or `allow_missing` names what does not exist.
         """
         _expect_engine(engine)
         chosen = self._chosen(only)
         end = None if until is None else ticks_of_seconds(until)
         if chosen == () and engine == "c":
             engine = "auto"  # nothing to compile
-        from rvmon.monitor.batch_table import evaluate_table
+        compiled = self._compiled
+        spec = self.reading(time=time, columns=columns)
+        report, doubts = None, []
+        from rvmon.readers.any_trace import is_table
 
-        report = evaluate_table(self._compiled, trace, time, only=chosen, engine=engine, until=end)
-        if report is not None:
-            return report
-        if isinstance(trace, str | Path):
-            report = self.evaluate_file(trace, engine=engine, only=chosen, until=until)
-            if report is not None:
-                return report
-        recording = self.recording(trace, time=time)
+        if is_table(trace):
+            from rvmon.monitor.batch_table import evaluate_table
+            from rvmon.readers.columns import trace_of_columns
+            from rvmon.readers.tables import table_of, unit_doubts
+
+            table = table_of(trace, spec.schema)
+            self.expect_names(table, only=chosen, allow_missing=allow_missing)
+            report = evaluate_table(compiled, table, only=chosen, engine=engine, until=end)
+            doubts = unit_doubts(table)
+            if report is None:
+                recording: Recording = trace_of_columns(table.columns, spec.schema, table.time)
+        elif isinstance(trace, str | Path):
+            from rvmon.readers.recording import FileRecording
+
+            ordered = self.checked.max_delay is None
+            recording = file = FileRecording(trace, spec.schema, ordered=ordered)
+            self.expect_names(file, only=chosen, allow_missing=allow_missing)
+            report = spec.evaluate_file(trace, engine=engine, only=chosen, until=until)
+            doubts = file.unit_doubts()
+        else:
+            recording = spec.recording(trace)
+        if report is None:
+            report = self._judged(recording, chosen, engine, end)
+        return replace(report, health=(*report.health, *doubts)) if doubts else report
+
+    def _judged(
+        self, recording: Recording, only: tuple[str, ...] | None, engine: str, end: int | None
+    ) -> Report:
+        """Judge the samples of a recording."""
         if engine == "c":
             from rvmon.monitor.batch_c import evaluate_recording
 
-            return evaluate_recording(self._compiled, recording, only=chosen, until=end)
+            return evaluate_recording(self._compiled, recording, only=only, until=end)
         names = recording.names
         if names is not None:
             names = frozenset(names) & {*self.schema.signals, *self.schema.events}
-        monitor = self.monitor(only=chosen, engine=engine, sources=names)
+        monitor = self.monitor(only=only, engine=engine, sources=names)
         for sample in recording:
             monitor.step_ns(sample.t, sample.values)
         return monitor.finish_ns(recording.end if end is None else end)
+
+    def expect_names(
+        self,
+        recording: FileRecording | Table,
+        *,
+        only: Iterable[str] | None = None,
+        allow_missing: Allowed = False,
+    ) -> tuple[str, ...]:
+        """Refuse a recording in columns that lacks a name which a requirement reads.
+
+        Args:
+            recording: a file, or a table in memory.
+            only: ids of the requirements; default all.
+            allow_missing: whether it may lack names, or the names that it may lack.
+
+        Returns:
+            The names that it lacks, and may.
+
+        Raises:
+            MissingNameError: it lacks others.
+            UnknownNameError: a name that it may lack is not declared.
+        """
+        from rvmon.monitor.missing import expect_names
+
+        chosen = None if only is None else tuple(only)
+        return expect_names(self._compiled, recording, only=chosen, allowed=allow_missing)
 
     def evaluate_many(
         self,
         traces: Iterable[Any],
         *,
-        time: str = "t",
+        time: str | None = None,
+        columns: Mapping[str, str] | None = None,
+        allow_missing: Allowed = False,
         engine: str = "auto",
         only: Iterable[str] | None = None,
         jobs: int = 1,
@@ -201,12 +306,15 @@ class Spec:
 
         Args:
             traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
-            time: the time column of columns; if its name ends in `_ns`, integer ticks.
+            time: as for `evaluate`; so are `columns` and `allow_missing`.
+            columns: what columns are called.
+            allow_missing: the names that a trace in columns may lack.
             engine: `auto` or the name of one.
             only: ids of the requirements to judge; default all.
             jobs: processes; 1 judges in this one.
 
         Raises:
+            MissingNameError: a trace in columns has none for a name that a requirement reads.
             TraceError: a trace cannot be read; the reports before it have been given out.
 
         >>> from rvmon import loads
@@ -215,18 +323,24 @@ class Spec:
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
         ['P', 'F']
         """
-        chosen = None if only is None else tuple(only)
+        options = {
+            "time": time,
+            "columns": columns,
+            "allow_missing": _plain(allow_missing),
+            "engine": engine,
+            "only": _plain(only),
+        }
         if jobs < 2:
-            return (self.evaluate(trace, time=time, engine=engine, only=chosen) for trace in traces)
-        return self._evaluate_elsewhere(traces, time, engine, chosen, jobs)
+            return (self.evaluate(trace, **options) for trace in traces)
+        return self._evaluate_elsewhere(traces, options, jobs)
 
     def _evaluate_elsewhere(
-        self, traces: Iterable[Any], time: str, engine: str, only: tuple[str, ...] | None, jobs: int
+        self, traces: Iterable[Any], options: Mapping[str, Any], jobs: int
     ) -> Iterator[Report]:
         import pickle
         from concurrent.futures import ProcessPoolExecutor
 
-        judge = partial(_evaluate_here, pickle.dumps(self.checked), time, engine, only)
+        judge = partial(_evaluate_here, pickle.dumps((self.checked, self.schema)), options)
         with ProcessPoolExecutor(jobs) as pool:
             yield from pool.map(judge, traces)
 
@@ -271,7 +385,7 @@ class Spec:
         self,
         trace: Any,
         *,
-        time: str = "t",
+        time: str | None = None,
         only: Iterable[str] | None = None,
         until: float | None = None,
         streams: bool = True,
@@ -284,7 +398,7 @@ class Spec:
 
         Args:
             trace: as `evaluate` takes it.
-            time: the time column of columns.
+            time: the time column of columns or a file, and its unit; see `reading`.
             only: ids of the requirements; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             streams: whether to give a figure per sample, too; they are kept in memory.
@@ -337,7 +451,7 @@ class Spec:
             self._compiled, only=chosen, settle=settle, sources=given, streams=streams
         )
 
-    def recording(self, trace: Any, *, time: str = "t") -> Recording:
+    def recording(self, trace: Any, *, time: str | None = None) -> Recording:
         """Whatever `evaluate` takes as a trace, as a recording.
 
         Raises:
@@ -345,7 +459,8 @@ class Spec:
         """
         from rvmon.readers.any_trace import recording_of
 
-        return recording_of(trace, self.schema, time=time, ordered=self.checked.max_delay is None)
+        schema = self.reading(time=time).schema
+        return recording_of(trace, schema, ordered=self.checked.max_delay is None)
 
 
 def _expect_engine(name: str) -> None:
@@ -354,10 +469,13 @@ def _expect_engine(name: str) -> None:
     expect_engine(name, ALL_ENGINES)
 
 
-def _evaluate_here(
-    checked: bytes, time: str, engine: str, only: tuple[str, ...] | None, trace: Any
-) -> Report:
-    return _spec_of(checked).evaluate(trace, time=time, engine=engine, only=only)
+def _plain(names: Any) -> Any:
+    """Names that can be read more than once and sent elsewhere."""
+    return names if names is None or isinstance(names, bool) else tuple(names)
+
+
+def _evaluate_here(checked: bytes, options: Mapping[str, Any], trace: Any) -> Report:
+    return _spec_of(checked).evaluate(trace, **options)
 
 
 @lru_cache(maxsize=1)
@@ -365,4 +483,7 @@ def _spec_of(checked: bytes) -> Spec:
     """The specification that another process sent; a worker compiles it for its first trace."""
     import pickle
 
-    return Spec(pickle.loads(checked))  # noqa: S301 - from the process that began this one
+    spec, schema = pickle.loads(checked)  # noqa: S301 - from the process that began this one
+    made = Spec(spec)
+    made.__dict__["schema"] = schema
+    return made

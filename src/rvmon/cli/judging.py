@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import takewhile
 from typing import TYPE_CHECKING
@@ -36,6 +36,9 @@ class Options:
         until: the instant in seconds to which recordings are judged; default their last sample.
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
+        time: the column of stamps and its unit, as `Spec.reading` takes it.
+        columns: what columns are called that have other names than declared.
+        allow_missing: the names that recordings in columns may lack; `True`: all.
     """
 
     only: tuple[str, ...] | None = None
@@ -43,6 +46,9 @@ class Options:
     until: float | None = None
     strict_columns: bool = False
     robustness: bool = False
+    time: str | None = None
+    columns: Mapping[str, str] = field(default_factory=dict)
+    allow_missing: bool | tuple[str, ...] = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +60,14 @@ class Judged:
         report: the verdicts, or `None` if the recording broke off at an error.
         before: for a broken recording, the attempts decided before the place of the error.
         error: what was wrong with the recording.
+        missing: the names that requirements read and that it lacks.
     """
 
     trace: str
     report: Report | None
     before: tuple[Attempt, ...] = ()
     error: str = ""
+    missing: tuple[str, ...] = ()
 
 
 def judge_all(
@@ -73,7 +81,7 @@ def judge_all(
     """Judge recordings, in their order.
 
     Args:
-        spec: for judging in this process.
+        spec: for judging in this process; it reads as the options say.
         path: of the same spec, for other processes to load.
         constants: overridden in it.
         traces: paths.
@@ -93,7 +101,8 @@ def judge_all(
 def _load_and_judge(
     path: str, constants: Mapping[str, str], options: Options, trace: str
 ) -> Judged:
-    return judge(load(path, const=constants), trace, options)
+    spec = load(path, const=constants).reading(time=options.time, columns=options.columns)
+    return judge(spec, trace, options)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +128,9 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         recording = FileRecording(trace, spec.schema, ordered=ordered)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
+        missing = spec.expect_names(
+            recording, only=options.only, allow_missing=options.allow_missing
+        )
         end = None if options.until is None else ticks_of_seconds(options.until)
         report = None
         meter = None
@@ -158,7 +170,7 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         return Judged(_shown(trace), None, tuple(before), place + message)
     report = second_look(spec, trace, report, recording.names, goals=options.only is None)
     trace = _shown(trace)
-    return Judged(trace, _named(report, trace, recording.health()))
+    return Judged(trace, _named(report, trace, recording.health()), missing=missing)
 
 
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:

@@ -106,7 +106,7 @@ def _goals(
     if spec.checked.max_delay is None:
         report = evaluate_file(
             compile_spec(goals.checked),
-            goals.schema,
+            spec.schema,
             trace,
             only=None,
             engine="auto",

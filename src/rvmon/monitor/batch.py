@@ -10,9 +10,10 @@ import numpy as np
 from rvmon.monitor.columns.evaluate import ColumnJudge, columns_judge
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.readers.ticks import ticks_in_range, ticks_of_column
+from rvmon.readers.ticks import ticks_of_column
 from rvmon.spec.checked import CheckedSpec
 from rvmon.trace.schema import Kind
+from rvmon.trace.stamps import stamps_of
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
@@ -97,13 +98,10 @@ def arrays_of(
         kind = spec.signals[name].type.kind if name in spec.signals else Kind.BOOL
         if column.dtype.kind not in fits.get(kind, ""):
             return None
-    if time.endswith("_ns"):
-        if stamps.dtype.kind != "i":
-            return None
-        times = ticks_in_range(stamps)
-    else:
-        times = ticks_of_column(stamps)
-    return times, columns
+    given = stamps_of(time)
+    if given.unit == "ns" and stamps.dtype.kind != "i":
+        return None
+    return ticks_of_column(stamps, given), columns
 
 
 def in_order(times: NDArray[np.int64]) -> bool:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.verdict.report import Report
 
+if TYPE_CHECKING:
+    from rvmon.readers.tables import Table
+
 
 def evaluate_table(
     compiled: CompiledSpec,
-    trace: Any,
-    time: str,
+    table: Table,
     *,
     only: Sequence[str] | None,
     engine: str,
@@ -22,23 +24,20 @@ def evaluate_table(
 
     Args:
         compiled: the specification.
-        trace: what may be a table.
-        time: the column of seconds; if its name ends in `_ns`, of integer ticks.
+        table: by declared names.
         only: ids of the requirements; default all.
         engine: `auto`, `c` or the name of one that judges samples.
         until: the end of the trace in ticks, if after its last row.
 
     Returns:
-        `None` if it is no table, or its rows have to be looked at one by one.
+        `None` if its rows have to be looked at one by one.
 
     Raises:
         TraceError: an instant is not finite or out of range.
     """
-    if not (hasattr(trace, "column_names") or isinstance(trace, Mapping)):
-        return None
     from rvmon.monitor.batch import FEW_ROWS, arrays_of, evaluate_plain, in_order
 
-    arrays = arrays_of(trace, compiled.checked, time)
+    arrays = arrays_of(table.columns, compiled.checked, table.time)
     if arrays is None:
         return None
     times, columns = arrays

@@ -37,7 +37,7 @@ def columns_of(table: Any) -> dict[str, list[Any]]:
     if hasattr(table, "column_names"):
         columns = _arrow_columns(table)
     elif isinstance(table, Mapping):
-        columns = {str(name): _cells(name, column) for name, column in table.items()}
+        columns = {str(name): cells_of(name, column) for name, column in table.items()}
     else:
         raise TraceError(
             f"expected a path, columns by name or (t, values) pairs, found {type(table).__name__}"
@@ -67,7 +67,7 @@ def arrow_cells(column: Any) -> list[Any]:
     return cells
 
 
-def _cells(name: Any, column: Any) -> list[Any]:
+def cells_of(name: Any, column: Any) -> list[Any]:
     """The cells of an array or a list, as `arrow_cells` gives them."""
     if getattr(column, "ndim", 1) > 0 and not isinstance(column, str | bytes):
         if getattr(getattr(column, "dtype", None), "kind", None) in ("m", "M"):

@@ -1,17 +1,17 @@
-"""CSV: a header, a time column `t` or `t_ns`, a column per signal, event or payload field."""
+"""CSV: a header, a time column, a column per signal, event or payload field."""
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 
 from rvmon.errors import TraceError
-from rvmon.readers.values import is_whole, scalar_of_text, shorten
+from rvmon.readers.naming import aliases_of, stamps_among
+from rvmon.readers.values import scalar_of_text, shorten
 from rvmon.trace.sample import Scalar, Value
-from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_text
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import ticks_of_cell
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,17 +29,17 @@ class Layout:
     """What the header says.
 
     Attributes:
-        width: number of columns.
+        header: names of the columns.
         time: index of the time column.
-        in_ticks: whether it is `t_ns`.
+        stamps: what it holds.
         signals: columns of signals.
         events: columns of events and of their payload fields.
         ignored: names of the columns that the spec does not declare.
     """
 
-    width: int
+    header: tuple[str, ...]
     time: int
-    in_ticks: bool
+    stamps: Stamps
     signals: tuple[Column, ...]
     events: tuple[Column, ...]
     ignored: tuple[str, ...]
@@ -69,17 +69,13 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
         if name in seen:
             raise TraceError(f"column `{shorten(name)}` stands twice in the header")
         seen[name] = index
-    times = [name for name in ("t", "t_ns") if name in seen]
-    if len(times) != 1:
-        found = ", ".join(f"`{shorten(name)}`" for name in header[:8]) or "nothing"
-        raise TraceError(
-            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
-            f"in the header; found {'both' if times else found}{_other_separator(header)}"
-        )
+    stamps = stamps_among(seen, schema, _other_separator(header))
+    aliases = aliases_of(schema)
     signals, events, ignored = [], [], []
-    for name, index in seen.items():
+    for column, index in seen.items():
+        name = aliases.get(column, column)
         event, _, field = name.rpartition(".")
-        if name == times[0]:
+        if column == stamps.column:
             continue
         if name in schema.signals:
             signals.append(Column(index, name, None, schema.signals[name]))
@@ -88,11 +84,11 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
         elif field in schema.events.get(event, {}):
             events.append(Column(index, event, field, schema.events[event][field]))
         else:
-            ignored.append(name)
+            ignored.append(column)
     return Layout(
-        len(header),
-        seen[times[0]],
-        times[0] == "t_ns",
+        tuple(header),
+        seen[stamps.column],
+        stamps,
         tuple(signals),
         tuple(events),
         tuple(ignored),
@@ -123,9 +119,9 @@ def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
     Raises:
         TraceError: a cell is no value of its kind; the message names the column.
     """
-    if len(row) != layout.width:
-        raise TraceError(f"{len(row)} cells where the header has {layout.width}")
-    t = _ticks(row[layout.time], in_ticks=layout.in_ticks)
+    if len(row) != len(layout.header):
+        raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}")
+    t = ticks_of_cell(row[layout.time], layout.stamps)
     values: dict[str, Value] = {}
     for column in layout.signals:
         if cell := row[column.index]:
@@ -160,20 +156,6 @@ def _scalar(cell: str, column: Column) -> Scalar:
     except TraceError as error:
         name = column.name if column.field is None else f"{column.name}.{column.field}"
         raise TraceError(f"column `{name}`: {error}") from None
-
-
-def _ticks(cell: str, *, in_ticks: bool) -> int:
-    if not in_ticks:
-        return ticks_of_text(cell)
-    with suppress(ValueError):
-        # Python reads 1_000 as a number; no recording means it.
-        t = int(cell.replace("_", "?"))
-        if abs(t) < TIME_LIMIT:
-            return t
-    # Python reads no more than some thousand digits, which are a whole number as well.
-    if is_whole(cell):
-        raise TraceError(f"time `{shorten(cell)}` is out of range: at most 2**62 ns (146 years)")
-    raise TraceError(f"time `{shorten(cell)}` is not a whole number of nanoseconds")
 
 
 def csv_samples(

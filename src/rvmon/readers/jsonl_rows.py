@@ -10,10 +10,12 @@ from typing import Any
 import msgspec
 
 from rvmon.errors import TraceError
+from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
 from rvmon.readers.values import DESCRIPTION, shorten
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
+from rvmon.trace.stamps import stamps_of, ticks_of_stamp
+from rvmon.trace.time import TIME_LIMIT
 
 _MISSING = object()
 
@@ -32,8 +34,14 @@ def jsonl_samples(
         ignored: names that the spec does not declare are counted here.
 
     Raises:
-        TraceError: with the line's number.
+        TraceError: with the line's number; or a field of an event is to have another name.
     """
+    for name in schema.columns:
+        if name not in schema.signals and name not in schema.events:
+            raise TraceError(
+                f"`{name}` is a field of an event: in JSON lines only signals and events can "
+                "have other names"
+            )
     decode = msgspec.json.Decoder().decode
     for number, line in enumerate(lines, 1):
         if number == 1:
@@ -72,17 +80,19 @@ def read_object(
     if not isinstance(decoded, dict):
         raise TraceError('expected an object such as {"t": 0.5, "speed": 0.2}')
     fields = dict(decoded)
-    t = _ticks(fields)
+    t = _ticks(fields, schema)
+    aliases = aliases_of(schema)
     values: dict[str, Value] = {}
     if "events" not in schema.signals and isinstance(fields.get("events"), list | str):
         for name in _listed(fields.pop("events")):
             if not isinstance(name, str):
                 raise TraceError(f"`events`: `{_written(name)}` is not the name of an event")
-            if name in schema.events:
-                values[name] = True
+            declared = aliases.get(name, name)
+            if declared in schema.events:
+                values[declared] = True
             else:
                 ignored[name] += 1
-    _collect(fields, "", schema, values, ignored)
+    _collect(fields, "", schema, aliases, values, ignored)
     return t, values
 
 
@@ -100,41 +110,55 @@ def _written(value: object) -> str:
     return shorten(value if isinstance(value, str) else msgspec.json.encode(value).decode())
 
 
-def _ticks(fields: dict[str, Any]) -> int:
-    seconds, ticks = fields.pop("t", _MISSING), fields.pop("t_ns", _MISSING)
-    if (seconds is _MISSING) == (ticks is _MISSING):
-        raise TraceError("expected one time, `t` (seconds) or `t_ns` (integer nanoseconds)")
-    if seconds is not _MISSING:
-        if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
-            raise TraceError(f"time `{_written(seconds)}` is not a number of seconds")
-        return ticks_of_seconds(seconds)
-    if isinstance(ticks, (int, float)) and not isinstance(ticks, bool):
-        if abs(ticks) >= TIME_LIMIT:  # beyond 64 bits integers are decoded as floats
-            raise TraceError(
-                f"time `{_written(ticks)}` is out of range: at most 2**62 ns (146 years)"
-            )
-        if isinstance(ticks, int):
-            return ticks
-    raise TraceError(f"time `{_written(ticks)}` is not a whole number of nanoseconds")
+def _ticks(fields: dict[str, Any], schema: Schema) -> int:
+    """The instant of a line; what says it is taken out of the fields."""
+    if schema.stamps is not None:
+        stamps = schema.stamps
+        stamp = _taken(fields, stamps.column)
+        if stamp is _MISSING:
+            raise TraceError(f"there is no time `{shorten(stamps.column)}`")
+    else:
+        given = [name for name in DEFAULT_COLUMNS if name in fields]
+        if len(given) != 1:
+            raise TraceError("expected one time, `t` (seconds) or `t_ns` (integer nanoseconds)")
+        stamps = stamps_of(given[0])
+        stamp = fields.pop(given[0])
+    if stamps.unit == "ns" and isinstance(stamp, float) and abs(stamp) >= TIME_LIMIT:
+        # Beyond 64 bits integers are decoded as floats.
+        raise TraceError(f"time `{_written(stamp)}` is out of range: at most 2**62 ns (146 years)")
+    return ticks_of_stamp(stamp, stamps)
+
+
+def _taken(fields: dict[str, Any], path: str) -> Any:
+    """A value out of nested fields whose names are joined with dots."""
+    if path in fields:
+        return fields.pop(path)
+    head, dot, rest = path.partition(".")
+    inner = fields.get(head)
+    if not dot or not isinstance(inner, dict):
+        return _MISSING
+    return _taken(inner, rest)
 
 
 def _collect(
     fields: Mapping[str, object],
     prefix: str,
     schema: Schema,
+    aliases: Mapping[str, str],
     values: dict[str, Value],
     ignored: Counter[str],
 ) -> None:
     for key, value in fields.items():
-        name = prefix + key
+        path = prefix + key
+        name = aliases.get(path, path)
         if name in schema.signals:
             values[name] = _scalar(value, schema.signals[name], name)
         elif name in schema.events:
             values[name] = _occurrence(value, schema.events[name], name)
         elif isinstance(value, dict):
-            _collect(value, name + ".", schema, values, ignored)
+            _collect(value, path + ".", schema, aliases, values, ignored)
         else:
-            ignored[name] += 1
+            ignored[path] += 1
 
 
 def _occurrence(value: object, fields: Mapping[str, Kind], name: str) -> Value:

@@ -1,4 +1,4 @@
-"""Parquet: a time column `t` or `t_ns`, a column per signal, event or payload field, as in CSV.
+"""Parquet: a time column, a column per signal, event or payload field, as in CSV.
 
 Needs pyarrow, the extra `arrow`.
 """
@@ -15,8 +15,9 @@ from rvmon.readers.columns import arrow_cells
 from rvmon.readers.csv_rows import Column, Layout, occurrences, read_layout
 from rvmon.readers.values import shorten
 from rvmon.trace.sample import Value
-from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds, whole_ticks
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import ticks_of_stamp
+from rvmon.trace.time import TIME_LIMIT
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 
 ROWS = 1 << 16
 """Rows that are in memory at a time."""
+
+_STAMP = " stamp"
+"""What the column of stamps is called here: no declared name has a space."""
 
 _FITTING = {Kind.BOOL: "b", Kind.INT: "i", Kind.REAL: "fi"}
 
@@ -52,8 +56,8 @@ def _opened(path: str | Path) -> Any:
         raise _damage(error) from None
 
 
-def _batches(path: str | Path, names: Sequence[str]) -> Iterator[Any]:
-    """Columns of the file, some rows at a time.
+def _batches(path: str | Path, layout: Layout) -> Iterator[Any]:
+    """The columns that the spec reads by their declared names, and `_STAMP`; some rows at a time.
 
     Raises:
         TraceError: it cannot be read to its end.
@@ -61,7 +65,9 @@ def _batches(path: str | Path, names: Sequence[str]) -> Iterator[Any]:
     file = _opened(path)
     import pyarrow
 
-    batches = file.iter_batches(ROWS, columns=names)
+    names = {layout.header[one.index]: _called(one) for one in (*layout.signals, *layout.events)}
+    names[layout.stamps.column] = _STAMP
+    batches = file.iter_batches(ROWS, columns=list(names))
     while True:
         try:
             batch = next(batches)
@@ -69,7 +75,8 @@ def _batches(path: str | Path, names: Sequence[str]) -> Iterator[Any]:
             return
         except (pyarrow.ArrowException, OSError) as error:
             raise _damage(error) from None
-        yield batch
+        called = [names[name] for name in batch.schema.names]
+        yield pyarrow.RecordBatch.from_arrays(batch.columns, names=called)
 
 
 def _damage(error: Exception) -> TraceError:
@@ -116,11 +123,10 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
     columns = (*layout.signals, *layout.events)
     if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
         raise NotPlainError
-    stamp = "t_ns" if layout.in_ticks else "t"
     last = -TIME_LIMIT
     held: dict[str, Any] = {}
-    for batch in _batches(path, [stamp, *(c.name for c in columns)]):
-        times = _instants(batch, stamp, in_ticks=layout.in_ticks)
+    for batch in _batches(path, layout):
+        times = _instants(batch, layout.stamps)
         if not len(times) or times[0] <= last or not (times[1:] > times[:-1]).all():
             raise NotPlainError
         last = int(times[-1])
@@ -135,15 +141,13 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
         yield Block(times, found)
 
 
-def _instants(batch: Any, stamp: str, *, in_ticks: bool) -> NDArray[np.int64]:
-    from rvmon.readers.ticks import ticks_in_range, ticks_of_column
+def _instants(batch: Any, stamps: Stamps) -> NDArray[np.int64]:
+    from rvmon.readers.ticks import ticks_of_column
 
-    column = batch.column(stamp)
-    if column.null_count:
+    column = batch.column(_STAMP)
+    if column.null_count or stamps.unit == "iso":
         raise NotPlainError
-    if in_ticks:
-        return ticks_in_range(_array_of(column, "i"))
-    return ticks_of_column(_array_of(column, "fi"))
+    return ticks_of_column(_array_of(column, "i" if stamps.unit == "ns" else "fi"), stamps)
 
 
 def _array_of(column: Any, kinds: str) -> NDArray[Any]:
@@ -194,17 +198,20 @@ def parquet_samples(
         TraceError: with the row's number.
     """
     layout = parquet_layout(path, schema)
-    stamp = "t_ns" if layout.in_ticks else "t"
     columns = (*layout.signals, *layout.events)
-    names = [stamp, *(_called(column) for column in columns)]
+    names = [_STAMP, *(_called(column) for column in columns)]
     truths = [_called(column) for column in columns if column.kind is Kind.BOOL]
     row = 0
-    for batch in _batches(path, names):
+    for batch in _batches(path, layout):
         for own in zip(*(arrow_cells(batch.column(name)) for name in names), strict=True):
             row += 1
             cells = dict(zip(names, own, strict=True))
             _refuse_numbers_as_truths(cells, truths, row)
-            yield row, _ticks(cells[stamp], row, in_ticks=layout.in_ticks), _values(cells, layout)
+            try:
+                t = ticks_of_stamp(cells[_STAMP], layout.stamps)
+            except TraceError as error:
+                raise TraceError(f"row {row}: {error}") from None
+            yield row, t, _values(cells, layout)
 
 
 def _refuse_numbers_as_truths(cells: Mapping[str, Any], names: Sequence[str], row: int) -> None:
@@ -229,17 +236,3 @@ def _values(cells: Mapping[str, Any], layout: Layout) -> dict[str, Value]:
     }
     found = [(column, cells[_called(column)]) for column in layout.events]
     return given | occurrences((column, value) for column, value in found if value is not None)
-
-
-def _ticks(stamp: Any, row: int, *, in_ticks: bool) -> int:
-    try:
-        if isinstance(stamp, bool):
-            pass
-        elif in_ticks and isinstance(stamp, int):
-            return whole_ticks(stamp)
-        elif not in_ticks and isinstance(stamp, int | float):
-            return ticks_of_seconds(stamp)
-    except TraceError as error:
-        raise TraceError(f"row {row}: {error}") from None
-    wanted = "a whole number of nanoseconds" if in_ticks else "a number of seconds"
-    raise TraceError(f"row {row}: time `{shorten(str(stamp))}` is not {wanted}")

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
+from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema
+from rvmon.trace.stamps import stamps_of
 from rvmon.trace.time import format_ticks
 
 FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet"}
@@ -51,6 +54,8 @@ class FileRecording:
         self.ignored: Counter[str] = Counter()
         self._format = _format_of(self.path)
         self._open_text: TextIO | None = None
+        self._stamps = schema.stamps or stamps_of("t")
+        self._first: list[int] = []
         self.names: frozenset[str] | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
@@ -64,6 +69,7 @@ class FileRecording:
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
+        self._stamps = layout.stamps
         self.ignored.update(dict.fromkeys(layout.ignored, 1))
 
     def __iter__(self) -> Iterator[Sample]:
@@ -86,7 +92,15 @@ class FileRecording:
             else:
                 from rvmon.readers.jsonl_rows import jsonl_samples
 
-                yield from self._merged(jsonl_samples(text, self._schema, self.ignored))
+                lines = self._seeing_unit(text)
+                yield from self._merged(jsonl_samples(lines, self._schema, self.ignored))
+
+    def _seeing_unit(self, lines: Iterable[str]) -> Iterator[str]:
+        """The same lines; the first one says what the stamps are, if nobody did."""
+        for number, line in enumerate(lines):
+            if number == 0 and self._schema.stamps is None and '"t_ns"' in line:
+                self._stamps = stamps_of("t_ns")
+            yield line
 
     def _merged(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
         return coalesce(self._in_order(lines), self._schema.events, self._conflicts)
@@ -98,13 +112,21 @@ class FileRecording:
             return 0.0
         return self._open_text.buffer.tell() / max(1, Path(self.path).stat().st_size)
 
+    def unit_doubts(self) -> list[Health]:
+        """Whether its first stamps look like milliseconds; they are read if they were not yet."""
+        if not self._first and self._stamps.unit == "s" and self.path != "-":
+            again = FileRecording(self.path, self._schema, ordered=self._ordered)
+            self._first = [sample.t for sample in islice(again, LOOKED_AT)]
+            self._stamps = again._stamps
+        return doubt_unit(self._first, self._stamps)
+
     def health(self) -> list[Health]:
-        """What was noticed while reading: undeclared names and conflicting values."""
+        """What was noticed while reading: undeclared names, conflicts, a doubtful unit of time."""
         ignored = [
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
         ]
-        return ignored + self._conflicts.health()
+        return ignored + self._conflicts.health() + self.unit_doubts()
 
     def _in_order(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
         last: int | None = None
@@ -117,6 +139,8 @@ class FileRecording:
                     "with `max delay` in the spec"
                 )
             last = t
+            if len(self._first) < LOOKED_AT:
+                self._first.append(t)
             yield Sample(t, values)
         if last is None:
             raise TraceError("holds no sample")

@@ -1,0 +1,105 @@
+"""How recordings call things, and what they may lack, as several commands take it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError
+
+if TYPE_CHECKING:
+    from rvmon.session import Spec
+
+OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
+"""Options whose value can be left out, and otherwise follows a `=`."""
+
+
+def add_reading(parser: argparse.ArgumentParser) -> None:
+    """Declare `--time` and `--map`."""
+    parser.add_argument(
+        "--time",
+        metavar="COLUMN[:UNIT]",
+        help="the column of stamps, and their unit: s, ms, us, ns, or iso (ISO 8601); default: "
+        "t in seconds, or t_ns",
+    )
+    parser.add_argument(
+        "--map",
+        metavar="NAME=COLUMN",
+        action="append",
+        default=[],
+        help="the column of a declared name that is called otherwise; can be given repeatedly",
+    )
+
+
+def add_allow_missing(parser: argparse.ArgumentParser) -> None:
+    """Declare `--allow-missing`."""
+    parser.add_argument(
+        "--allow-missing",
+        metavar="[=NAMES]",
+        default=None,
+        help="judge recordings in columns that lack these names (default: any): what reads them "
+        "is I, and the exit code 1",
+    )
+
+
+def with_values(words: Sequence[str]) -> list[str]:
+    """The words of a command line, with an empty value for options that may go without one.
+
+    Otherwise they would take the next word for it.
+
+    >>> with_values(["run", "--allow-missing", "a.rv", "--allow-missing=p"])
+    ['run', '--allow-missing=', 'a.rv', '--allow-missing=p']
+    """
+    made: list[str] = []
+    for place, word in enumerate(words):
+        if word == "--":
+            return [*made, *words[place:]]
+        short = len(word) > 2 and any(name.startswith(word) for name in OPTIONAL_VALUES)
+        made.append(f"{word}=" if short else word)
+    return made
+
+
+def allowed_names(text: str | None) -> bool | tuple[str, ...]:
+    """The value of `--allow-missing`: none, these, or with an empty one all.
+
+    >>> allowed_names(None), allowed_names(""), allowed_names("a, b")
+    (False, True, ('a', 'b'))
+    """
+    if not text:
+        return text is not None
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
+def mapped_names(texts: Sequence[str]) -> dict[str, str]:
+    """The values of `--map`: columns by declared name.
+
+    Raises:
+        RvmonError: a text has another form, or a name stands twice.
+
+    >>> mapped_names(["speed=Speed [m/s]"])
+    {'speed': 'Speed [m/s]'}
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        name, sign, column = text.partition("=")
+        name = name.strip()
+        if not name or not sign or not column:
+            raise RvmonError(f"--map {text}: expected NAME=COLUMN, such as speed=v_mean")
+        if name in found:
+            raise RvmonError(f"--map {text}: `{name}` is mapped twice")
+        found[name] = column
+    return found
+
+
+def reading_words(time: str | None, columns: dict[str, str]) -> list[str]:
+    """The words that say the same on another command line."""
+    words = [] if time is None else ["--time", time]
+    for name, column in columns.items():
+        words += ["--map", f"{name}={column}"]
+    return words
+
+
+def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
+    """The specification for recordings that call things as the command line says."""
+    return spec.reading(time=arguments.time, columns=mapped_names(arguments.map))

@@ -1,0 +1,81 @@
+"""By what names a recording calls its time and what the spec declares."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.errors import TraceError
+from rvmon.readers.values import shorten
+from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.stamps import UNITS, stamps_of
+
+DEFAULT_COLUMNS = ("t", "t_ns")
+"""The columns of stamps where none was named."""
+
+
+def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> Stamps:
+    """The column of stamps of a recording that has these columns.
+
+    Args:
+        names: of its columns.
+        schema: says which one it is, if a person did.
+        remark: what else may be wrong if there is none.
+
+    Raises:
+        TraceError: there is none, or there are two.
+    """
+    stamps = schema.stamps
+    listed = ", ".join(f"`{shorten(name)}`" for name in list(names)[:8]) or "nothing"
+    if stamps is not None:
+        if stamps.column in names:
+            return stamps
+        units = "" if stamps.is_said else _units_told(stamps.column)
+        meant = did_you_mean(stamps.column, names, f"there are {listed}")
+        raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}{remark}")
+    times = [name for name in DEFAULT_COLUMNS if name in names]
+    if len(times) != 1:
+        raise TraceError(
+            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
+            f"in the header; found {'both' if times else listed}: name "
+            f"{'one of them' if times else 'it'} with --time COLUMN[:UNIT], in Python "
+            f"time=…{remark}"
+        )
+    return stamps_of(times[0])
+
+
+def sources_among(columns: Collection[str], schema: Schema) -> tuple[frozenset[str], list[str]]:
+    """The signals and events that columns stand for, and the columns that stand for nothing.
+
+    Args:
+        columns: by declared names, without that of the stamps; one of a payload stands for its
+            event.
+        schema: the declared names.
+
+    >>> sources_among(["go.id", "x"], Schema({}, {"go": {"id": Kind.INT}}))
+    (frozenset({'go'}), ['x'])
+    """
+    found, others = set(), []
+    for column in columns:
+        event, _, field = column.rpartition(".")
+        if column in schema.signals or column in schema.events:
+            found.add(column)
+        elif field in schema.events.get(event, {}):
+            found.add(event)
+        else:
+            others.append(column)
+    return frozenset(found), others
+
+
+def _units_told(column: str) -> str:
+    return f" (the units are {', '.join(UNITS)})" if ":" in column else ""
+
+
+def aliases_of(schema: Schema) -> dict[str, str]:
+    """The declared name by column, where it has another one; what no longer counts has none.
+
+    >>> aliases_of(Schema({}, {}, columns={"speed": "Speed [m/s]"}))
+    {'speed': '', 'Speed [m/s]': 'speed'}
+    """
+    own = {column: name for name, column in schema.columns.items()}
+    return {**dict.fromkeys(schema.columns, ""), **own}
