@@ -221,7 +221,6 @@ class Spec:
             engine = "auto"  # nothing to compile
         compiled = self._compiled
         spec = self.reading(time=time, columns=columns)
-        report, doubts = None, []
         from rvmon.readers.any_trace import is_table
 
         if is_table(trace):
@@ -232,21 +231,22 @@ class Spec:
             table = table_of(trace, spec.schema)
             self.expect_names(table, only=chosen, allow_missing=allow_missing)
             report = evaluate_table(compiled, table, only=chosen, engine=engine, until=end)
-            doubts = unit_doubts(table)
             if report is None:
-                recording: Recording = trace_of_columns(table.columns, spec.schema, table.time)
+                rows = trace_of_columns(table.columns, spec.schema, table.time)
+                report = self._judged(rows, chosen, engine, end)
+            doubts = unit_doubts(table)
         elif isinstance(trace, str | Path):
             from rvmon.readers.recording import FileRecording
 
             ordered = self.checked.max_delay is None
-            recording = file = FileRecording(trace, spec.schema, ordered=ordered)
+            file = FileRecording(trace, spec.schema, ordered=ordered)
             self.expect_names(file, only=chosen, allow_missing=allow_missing)
             report = spec.evaluate_file(trace, engine=engine, only=chosen, until=until)
+            if report is None:
+                report = self._judged(file, chosen, engine, end)
             doubts = file.unit_doubts()
         else:
-            recording = spec.recording(trace)
-        if report is None:
-            report = self._judged(recording, chosen, engine, end)
+            return self._judged(spec.recording(trace), chosen, engine, end)
         return replace(report, health=(*report.health, *doubts)) if doubts else report
 
     def _judged(
@@ -264,6 +264,19 @@ class Spec:
         for sample in recording:
             monitor.step_ns(sample.t, sample.values)
         return monitor.finish_ns(recording.end if end is None else end)
+
+    def names_read(self, *, only: Iterable[str] | None = None) -> tuple[str, ...]:
+        """The signals and events that requirements read.
+
+        Args:
+            only: ids of the requirements; default all.
+
+        Raises:
+            UnknownNameError: there is no such requirement.
+        """
+        from rvmon.monitor.missing import names_read
+
+        return tuple(names_read(self._compiled, self._chosen(only)))
 
     def expect_names(
         self,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
+    import argparse
+
     from rvmon.session import Spec
 
 OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")

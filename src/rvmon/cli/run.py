@@ -164,7 +164,8 @@ def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
                 print(f"  judged before that: {line}", file=sys.stderr)
         if one.missing:
             names = ", ".join(f"`{name}`" for name in one.missing)
-            print(f"{one.trace} has no column for {names}: not judged by it", file=sys.stderr)
+            told = f"{one.trace} has no column for {names}: what reads that is inconclusive"
+            print(f"warning: {told}", file=sys.stderr)
     if form == "json":
         _show_doubts(judged)
         texts = [_json(one) for one in judged]

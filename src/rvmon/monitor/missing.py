@@ -98,10 +98,11 @@ def _told(
         more = f" and {len(others) - _SHOWN} more" if len(others) > _SHOWN else ""
         yield f"  columns that nothing is declared for: {shown}{more}"
     maps = [shlex.quote(f"{name}={column or 'COLUMN'}") for name, column in close.items()]
-    yield f"  map them: {' '.join(f'--map {one}' for one in maps)} (in Python: columns=…)"
+    which, them = ("which column it is", "it") if len(maps) == 1 else ("which they are", "them")
+    yield f"  say {which}: {' '.join(f'--map {one}' for one in maps)}, in Python columns=…"
     yield (
-        f"  or leave what reads them inconclusive: --allow-missing={','.join(close)} "
-        "(allow_missing=…)"
+        f"  or leave what reads {them} inconclusive: --allow-missing={','.join(close)}, "
+        "in Python allow_missing=…"
     )
 
 

@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
-from statistics import median
 
+from rvmon.readers.steps import FEWEST, LONG_STEP, LOOKED_AT, median_step
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.schema import Stamps
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 
-LOOKED_AT = 1_000
-"""So many of the first stamps of a recording are looked at."""
-
-_FEWEST = 10
-"""Of fewer stamps nothing is said."""
-
-_LONG_STEP = 5 * TICKS_PER_SECOND
 _LONG = 10_000 * TICKS_PER_SECOND
 
 
@@ -33,17 +25,16 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
     >>> doubt_unit([20 * TICKS_PER_SECOND * k for k in range(10)], Stamps("t", "s"))[0].remark
     'from stamp to stamp it is 20 s: are these milliseconds? `--time t:ms` (if not: `--time t:s`)'
     """
-    if stamps.is_said or stamps.unit != "s" or len(times) < _FEWEST:
+    if stamps.is_said or stamps.unit != "s" or len(times) < FEWEST:
         return []
-    steps = [then - first for first, then in itertools.pairwise(times) if then > first]
-    step = int(median(steps)) if steps else 0
+    step = median_step(times)
     whole = all(t % TICKS_PER_SECOND == 0 for t in times)
     long = len(times) >= LOOKED_AT and times[-1] - times[0] >= _LONG
-    if step < _LONG_STEP or not (whole or long):
+    if step < LONG_STEP * TICKS_PER_SECOND or not (whole or long):
         return []
     column = stamps.column
     remark = (
-        f"from stamp to stamp it is {format_ticks(step)}: are these milliseconds? "
+        f"from stamp to stamp it is {format_ticks(int(step))}: are these milliseconds? "
         f"`--time {column}:ms` (if not: `--time {column}:s`)"
     )
     return [Health(HealthKind.UNIT, column, 1, times[0], remark=remark)]

@@ -126,7 +126,8 @@ def _ticks(fields: dict[str, Any], schema: Schema) -> int:
     if stamps.unit == "ns" and isinstance(stamp, float) and abs(stamp) >= TIME_LIMIT:
         # Beyond 64 bits integers are decoded as floats.
         raise TraceError(f"time `{_written(stamp)}` is out of range: at most 2**62 ns (146 years)")
-    return ticks_of_stamp(stamp, stamps)
+    is_number = isinstance(stamp, int | float) and not isinstance(stamp, bool)
+    return ticks_of_stamp(stamp if is_number else _written(stamp), stamps)
 
 
 def _taken(fields: dict[str, Any], path: str) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import islice
@@ -13,7 +13,8 @@ from typing import TextIO
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
-from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
+from rvmon.readers.doubtful_unit import doubt_unit
+from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema
@@ -116,8 +117,8 @@ class FileRecording:
         """Whether its first stamps look like milliseconds; they are read if they were not yet."""
         if not self._first and self._stamps.unit == "s" and self.path != "-":
             again = FileRecording(self.path, self._schema, ordered=self._ordered)
-            self._first = [sample.t for sample in islice(again, LOOKED_AT)]
-            self._stamps = again._stamps
+            deque(islice(again, LOOKED_AT), 0)
+            self._first, self._stamps = again._first, again._stamps
         return doubt_unit(self._first, self._stamps)
 
     def health(self) -> list[Health]:

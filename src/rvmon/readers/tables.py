@@ -10,8 +10,9 @@ import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.readers.columns import arrow_cells, cells_of
-from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
+from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.naming import aliases_of, sources_among, stamps_among
+from rvmon.readers.steps import LOOKED_AT
 from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp

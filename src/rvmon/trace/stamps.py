@@ -32,6 +32,9 @@ _ISO = re.compile(
     re.ASCII | re.IGNORECASE,
 )
 
+_SHOWN = reprlib.Repr()
+_SHOWN.maxstring = 60
+
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 _EPOCHS = {"ms": (1e11, 1e14), "us": (1e14, 1e17), "ns": (1e17, 1e20)}
@@ -73,7 +76,7 @@ def ticks_of_cell(text: str, stamps: Stamps) -> int:
         t = int(text.replace("_", "?"))
         if abs(t) < TIME_LIMIT:
             return t
-    shown = reprlib.repr(text)[1:-1]
+    shown = _SHOWN.repr(text)[1:-1]
     # Python reads no more than some thousand digits, which are a whole number as well.
     if is_whole(text):
         raise TraceError(f"time `{shown}` is out of range: at most 2**62 ns (146 years)")
@@ -110,7 +113,7 @@ def ticks_of_stamp(stamp: Any, stamps: Stamps) -> int:
         except TraceError as error:
             raise TraceError(f"{error}{_other_unit(plain, stamps)}") from None
     wanted = "a whole number" if stamps.unit == "ns" else "a number"
-    shown = reprlib.repr(str(plain))[1:-1]
+    shown = _SHOWN.repr(str(plain))[1:-1]
     raise TraceError(
         f"time `{shown}` is not {wanted} of {UNIT_WORDS[stamps.unit]}{_other_unit(shown, stamps)}"
     )
@@ -142,7 +145,7 @@ def ticks_of_iso(text: str) -> int:
     >>> ticks_of_iso("1970-01-01T02:00:00.000000001+02:00")
     1
     """
-    shown = reprlib.repr(text)[1:-1]
+    shown = _SHOWN.repr(text)[1:-1]
     found = _ISO.fullmatch(text.strip())
     if found is None:
         raise TraceError(
