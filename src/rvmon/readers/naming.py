@@ -52,6 +52,7 @@ def sources_among(columns: Collection[str], schema: Schema) -> tuple[frozenset[s
             event.
         schema: the declared names.
 
+    >>> from rvmon.trace.schema import Kind
     >>> sources_among(["go.id", "x"], Schema({}, {"go": {"id": Kind.INT}}))
     (frozenset({'go'}), ['x'])
     """
