@@ -229,7 +229,7 @@ class Spec:
             from rvmon.readers.tables import table_of, unit_doubts
 
             table = table_of(trace, spec.schema)
-            self.expect_names(table, only=chosen, allow_missing=allow_missing)
+            spec.expect_names(table, only=chosen, allow_missing=allow_missing)
             report = evaluate_table(compiled, table, only=chosen, engine=engine, until=end)
             if report is None:
                 rows = trace_of_columns(table.columns, spec.schema, table.time)
@@ -240,7 +240,7 @@ class Spec:
 
             ordered = self.checked.max_delay is None
             file = FileRecording(trace, spec.schema, ordered=ordered)
-            self.expect_names(file, only=chosen, allow_missing=allow_missing)
+            spec.expect_names(file, only=chosen, allow_missing=allow_missing)
             report = spec.evaluate_file(trace, engine=engine, only=chosen, until=until)
             if report is None:
                 report = self._judged(file, chosen, engine, end)
@@ -302,7 +302,9 @@ class Spec:
         from rvmon.monitor.missing import expect_names
 
         chosen = None if only is None else tuple(only)
-        return expect_names(self._compiled, recording, only=chosen, allowed=allow_missing)
+        return expect_names(
+            self._compiled, recording, self.schema.columns, only=chosen, allowed=allow_missing
+        )
 
     def evaluate_many(
         self,

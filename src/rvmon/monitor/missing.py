@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -42,6 +42,7 @@ def names_read(compiled: CompiledSpec, only: Sequence[str] | None) -> dict[str, 
 def expect_names(
     compiled: CompiledSpec,
     recording: FileRecording | Table,
+    mapped: Mapping[str, str],
     *,
     only: Sequence[str] | None,
     allowed: Allowed,
@@ -51,6 +52,7 @@ def expect_names(
     Args:
         compiled: the specification.
         recording: of which nothing but the names is looked at.
+        mapped: by declared name the column that a person named.
         only: ids of the requirements; default all.
         allowed: the names that it may lack.
 
@@ -82,17 +84,21 @@ def expect_names(
         paths = [column for column in free if "/" in column or "." in column]
         if len(refused) == len(paths) == 1 and not close[refused[0]]:
             close[refused[0]] = paths[0]  # the one topic for the one name
-        raise MissingNameError(place + "\n".join(_told(lacking, close, free)))
+        raise MissingNameError(place + "\n".join(_told(lacking, close, free, mapped)))
     return tuple(lacking)
 
 
 def _told(
-    lacking: dict[str, tuple[str, ...]], close: dict[str, str], others: Sequence[str]
+    lacking: Mapping[str, tuple[str, ...]],
+    close: Mapping[str, str],
+    others: Sequence[str],
+    mapped: Mapping[str, str],
 ) -> Iterable[str]:
     yield "there is no column for what requirements read:"
     for name, column in close.items():
         meant = f": did you mean `{shorten(column)}`?" if column else ""
-        yield f"  `{name}`, read by {', '.join(lacking[name])}{meant}"
+        wanted = f" (as `{shorten(mapped[name])}`)" if name in mapped else ""
+        yield f"  `{name}`{wanted}, read by {', '.join(lacking[name])}{meant}"
     if not all(close.values()):
         shown = ", ".join(f"`{shorten(column)}`" for column in others[:_SHOWN]) or "none"
         more = f" and {len(others) - _SHOWN} more" if len(others) > _SHOWN else ""

@@ -145,6 +145,12 @@ def test_a_column_is_mapped_through_every_door(spec, tmp_path):
     assert spec.evaluate(path, columns={"speed": "odom.v"}).verdicts["R1"] == "F"
 
 
+def test_a_mapped_column_that_is_not_there_is_told(spec):
+    """With the name that was given for it."""
+    with pytest.raises(rvmon.MissingNameError, match=r"`speed` \(as `v_mean`\), read by R1"):
+        spec.evaluate(COLUMNS, columns={"speed": "v_mean"})
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
