@@ -33,7 +33,7 @@ EACH = 5
 def told(spec: Spec, trace: object, arguments: dict[str, object], engine: str) -> str:
     """The report as JSON, or what was refused."""
     try:
-        return spec.evaluate(trace, engine=engine, **arguments).to_json()  # type: ignore[arg-type]
+        return spec.evaluate(trace, engine=engine, allow_missing=True, **arguments).to_json()  # type: ignore[arg-type]
     except RvmonError as error:
         return f"{type(error).__name__}"
 

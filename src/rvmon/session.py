@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
-from functools import cached_property, lru_cache, partial
+from copy import copy
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from rvmon.errors import UnknownNameError
-from rvmon.readers.gaps import gaps_of
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -20,7 +19,9 @@ if TYPE_CHECKING:
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.measured import Margins
     from rvmon.monitor.robustness import RobustnessMonitor
-    from rvmon.readers.gaps import Gaps
+    from rvmon.readers.columns import TableRecording
+    from rvmon.readers.reading import Reading, ReadingArguments, Telling
+    from rvmon.readers.recording import FileRecording
     from rvmon.spec.checked import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
@@ -50,7 +51,7 @@ class Spec:
 
     @cached_property
     def schema(self) -> Schema:
-        """The declared signals and events with the kinds of their values."""
+        """The declared names with the kinds of their values, and what recordings call them."""
         return Schema(
             {name: signal.type.kind for name, signal in self.checked.signals.items()},
             {
@@ -59,6 +60,44 @@ class Spec:
             },
             self.checked.ignoring,
         )
+
+    def reading(
+        self,
+        *,
+        time: str | None = None,
+        columns: Mapping[str, str] | None = None,
+        nan: str | None = None,
+        no_update: Any = None,
+    ) -> Spec:
+        r"""The same specification, for recordings that tell things otherwise.
+
+        Args:
+            time: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with `s`, `ms`,
+                `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name ends in
+                `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
+            columns: by declared name, of a payload's field `event.field`, the column.
+            nan: what NaN says: `unknown`, which is the default, or `no update`, as in a merge of
+                topics.
+            no_update: a further value that stands for no update; in tables `None`, nulls and masked
+                values do anyway.
+
+        Raises:
+            UnknownNameError: `columns` names what is not declared, `nan` what does not exist.
+            RvmonError: `columns` names a column twice.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
+        >>> spec = spec.reading(time="stamp:ms", columns={"p": "Is P"})
+        >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
+        20000000
+        """
+        from rvmon.readers.naming import told_as
+
+        other = copy(self)
+        other.__dict__["schema"] = told_as(
+            self.schema, time=time, columns=columns, nan=nan, no_update=no_update
+        )
+        return other
 
     @cached_property
     def _compiled(self) -> CompiledSpec:
@@ -145,13 +184,15 @@ class Spec:
         self,
         trace: Any,
         *,
-        time: str = "t",
+        time: str | None = None,
+        columns: Mapping[str, str] | None = None,
+        nan: str | None = None,
+        no_update: Any = None,
+        sources: Iterable[str] | None = None,
+        allow_missing: bool | Iterable[str] = False,
         engine: str = "auto",
         only: Iterable[str] | None = None,
         until: float | None = None,
-        sources: Iterable[str] | None = None,
-        nan: str = "unknown",
-        no_update: Any = None,
     ) -> Report:
         r"""Judge a finished trace; the same content gives the same records, whatever holds it.
 
@@ -159,20 +200,25 @@ class Spec:
             trace: a path (`.csv`, `.jsonl`, `.parquet`), a table (arrays or lists by name, an
                 Arrow table, a data frame), a `Recording`, or an iterable of `(t, values)` with t
                 in seconds.
-            time: the time column of a table, no signal; if its name ends in `_ns`, integer ticks.
+            time: the time column of a table or a file, no signal, and its unit; see `reading`.
+            columns: what columns are called that have other names than declared; see `reading`.
+            nan: what NaN says: `unknown`, or `no update`, as in a merge of topics; see `reading`.
+            no_update: a further value that stands for no update; see `reading`.
+            sources: the signals and events that can arrive, the others are unknown throughout;
+                default the columns that there are, of JSON lines and pairs all that is declared.
+            allow_missing: whether a trace in columns may lack names that the requirements read, or
+                the names that it may lack: what reads them is inconclusive. If the sources are
+                named, it may.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
-            sources: the signals and events that can arrive, the others are unknown throughout;
-                default the columns that there are, of JSON lines and pairs all that is declared.
-            nan: what NaN says: `unknown`, or `no update`, as in a merge of topics.
-            no_update: a further value that stands for no update; in tables `None`, nulls and masked
-                values do anyway.
 
         Raises:
+            MissingNameError: a trace in columns has none for a name that a requirement reads.
             TraceError: the trace cannot be read; place and cause are named.
-            UnknownNameError: `only`, `engine`, `sources` or `nan` names what does not exist.
+            UnknownNameError: `only`, `engine`, `sources` or another argument names what does not
+                exist.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
@@ -180,83 +226,95 @@ class Spec:
         >>> [spec.evaluate(merged, nan=nan).verdicts["R1"] for nan in ("unknown", "no update")]
         [<Verdict.INCONCLUSIVE: 'I'>, <Verdict.PASS: 'P'>]
         """
+        from rvmon.monitor.finished import evaluate_trace
+
         _expect_engine(engine)
-        chosen = self._chosen(only)
-        end = None if until is None else ticks_of_seconds(until)
-        if chosen == () and engine == "c":
-            engine = "auto"  # nothing to compile
-        gaps, given = gaps_of(nan, no_update), self._sources(sources)
-        if given is None:
-            report = self._by_columns(trace, time, gaps, engine, chosen, until)
-            if report is not None:
-                return report
-        recording = self.recording(trace, time=time, nan=nan, no_update=no_update)
-        if given is None and recording.names is not None:
-            given = frozenset(recording.names) & {*self.schema.signals, *self.schema.events}
-        if end is None:
-            end = recording.end
-        if engine == "c":
-            from rvmon.monitor.batch_c import evaluate_recording
-
-            return evaluate_recording(
-                self._compiled, recording, sources=given, only=chosen, until=end
-            )
-        monitor = self.monitor(only=chosen, engine=engine, sources=given)
-        for sample in recording:
-            monitor.step_ns(sample.t, sample.values)
-        report = monitor.finish_ns(end)
-        rows = getattr(recording, "rows", None)
-        return report if rows is None else replace(report, health=rows.told(report.health))
-
-    def _by_columns(
-        self,
-        trace: Any,
-        time: str,
-        gaps: Gaps,
-        engine: str,
-        only: tuple[str, ...] | None,
-        until: float | None,
-    ) -> Report | None:
-        """Judge a trace by its columns; `None` if it has none, or each row has to be looked at."""
-        if isinstance(trace, str | Path):
-            if gaps:
-                return None
-            return self.evaluate_file(trace, engine=engine, only=only, until=until)
-        from rvmon.readers.tables import columns_by_name
-
-        columns = columns_by_name(trace)
-        if columns is None:
-            return None
-        from rvmon.monitor.batch_table import evaluate_table
-
-        return evaluate_table(
+        return evaluate_trace(
             self._compiled,
-            self.schema,
-            columns,
-            time,
-            gaps,
-            only=only,
+            trace,
+            self._reading(
+                time=time,
+                columns=columns,
+                nan=nan,
+                no_update=no_update,
+                sources=sources,
+                allow_missing=allow_missing,
+            ),
+            only=self._chosen(only),
             engine=engine,
             until=None if until is None else ticks_of_seconds(until),
+        )
+
+    def _reading(
+        self,
+        *,
+        sources: Iterable[str] | None = None,
+        allow_missing: bool | Iterable[str] = False,
+        **told: Unpack[Telling],
+    ) -> Reading:
+        from rvmon.readers.reading import Reading
+
+        allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
+        return Reading(self.reading(**told).schema, self._sources(sources), allowed)
+
+    def names_read(self, *, only: Iterable[str] | None = None) -> tuple[str, ...]:
+        """The signals and events that requirements read.
+
+        Args:
+            only: ids of the requirements; default all.
+
+        Raises:
+            UnknownNameError: there is no such requirement.
+        """
+        from rvmon.monitor.missing import names_read
+
+        return tuple(names_read(self._compiled, self._chosen(only)))
+
+    def expect_names(
+        self,
+        recording: FileRecording | TableRecording,
+        *,
+        only: Iterable[str] | None = None,
+        allow_missing: bool | Iterable[str] = False,
+    ) -> tuple[str, ...]:
+        """Refuse a recording in columns that lacks a name which a requirement reads.
+
+        Args:
+            recording: a file, or a table in memory.
+            only: ids of the requirements; default all.
+            allow_missing: whether it may lack names, or the names that it may lack.
+
+        Returns:
+            The names that it lacks, and may.
+
+        Raises:
+            MissingNameError: it lacks others.
+            UnknownNameError: a name that it may lack is not declared.
+        """
+        from rvmon.monitor.missing import expect_names
+
+        chosen = None if only is None else tuple(only)
+        return expect_names(
+            self._compiled, recording, self.schema.columns, only=chosen, allowed=allow_missing
         )
 
     def evaluate_many(
         self,
         traces: Iterable[Any],
         *,
-        time: str = "t",
         engine: str = "auto",
         only: Iterable[str] | None = None,
         jobs: int = 1,
+        **reading: Unpack[ReadingArguments],
     ) -> Iterator[Report]:
         r"""Judge many traces, in their order; the specification is compiled once per process.
 
         Args:
             traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
-            time: the time column of columns; if its name ends in `_ns`, integer ticks.
             engine: `auto` or the name of one.
             only: ids of the requirements to judge; default all.
             jobs: processes; 1 judges in this one.
+            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
 
         Raises:
             TraceError: a trace cannot be read; the reports before it have been given out.
@@ -267,20 +325,20 @@ class Spec:
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
         ['P', 'F']
         """
-        chosen = None if only is None else tuple(only)
-        if jobs < 2:
-            return (self.evaluate(trace, time=time, engine=engine, only=chosen) for trace in traces)
-        return self._evaluate_elsewhere(traces, time, engine, chosen, jobs)
+        from rvmon.monitor.finished import evaluate_trace
+        from rvmon.monitor.many import evaluate_elsewhere
 
-    def _evaluate_elsewhere(
-        self, traces: Iterable[Any], time: str, engine: str, only: tuple[str, ...] | None, jobs: int
-    ) -> Iterator[Report]:
-        import pickle
-        from concurrent.futures import ProcessPoolExecutor
-
-        judge = partial(_evaluate_here, pickle.dumps(self.checked), time, engine, only)
-        with ProcessPoolExecutor(jobs) as pool:
-            yield from pool.map(judge, traces)
+        _expect_engine(engine)
+        chosen = self._chosen(only)
+        told = self._reading(**reading)
+        if jobs > 1:
+            return evaluate_elsewhere(
+                self._compiled, traces, told, only=chosen, engine=engine, jobs=jobs
+            )
+        return (
+            evaluate_trace(self._compiled, trace, told, only=chosen, engine=engine)
+            for trace in traces
+        )
 
     def evaluate_file(
         self,
@@ -323,10 +381,10 @@ class Spec:
         self,
         trace: Any,
         *,
-        time: str = "t",
         only: Iterable[str] | None = None,
         until: float | None = None,
         streams: bool = True,
+        **reading: Unpack[ReadingArguments],
     ) -> Margins:
         """By how much a finished trace meets each requirement, or fails to, in base units.
 
@@ -336,10 +394,10 @@ class Spec:
 
         Args:
             trace: as `evaluate` takes it.
-            time: the time column of columns.
             only: ids of the requirements; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             streams: whether to give a figure per sample, too; they are kept in memory.
+            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
 
         Returns:
             The figures of the attempts by requirement and number, and as streams.
@@ -350,10 +408,11 @@ class Spec:
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
+        from rvmon.monitor.finished import open_trace
         from rvmon.monitor.robustness import margins_of
 
         chosen = self._chosen(only)
-        recording = self.recording(trace, time=time)
+        recording = open_trace(self._compiled, trace, self._reading(**reading), only=chosen)
         return margins_of(
             self._compiled,
             recording,
@@ -389,37 +448,21 @@ class Spec:
             self._compiled, only=chosen, settle=settle, sources=given, streams=streams
         )
 
-    def recording(
-        self, trace: Any, *, time: str = "t", nan: str = "unknown", no_update: Any = None
-    ) -> Recording:
-        """Whatever `evaluate` takes as a trace, as a recording; so are the arguments.
+    def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:
+        """Whatever `evaluate` takes as a trace, as a recording.
 
-        Raises:
-            TraceError: the trace cannot be read.
-            UnknownNameError: there is no such reading of NaN.
+        Args:
+            trace: it need not be read yet.
+            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors. Any name
+                may be missing, unless `allow_missing` says otherwise.
         """
-        from rvmon.readers.any_trace import recording_of
+        from rvmon.monitor.finished import open_trace
 
-        ordered = self.checked.max_delay is None
-        gaps = gaps_of(nan, no_update)
-        return recording_of(trace, self.schema, time=time, ordered=ordered, gaps=gaps)
+        reading.setdefault("allow_missing", True)
+        return open_trace(self._compiled, trace, self._reading(**reading), only=None)
 
 
 def _expect_engine(name: str) -> None:
     from rvmon.monitor.compiled import ALL_ENGINES, expect_engine
 
     expect_engine(name, ALL_ENGINES)
-
-
-def _evaluate_here(
-    checked: bytes, time: str, engine: str, only: tuple[str, ...] | None, trace: Any
-) -> Report:
-    return _spec_of(checked).evaluate(trace, time=time, engine=engine, only=only)
-
-
-@lru_cache(maxsize=1)
-def _spec_of(checked: bytes) -> Spec:
-    """The specification that another process sent; a worker compiles it for its first trace."""
-    import pickle
-
-    return Spec(pickle.loads(checked))  # noqa: S301 - from the process that began this one

@@ -10,6 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.reading import add_reading, reading_spec
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
     )
+    add_reading(parser)
     parser.add_argument(
         "--peers",
         metavar="PYTHON",
@@ -67,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
-    spec = load(arguments.spec, const=constants_of(arguments.const))
+    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     checked = spec.checked
     if not checked.requirements:
         raise RvmonError(f"error: {arguments.spec} has no requirement: there is nothing to compare")

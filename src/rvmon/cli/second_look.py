@@ -38,13 +38,7 @@ def can_be_read_again(trace: str) -> bool:
 
 
 def second_look(
-    spec: Spec,
-    trace: str,
-    report: Report,
-    names: frozenset[str] | None,
-    *,
-    goals: bool,
-    nan: str,
+    spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
 ) -> Report:
     """The report with the cover goals, and with what only the whole recording tells.
 
@@ -58,27 +52,24 @@ def second_look(
         report: on it.
         names: the signals and events that have a source; `None`: all.
         goals: whether the cover goals are asked for.
-        nan: what NaN says, as for `Spec.evaluate`.
     """
     silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
     end = report.end
     if end is None or not can_be_read_again(trace):
         return report
 
-    by_columns = nan == "unknown"
-
     @cache
     def samples() -> Sequence[Sample]:
-        read: Iterable[Sample] = spec.recording(trace, nan=nan)
+        read: Iterable[Sample] = spec.recording(trace)
         if spec.checked.max_delay is None:  # what comes behind may be broken
             read = takewhile(lambda sample: sample.t <= end, read)
         return [sample for sample in in_order(read) if sample.t <= end]
 
     if goals and spec.checked.covers:
-        report = replace(report, goals=_goals(spec, trace, end, names, samples, by_columns))
+        report = replace(report, goals=_goals(spec, trace, end, names, samples))
 
     def read(names: frozenset[str] | None) -> Sequence[Sample]:
-        few = None if names is None or not by_columns else _changes(spec, trace, names, end)
+        few = None if names is None else _changes(spec, trace, names, end)
         return samples() if few is None else few
 
     late = {
@@ -131,7 +122,7 @@ def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Sequenc
     from rvmon.readers.changes import changes
 
     schema = spec.schema
-    reader = reader_of(trace, Counter())
+    reader = reader_of(trace, schema, Counter())
     if reader is None or spec.checked.max_delay is not None:
         return None
     try:
@@ -147,7 +138,6 @@ def _goals(
     end: int,
     names: frozenset[str] | None,
     samples: Callable[[], Sequence[Sample]],
-    by_columns: bool,
 ) -> Mapping[str, Verdict]:
     from rvmon.monitor.batch_file import evaluate_file
     from rvmon.monitor.compiled import compile_spec
@@ -155,10 +145,10 @@ def _goals(
 
     goals = Spec(goals_as_requirements(spec.checked))
     report = None
-    if spec.checked.max_delay is None and by_columns:
+    if spec.checked.max_delay is None:
         report = evaluate_file(
             compile_spec(goals.checked),
-            goals.schema,
+            spec.schema,
             trace,
             only=None,
             engine="auto",

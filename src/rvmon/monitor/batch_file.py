@@ -63,7 +63,7 @@ def evaluate_file(
         may matter.
     """
     seen = Counter[str]()
-    reader = reader_of(path, seen)
+    reader = reader_of(path, schema, seen)
     if reader is None:
         return None
     holding = fillable(compiled, only)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
-from typing import Any
 
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.readers.gaps import Gaps
+from rvmon.readers.columns import TableRecording
 from rvmon.trace.schema import Schema
 from rvmon.verdict.report import Report
 
@@ -15,9 +14,7 @@ from rvmon.verdict.report import Report
 def evaluate_table(
     compiled: CompiledSpec,
     schema: Schema,
-    columns: Mapping[str, Any],
-    time: str,
-    gaps: Gaps,
+    table: TableRecording,
     *,
     only: Sequence[str] | None,
     engine: str,
@@ -28,9 +25,7 @@ def evaluate_table(
     Args:
         compiled: the specification.
         schema: its names.
-        columns: see `rvmon.readers.tables.columns_by_name`.
-        time: the column of seconds; if its name ends in `_ns`, of integer ticks.
-        gaps: values that stand for no update.
+        table: of which the columns are looked at.
         only: ids of the requirements; default all.
         engine: `auto`, `c` or the name of one that judges samples.
         until: the end of the trace in ticks, if after its last row.
@@ -39,18 +34,15 @@ def evaluate_table(
         `None` if its rows have to be looked at one by one.
 
     Raises:
-        TraceError: there is no time column, or an instant is not finite or out of range.
+        TraceError: an instant is not finite or out of range.
     """
     from rvmon.monitor.batch import FEW_ROWS, evaluate_plain, in_order
     from rvmon.monitor.batch_file import fillable
     from rvmon.readers.arrays import block_of_table
     from rvmon.readers.blocks import NotPlainError
-    from rvmon.readers.columns import time_column
 
     try:
-        block = block_of_table(
-            columns, schema, time_column(columns, time), gaps, partial(fillable, compiled, only)
-        )
+        block = block_of_table(table, schema, partial(fillable, compiled, only))
     except NotPlainError:
         return None
     if not in_order(block.times):

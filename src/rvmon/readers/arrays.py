@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.csv_rows import Column, layout_of
-from rvmon.readers.gaps import Gaps
+from rvmon.readers.columns import TableRecording
+from rvmon.readers.csv_rows import Column
 from rvmon.readers.held import held_values
-from rvmon.readers.ticks import ticks_in_range, ticks_of_column
+from rvmon.readers.ticks import ticks_of_column
+from rvmon.trace.gaps import Gaps
 from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:
@@ -25,52 +26,44 @@ _EXACT = 1 << 53
 
 
 def block_of_table(
-    columns: Mapping[str, Any],
-    schema: Schema,
-    time: str,
-    gaps: Gaps,
-    fillable: Callable[[], frozenset[str]],
+    table: TableRecording, schema: Schema, fillable: Callable[[], frozenset[str]]
 ) -> Block:
     """A table as one block, without copies if possible. Whether instants ascend is not looked at.
 
     Args:
-        columns: see `rvmon.readers.tables.columns_by_name`.
+        table: its columns.
         schema: the declared names.
-        time: the column of seconds; if its name ends in `_ns`, of integer ticks.
-        gaps: values that stand for no update.
         fillable: gives the names of which "no update" may be read as what was there before: of
             signals the value, of events that they do not occur.
 
     Raises:
         NotPlainError: a column is something else, holds labels or payloads, or has gaps that may
-            matter.
+            matter; or stamps are dates.
         TraceError: an instant is not finite or out of range.
     """
-    layout = layout_of(list(columns), time, schema)
-    stamps, given = _array_of(columns[time])
-    if given is not None:
+    layout, columns = table.layout, table.columns
+    stamps, given = _array_of(columns[layout.stamps.column])
+    kinds = {"ns": "i", "iso": ""}.get(layout.stamps.unit, "if")
+    if given is not None or stamps.dtype.kind not in kinds:
         raise NotPlainError
     found = {}
     for column in layout.columns:
         if column.field is not None or column.kind is Kind.LABEL:
             raise NotPlainError
-        found[column.name] = _values(columns[column.name], column, schema, gaps, fillable)
+        cells = columns[layout.header[column.index]]
+        found[column.name] = _values(cells, column, schema, fillable)
     if any(len(column) != len(stamps) for column in found.values()):
         raise NotPlainError
-    if not layout.in_ticks:
-        return Block(ticks_of_column(stamps), found)
-    if stamps.dtype.kind != "i":
-        raise NotPlainError
-    return Block(ticks_in_range(stamps), found)
+    return Block(ticks_of_column(stamps, layout.stamps), found)
 
 
 def _values(
-    cells: Any, column: Column, schema: Schema, gaps: Gaps, fillable: Callable[[], frozenset[str]]
+    cells: Any, column: Column, schema: Schema, fillable: Callable[[], frozenset[str]]
 ) -> NDArray[Any]:
     """A column of which gaps hold what was there before."""
     some, given = _array_of(cells)
-    if gaps:
-        some, given = _without(some, given, gaps)
+    if schema.gaps:
+        some, given = _without(some, given, schema.gaps)
     values = _fitted(some, column.kind)
     if given is None:
         return values

@@ -1,19 +1,19 @@
-"""CSV: a header, a time column `t` or `t_ns`, a column per signal, event or payload field."""
+"""CSV: a header, a time column, a column per signal, event or payload field."""
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.gaps import NO_GAPS, Gaps
-from rvmon.readers.values import as_declared, is_whole, scalar_of_text, shorten
+from rvmon.readers.naming import aliases_of, stamps_among
+from rvmon.readers.values import as_declared, scalar_of_text, shorten
+from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Scalar, Value
-from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_text
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import ticks_of_cell
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,23 +33,25 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What the header says.
+    """What the header says, and how its rows are read.
 
     Attributes:
-        width: number of columns.
+        header: names of the columns.
         time: index of the time column.
-        in_ticks: whether its name ends in `_ns`: it holds ticks.
+        stamps: what it holds.
         signals: columns of signals.
         events: columns of events and of their payload fields.
         ignored: names of the columns that the spec does not declare.
+        gaps: values that stand for no update.
     """
 
-    width: int
+    header: tuple[str, ...]
     time: int
-    in_ticks: bool
+    stamps: Stamps
     signals: tuple[Column, ...]
     events: tuple[Column, ...]
     ignored: tuple[str, ...]
+    gaps: Gaps
 
     @property
     def columns(self) -> tuple[Column, ...]:
@@ -81,28 +83,24 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
         if name in seen:
             raise TraceError(f"column `{shorten(name)}` stands twice in the header")
         seen[name] = index
-    times = [name for name in ("t", "t_ns") if name in seen]
-    if len(times) != 1:
-        found = ", ".join(f"`{shorten(name)}`" for name in header[:8]) or "nothing"
-        raise TraceError(
-            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
-            f"in the header; found {'both' if times else found}{_other_separator(header)}"
-        )
-    return layout_of(header, times[0], schema)
+    stamps = stamps_among(header, schema, _other_separator(header))
+    return layout_of(header, stamps, schema)
 
 
-def layout_of(header: Sequence[str], time: str, schema: Schema) -> Layout:
+def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
     """Match names, none of which stands twice, with the declared ones.
 
     Args:
         header: of all columns, in order.
-        time: that of the time column, one of them; it is no signal.
-        schema: the declared names.
+        stamps: of the time column, one of them; it is no signal.
+        schema: the declared names, and what columns are called.
     """
+    aliases = aliases_of(schema)
     signals, events, ignored = [], [], []
-    for index, name in enumerate(header):
+    for index, column in enumerate(header):
+        name = aliases.get(column, column)
         event, _, field = name.rpartition(".")
-        if name == time:
+        if column == stamps.column:
             continue
         if name in schema.signals:
             signals.append(Column(index, name, None, schema.signals[name]))
@@ -111,14 +109,15 @@ def layout_of(header: Sequence[str], time: str, schema: Schema) -> Layout:
         elif field in schema.events.get(event, {}):
             events.append(Column(index, event, field, schema.events[event][field]))
         else:
-            ignored.append(name)
+            ignored.append(column)
     return Layout(
-        len(header),
-        header.index(time),
-        time.endswith("_ns"),
+        tuple(header),
+        header.index(stamps.column),
+        stamps,
         tuple(signals),
         tuple(events),
         tuple(ignored),
+        schema.gaps,
     )
 
 
@@ -140,22 +139,23 @@ def split_lines(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
             yield reader.line_num, [cell.strip() for cell in row]
 
 
-def read_row(row: list[str], layout: Layout, gaps: Gaps) -> tuple[int, dict[str, Value]]:
+def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
     """Read one row: ticks and what it updates; an empty cell is no update.
 
     Raises:
         TraceError: a cell is no value of its kind; the message names the column.
     """
-    if len(row) != layout.width:
-        raise TraceError(f"{len(row)} cells where the header has {layout.width}")
-    t = _ticks(row[layout.time], in_ticks=layout.in_ticks)
-    absent = "" if gaps.no_update is None else str(gaps.no_update)
+    if len(row) != len(layout.header):
+        raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}")
+    t = ticks_of_cell(row[layout.time], layout.stamps)
+    no_update = layout.gaps.no_update
+    absent = "" if no_update is None else str(no_update)
     given = (
         (column, _scalar(cell, column))
         for column in layout.columns
         if (cell := row[column.index]) and cell != absent
     )
-    return t, row_values(given, gaps)
+    return t, row_values(given, layout.gaps)
 
 
 def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Value]:
@@ -168,6 +168,7 @@ def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Val
         cells: those that are not absent.
         gaps: the values that stand for no update.
 
+    >>> from rvmon.trace.gaps import NO_GAPS
     >>> columns = [Column(1, "pick", None, Kind.BOOL), Column(2, "pick", "id", Kind.INT)]
     >>> [row_values(zip(columns, cells), NO_GAPS) for cells in ([True, 7.0], [False, 7], [1])]
     [{'pick': {'id': 7}}, {'pick': False}, {'pick': True}]
@@ -195,22 +196,8 @@ def _scalar(cell: str, column: Column) -> Scalar:
         raise TraceError(f"column `{column.called}`: {error}") from None
 
 
-def _ticks(cell: str, *, in_ticks: bool) -> int:
-    if not in_ticks:
-        return ticks_of_text(cell)
-    with suppress(ValueError):
-        # Python reads 1_000 as a number; no recording means it.
-        t = int(cell.replace("_", "?"))
-        if abs(t) < TIME_LIMIT:
-            return t
-    # Python reads no more than some thousand digits, which are a whole number as well.
-    if is_whole(cell):
-        raise TraceError(f"time `{shorten(cell)}` is out of range: at most 2**62 ns (146 years)")
-    raise TraceError(f"time `{shorten(cell)}` is not a whole number of nanoseconds")
-
-
 def csv_samples(
-    rows: Iterator[tuple[int, list[str]]], layout: Layout, gaps: Gaps = NO_GAPS
+    rows: Iterator[tuple[int, list[str]]], layout: Layout
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
     """Line number, ticks and values of each row.
 
@@ -219,7 +206,7 @@ def csv_samples(
     """
     for line, row in rows:
         try:
-            t, values = read_row(row, layout, gaps)
+            t, values = read_row(row, layout)
         except TraceError as error:
             raise TraceError(f"line {line}: {error}") from None
         yield line, t, values

@@ -6,52 +6,71 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.gaps import Gaps
-from rvmon.readers.rows import Row
+from rvmon.readers.rows import Row, Rows
 from rvmon.readers.values import as_declared, plain
+from rvmon.trace.gaps import Gaps
+from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.time import ticks_of_seconds
 
 
-def pair_rows(trace: Any, schema: Schema, gaps: Gaps) -> Iterator[Row]:
-    """Number from 0, ticks and values of each item, which has to be `(t, values)`, t in seconds.
+class PairRecording:
+    """Pairs `(t, values)`, t in seconds, as a recording.
 
     Names that are absent are no update, `None` and NaN are unknown.
 
-    Args:
-        trace: an iterable.
-        schema: the declared names; of others values are left as they are.
-        gaps: values that stand for no update.
-
-    Raises:
-        TraceError: an item is something else.
+    Attributes:
+        names: `None`: any may come.
+        end: `None`: it ends with its last item.
+        rows: what makes samples of it.
     """
-    for number, item in enumerate(trace):
-        match item:
-            case [t, Mapping() as values]:
-                yield number, ticks_of_seconds(t), _values(values, schema, gaps)
-            case _:
-                raise TraceError(
-                    f"item {number} of the trace: expected (t, values) with values by name, "
-                    f"found {item!r}"
-                )
+
+    names: frozenset[str] | None = None
+    end: int | None = None
+
+    def __init__(self, trace: Any, schema: Schema, *, ordered: bool = True) -> None:
+        """Take what can be gone through.
+
+        Args:
+            trace: an iterable.
+            schema: the declared names; of others values are left as they are.
+            ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+
+        Raises:
+            TraceError: it is no iterable.
+        """
+        if not isinstance(trace, Iterable):
+            raise TraceError(
+                "expected a path, columns by name (arrays, a table, a data frame) or (t, values) "
+                f"pairs, found {type(trace).__name__}"
+            )
+        self.rows = Rows(schema, "item", ordered=ordered)
+        self._trace = trace
+        self._schema = schema
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Samples, equal stamps merged.
+
+        Raises:
+            TraceError: an item is something else.
+        """
+        return self.rows.samples(self._read())
+
+    def _read(self) -> Iterator[Row]:
+        """Number from 0, ticks and values of each item."""
+        for number, item in enumerate(self._trace):
+            match item:
+                case [t, Mapping() as values]:
+                    yield number, ticks_of_seconds(t), _values(values, self._schema)
+                case _:
+                    raise TraceError(
+                        f"item {number} of the trace: expected (t, values) with values by name, "
+                        f"found {item!r}"
+                    )
 
 
-def expect_pairs(trace: Any) -> None:
-    """Refuse what cannot be gone through.
-
-    Raises:
-        TraceError: it is no iterable.
-    """
-    if not isinstance(trace, Iterable):
-        raise TraceError(
-            "expected a path, columns by name (arrays, a table, a data frame) or (t, values) "
-            f"pairs, found {type(trace).__name__}"
-        )
-
-
-def _values(values: Mapping[str, Any], schema: Schema, gaps: Gaps) -> dict[str, Any]:
-    found = {}
+def _values(values: Mapping[str, Any], schema: Schema) -> dict[str, Any]:
+    found, gaps = {}, schema.gaps
     for name, given in values.items():
         value = plain(given)
         if gaps and gaps.holds(value):

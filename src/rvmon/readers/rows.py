@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from rvmon.errors import TimeOrderError
 from rvmon.readers.alternation import Alternations
 from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
+from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema
@@ -26,6 +27,7 @@ class Rows:
 
     Attributes:
         count: of the rows that were read.
+        first: the instants of the first rows, ticks.
         alternations: how known and unknown values follow each other.
     """
 
@@ -35,6 +37,7 @@ class Rows:
         self._ordered = ordered
         self._conflicts = Conflicts()
         self.count = 0
+        self.first: list[int] = []
         self.alternations = Alternations()
 
     def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
@@ -43,7 +46,8 @@ class Rows:
         Raises:
             TimeOrderError: a row is before the one above it.
         """
-        self._conflicts, self.count, self.alternations = Conflicts(), 0, Alternations()
+        self._conflicts, self.alternations = Conflicts(), Alternations()
+        self.count, self.first = 0, []
         for sample in coalesce(self._in_order(rows), self._schema.events, self._conflicts):
             self.alternations.note(sample.values)
             yield sample
@@ -59,6 +63,8 @@ class Rows:
                 )
             last = t
             self.count += 1
+            if len(self.first) < LOOKED_AT:
+                self.first.append(t)
             # Before equal stamps are merged: what is no update is no other value, either.
             yield Sample(t, updates_in(values, self._schema.ignoring))
 
@@ -69,25 +75,3 @@ class Rows:
     def told(self, health: Sequence[Health]) -> tuple[Health, ...]:
         """What a monitor found about these samples, with what was noted here."""
         return (*self.alternations.remarked(health), *self.conflicts())
-
-
-class RowRecording:
-    """What a program holds, as a recording.
-
-    Attributes:
-        names: declared names that have a source; `None` if any may come.
-        end: `None`: it ends with its last sample.
-        rows: what makes samples of it.
-    """
-
-    end: int | None = None
-
-    def __init__(
-        self, names: frozenset[str] | None, read: Callable[[], Iterable[Row]], rows: Rows
-    ) -> None:
-        self.names = names
-        self.rows = rows
-        self._read = read
-
-    def __iter__(self) -> Iterator[Sample]:
-        return self.rows.samples(self._read())

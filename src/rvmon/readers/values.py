@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from contextlib import suppress
 from typing import Any, assert_never
@@ -10,6 +9,7 @@ from typing import Any, assert_never
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
+from rvmon.trace.stamps import is_whole
 
 TRUE_WORDS = frozenset({"true", "True", "TRUE", "1"})
 FALSE_WORDS = frozenset({"false", "False", "FALSE", "0"})
@@ -118,11 +118,6 @@ DESCRIPTION = {
     Kind.REAL: "a number",
     Kind.LABEL: "a label",
 }
-
-
-def is_whole(text: str) -> bool:
-    """Whether the text is a whole number, however many digits it has."""
-    return re.fullmatch(r"\s*[+-]?\d+\s*", text) is not None
 
 
 def shorten(text: str, width: int = 40) -> str:

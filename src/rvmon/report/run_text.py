@@ -64,7 +64,7 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     if report.goals:
         console.print(_goals_text(report.goals))
     for line in health_lines(report.health):
-        console.print(line)
+        console.print(line, markup=False)  # columns have names such as `speed [m/s]`
 
 
 def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
@@ -170,6 +170,9 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
     ignored = [health for health in found if health.kind is HealthKind.IGNORED]
     for health in found:
         if health in ignored:
+            continue
+        if health.kind is HealthKind.UNIT:
+            yield f"  {health.name}  warning: {health.remark}"
             continue
         first = "" if health.first is None else f", first at {format_ticks(health.first)}"
         times = "once" if health.count == 1 else f"{health.count} times"

@@ -129,7 +129,14 @@ def test_never_triggered_is_an_error_on_request(files, capsys):
     """--require-triggered fails where no recording triggered a requirement."""
     assert main(["run", "door.rv", "NT.csv", "--require-triggered"]) == 1
     assert "D1 was triggered in no recording" in capsys.readouterr().err
-    assert main(["run", "door.rv", "NT.csv", "P.csv", "--require-triggered", "D1"]) == 0
+    assert main(["run", "door.rv", "NT.csv", "P.csv", "--require-triggered=D1"]) == 0
+
+
+@pytest.mark.parametrize("option", ["--require-triggered", "--require", "--allow-missing"])
+def test_an_option_that_can_go_without_a_value_takes_no_other_word(files, option):
+    """It stands before SPEC as well as behind it: its value follows a `=`."""
+    assert main(["run", option, "door.rv", "P.csv"]) == 0
+    assert main(["run", "door.rv", option, "P.csv"]) == 0
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton", "c"])
@@ -209,9 +216,10 @@ def test_binary_standard_input_is_told(files, monkeypatch, capsys):
 
 def test_strict_columns_refuses_what_the_spec_does_not_name(files, capsys):
     """A column too many or too few is an error only under --strict-columns."""
-    (files / "more.csv").write_text("t,closed,battery\n0,1,5\n")
+    (files / "more.csv").write_text("t,closed,knock,battery\n0,1,,5\n")
     assert main(["run", "door.rv", "more.csv"]) == 0
     assert "battery" in capsys.readouterr().out
+    (files / "more.csv").write_text("t,closed,battery\n0,1,5\n")
     assert main(["run", "door.rv", "more.csv", "--strict-columns"]) == 2
     told = capsys.readouterr().err
     assert "battery" in told
@@ -219,11 +227,12 @@ def test_strict_columns_refuses_what_the_spec_does_not_name(files, capsys):
 
 
 def test_an_absent_column_is_told(files, capsys):
-    """A declared event without a column is unknown, and the health list says so."""
+    """A declared event without a column is unknown if it may be: health and exit code say so."""
     (files / "less.csv").write_text("t,closed\n0,1\n5,0\n")
-    assert main(["run", "door.rv", "less.csv"]) == 0
-    shown = capsys.readouterr().out
-    assert "knock  absent" in shown
+    assert main(["run", "door.rv", "less.csv", "--allow-missing=knock"]) == 1
+    shown = capsys.readouterr()
+    assert "knock  absent" in shown.out
+    assert "less.csv has no column for `knock`" in shown.err
 
 
 def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):

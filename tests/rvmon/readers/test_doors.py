@@ -34,9 +34,13 @@ requirement R3
 """
 
 
+def judged(spec, trace, **arguments):
+    return spec.evaluate(trace, allow_missing=True, **arguments)
+
+
 def told(spec, trace, **arguments) -> str:
     try:
-        return same_doubt(spec.evaluate(trace, **arguments).to_json())
+        return same_doubt(judged(spec, trace, **arguments).to_json())
     except RvmonError as error:
         return type(error).__name__
 
@@ -71,9 +75,9 @@ def test_payloads_come_as_columns(tmp_path):
     (tmp_path / "a.csv").write_text("t,gear,pick.id\n0,1,\n1,1,3\n2,1,\n")
     parquet.write_table(pyarrow.table(PICKS), tmp_path / "a.parquet")
     for trace in (PICKS, pyarrow.table(PICKS), tmp_path / "a.csv", tmp_path / "a.parquet"):
-        assert base().evaluate(trace).verdicts["R2"] == "F"
+        assert judged(base(), trace).verdicts["R2"] == "F"
     for flags, verdict in (([None, False, None], "NT"), ([False, True, False], "F")):
-        assert base().evaluate(PICKS | {"pick": flags}).verdicts["R2"] == verdict
+        assert judged(base(), PICKS | {"pick": flags}).verdicts["R2"] == verdict
 
 
 @pytest.mark.parametrize(
@@ -90,14 +94,14 @@ def test_values_are_taken_as_declared(columns):
     plain = {"t": [0, 1, 2], "on": [True, True, False], "gear": [2, 3, 3]}
     modes = {"mode": np.array(["busy", "idle", "busy"])}
     assert told(base(), plain | columns | modes) == told(base(), plain | {"mode": [*modes["mode"]]})
-    assert base().evaluate(plain | columns | modes).verdicts["R3"] == "F"
+    assert judged(base(), plain | columns | modes).verdicts["R3"] == "F"
 
 
 @pytest.mark.parametrize(("name", "wrong"), [("on", 2), ("gear", 2.5), ("mode", "off")])
 def test_what_is_not_declared_so_is_refused(name, wrong):
     """The sample, the name and what was expected are said."""
     with pytest.raises(TraceError, match=f"sample at 1 s: `{name}`: expected .*, found {wrong!r}"):
-        base().evaluate({"t": [0, 1], name: [None, wrong]})
+        judged(base(), {"t": [0, 1], name: [None, wrong]})
 
 
 MERGED = {
@@ -122,17 +126,17 @@ def doors_of(table, folder):
 def test_a_merge_of_topics_is_told(tmp_path):
     """NaN in every other row is unknown, and how to say that it is not stands in the health."""
     for trace in doors_of(MERGED, tmp_path):
-        report = base().evaluate(trace, sources=["speed", "gear"])
+        report = judged(base(), trace, sources=["speed", "gear"])
         assert report.verdicts["R1"] == "I"
         found = {one.name: one.remark for one in report.health if one.kind in ("nan", "none")}
         assert all('nan="no update"' in remark for remark in found.values())
         assert set(found) == {"speed", "gear"}
-        report = base().evaluate(trace, sources=["speed", "gear"], nan="no update")
+        report = judged(base(), trace, sources=["speed", "gear"], nan="no update")
         assert report.verdicts["R1"] == "P"
         assert not [one for one in report.health if one.kind in ("nan", "none")]
     dropout = MERGED | {"speed": [1.0, NAN, NAN, NAN, NAN, 1.0, 1.0, 1.0]}
     for trace in doors_of(dropout, tmp_path):
-        health = base().evaluate(trace).health
+        health = judged(base(), trace).health
         assert {one.remark for one in health if one.name == "speed"} == {""}
 
 
@@ -143,22 +147,22 @@ def test_a_value_may_stand_for_no_update():
             table = {"t": np.arange(3.0), "speed": column}
             plain = {"t": [0, 1, 2], "speed": [1.0, None, 2.0]}
             assert told(base(), table, no_update=gap) == told(base(), plain)
-    assert base().evaluate(MERGED, no_update=NAN).verdicts["R1"] == "P"
+    assert judged(base(), MERGED, no_update=NAN).verdicts["R1"] == "P"
     for wrong in ({"nan": "gap"}, {"no_update": [1]}):
         with pytest.raises(UnknownNameError, match=r"no reading of NaN|is no value of a cell"):
-            base().evaluate(MERGED, **wrong)
+            judged(base(), MERGED, **wrong)
 
 
 def test_sources_of_a_stream_can_be_named():
     """An event that never comes is false, unless it has no source."""
     spec = rvmon.loads("spec s\nsignal p : bool\nevent e\nrequirement R1\n  always not e\n")
     pairs = [(0, {"p": True}), (1, {"p": True})]
-    assert spec.evaluate(pairs).verdicts["R1"] == "P"
-    assert spec.evaluate(pairs, sources=["p"]).verdicts["R1"] == "I"
-    assert spec.evaluate({"t": [0, 1], "p": [True, True]}).verdicts["R1"] == "I"
-    assert spec.evaluate({"t": [0, 1]}, sources=["e"]).verdicts["R1"] == "P"
+    assert judged(spec, pairs).verdicts["R1"] == "P"
+    assert judged(spec, pairs, sources=["p"]).verdicts["R1"] == "I"
+    assert judged(spec, {"t": [0, 1], "p": [True, True]}).verdicts["R1"] == "I"
+    assert judged(spec, {"t": [0, 1]}, sources=["e"]).verdicts["R1"] == "P"
     with pytest.raises(UnknownNameError, match="`z`: there are p, e"):
-        spec.evaluate(pairs, sources=["z"])
+        judged(spec, pairs, sources=["z"])
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton"])
@@ -166,19 +170,19 @@ def test_equal_stamps_are_merged_and_the_order_is_kept(engine, tmp_path):
     """The last of two values wins and is told; what goes backwards is an error."""
     table = {"t": [0.0, 1.0, 1.0], "speed": [1.0, 9.0, 2.0]}
     for trace in doors_of(table, tmp_path):
-        report = base().evaluate(trace, engine=engine)
+        report = judged(base(), trace, engine=engine)
         assert report.verdicts["R1"] == "P"
         [conflict] = [one for one in report.health if one.kind == "conflict"]
         assert (conflict.name, conflict.first) == ("speed", 10**9)
     for trace in doors_of(table | {"t": [0.0, 2.0, 1.0]}, tmp_path):
         with pytest.raises(TraceError, match="time goes backwards, from 2 s to 1 s"):
-            base().evaluate(trace, engine=engine)
+            judged(base(), trace, engine=engine)
 
 
 def test_ticks_are_found_by_the_name_of_their_column():
     """As in files, `t_ns` is the time where there is no `t`."""
     table = {"t_ns": np.array([0, 5]), "speed": np.array([1.0, 9.0])}
-    assert base().evaluate(table).attempts[0].decided == 5
+    assert judged(base(), table).attempts[0].decided == 5
 
 
 def test_frames_of_pandas():
@@ -187,12 +191,12 @@ def test_frames_of_pandas():
     left = pandas.DataFrame({"t": [0.0, 1.0, 2.0, 3.0], "speed": [1.0, 1.0, 9.0, 1.0]})
     right = pandas.DataFrame({"t": [0.5, 1.5, 2.5, 3.5], "gear": [1, 2, 3, 4]})
     frame = left.merge(right, how="outer", on="t").sort_values("t")
-    told_by = {one.name: one.remark for one in base().evaluate(frame).health}
+    told_by = {one.name: one.remark for one in judged(base(), frame).health}
     assert 'nan="no update"' in told_by["speed"]
     assert told(base(), frame, nan="no update") == told(base(), frame.convert_dtypes())
     assert told(base(), frame.set_index("t")) == told(base(), frame)
     with pytest.raises(TraceError, match="column `t` stands twice"):
-        base().evaluate(pandas.concat([left, left], axis=1))
+        judged(base(), pandas.concat([left, left], axis=1))
 
 
 def test_frames_of_polars():

@@ -26,6 +26,11 @@ class Gaps:
     def __bool__(self) -> bool:
         return self.nan or self.no_update is not None
 
+    @property
+    def reading_of_nan(self) -> str:
+        """One of `READINGS_OF_NAN`."""
+        return READINGS_OF_NAN[self.nan]
+
     def holds(self, value: Any) -> bool:
         """Whether a value of a cell, or of a sample, says nothing.
 
@@ -64,4 +69,4 @@ def gaps_of(nan: str, no_update: Any) -> Gaps:
         )
     if value is not None and value != value:
         return Gaps(nan=True)
-    return Gaps(value, nan == "no update")
+    return Gaps(value, nan == READINGS_OF_NAN[True])
