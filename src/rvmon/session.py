@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from rvmon.errors import UnknownNameError
+from rvmon.spec.asked import requirements_asked, sources_asked
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -142,29 +142,13 @@ class Spec:
         """
         from rvmon.monitor import build_monitor
 
-        given, chosen = self._sources(sources), self._chosen(only)
         return build_monitor(
-            self._compiled, only=chosen, engine=engine, settle=settle, sources=given
+            self._compiled,
+            only=only,
+            engine=engine,
+            settle=settle,
+            sources=sources_asked(self.checked, sources),
         )
-
-    def _sources(self, sources: Iterable[str] | None) -> frozenset[str] | None:
-        """The names that can arrive, all of which are declared."""
-        given = None if sources is None else frozenset(sources)
-        declared = [*self.schema.signals, *self.schema.events]
-        unknown = sorted((given or frozenset()).difference(declared))
-        if unknown:
-            known = ", ".join(declared)
-            raise UnknownNameError(f"no signal or event named `{unknown[0]}`: there are {known}")
-        return given
-
-    def _chosen(self, only: Iterable[str] | None) -> tuple[str, ...] | None:
-        """The ids that were asked for, all of which there are."""
-        chosen = None if only is None else tuple(only)
-        for name in chosen or ():
-            if name not in self.requirements:
-                known = ", ".join(self.requirements)
-                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
-        return chosen
 
     def restore(self, data: bytes) -> Monitor:
         """Make the monitor that a snapshot was taken of; it goes on as that would have.
@@ -228,7 +212,6 @@ class Spec:
         """
         from rvmon.monitor.finished import evaluate_trace
 
-        _expect_engine(engine)
         return evaluate_trace(
             self._compiled,
             trace,
@@ -240,7 +223,7 @@ class Spec:
                 sources=sources,
                 allow_missing=allow_missing,
             ),
-            only=self._chosen(only),
+            only=requirements_asked(self.checked, only),
             engine=engine,
             until=None if until is None else ticks_of_seconds(until),
         )
@@ -255,7 +238,7 @@ class Spec:
         from rvmon.readers.reading import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
-        return Reading(self.reading(**told).schema, self._sources(sources), allowed)
+        return Reading(self.reading(**told).schema, sources_asked(self.checked, sources), allowed)
 
     def names_read(self, *, only: Iterable[str] | None = None) -> tuple[str, ...]:
         """The signals and events that requirements read.
@@ -268,7 +251,7 @@ class Spec:
         """
         from rvmon.monitor.missing import names_read
 
-        return tuple(names_read(self._compiled, self._chosen(only)))
+        return tuple(names_read(self._compiled, requirements_asked(self.checked, only)))
 
     def expect_names(
         self,
@@ -325,19 +308,15 @@ class Spec:
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
         ['P', 'F']
         """
-        from rvmon.monitor.finished import evaluate_trace
-        from rvmon.monitor.many import evaluate_elsewhere
+        from rvmon.monitor.many import evaluate_traces
 
-        _expect_engine(engine)
-        chosen = self._chosen(only)
-        told = self._reading(**reading)
-        if jobs > 1:
-            return evaluate_elsewhere(
-                self._compiled, traces, told, only=chosen, engine=engine, jobs=jobs
-            )
-        return (
-            evaluate_trace(self._compiled, trace, told, only=chosen, engine=engine)
-            for trace in traces
+        return evaluate_traces(
+            self._compiled,
+            traces,
+            self._reading(**reading),
+            only=requirements_asked(self.checked, only),
+            engine=engine,
+            jobs=jobs,
         )
 
     def evaluate_file(
@@ -365,7 +344,6 @@ class Spec:
         """
         from rvmon.monitor.batch_file import evaluate_file
 
-        _expect_engine(engine)
         return evaluate_file(
             self._compiled,
             self.schema,
@@ -411,7 +389,7 @@ class Spec:
         from rvmon.monitor.finished import open_trace
         from rvmon.monitor.robustness import margins_of
 
-        chosen = self._chosen(only)
+        chosen = requirements_asked(self.checked, only)
         recording = open_trace(self._compiled, trace, self._reading(**reading), only=chosen)
         return margins_of(
             self._compiled,
@@ -443,9 +421,12 @@ class Spec:
         """
         from rvmon.monitor.robustness import RobustnessMonitor
 
-        given, chosen = self._sources(sources), self._chosen(only)
         return RobustnessMonitor(
-            self._compiled, only=chosen, settle=settle, sources=given, streams=streams
+            self._compiled,
+            only=requirements_asked(self.checked, only),
+            settle=settle,
+            sources=sources_asked(self.checked, sources),
+            streams=streams,
         )
 
     def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:
@@ -460,9 +441,3 @@ class Spec:
 
         reading.setdefault("allow_missing", True)
         return open_trace(self._compiled, trace, self._reading(**reading), only=None)
-
-
-def _expect_engine(name: str) -> None:
-    from rvmon.monitor.compiled import ALL_ENGINES, expect_engine
-
-    expect_engine(name, ALL_ENGINES)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.batch import evaluate_plain
-from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.readers.block_readers import reader_of
 from rvmon.readers.blocks import NotPlainError
@@ -61,7 +61,11 @@ def evaluate_file(
     Returns:
         `None` where rows have to be read and judged one by one: the file is not plain, or each row
         may matter.
+
+    Raises:
+        UnknownNameError: there is no such engine.
     """
+    expect_engine(engine, ALL_ENGINES)
     seen = Counter[str]()
     reader = reader_of(path, schema, seen)
     if reader is None:

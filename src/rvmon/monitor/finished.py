@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.missing import expect_names
 from rvmon.readers.any_trace import recording_of
 from rvmon.readers.columns import TableRecording
@@ -61,6 +61,7 @@ def evaluate_trace(
         engine: `auto` or the name of one.
         until: the end of the trace in ticks, if after its last sample.
     """
+    expect_engine(engine, ALL_ENGINES)
     if only == () and engine == "c":
         engine = "auto"  # nothing to compile
     recording = open_trace(compiled, trace, reading, only=only)

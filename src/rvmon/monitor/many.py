@@ -14,7 +14,7 @@ from rvmon.readers.reading import Reading
 from rvmon.verdict.report import Report
 
 
-def evaluate_elsewhere(
+def evaluate_traces(
     compiled: CompiledSpec,
     traces: Iterable[Any],
     reading: Reading,
@@ -23,16 +23,20 @@ def evaluate_elsewhere(
     engine: str,
     jobs: int,
 ) -> Iterator[Report]:
-    """Judge traces in other processes; the reports come in their order.
+    """Judge traces; the reports come in their order.
 
     Args:
-        compiled: the specification; each process compiles it for its first trace.
-        traces: what can be pickled.
+        compiled: the specification; another process compiles it for its first trace.
+        traces: for several processes what can be pickled.
         reading: how they are read.
         only: ids of the requirements; default all.
         engine: `auto` or the name of one.
-        jobs: so many processes.
+        jobs: processes; 1 judges in this one.
     """
+    if jobs < 2:
+        for trace in traces:
+            yield evaluate_trace(compiled, trace, reading, only=only, engine=engine)
+        return
     sent = pickle.dumps((compiled.checked, reading))
     with ProcessPoolExecutor(jobs) as pool:
         yield from pool.map(partial(_evaluate_here, sent, only, engine), traces)

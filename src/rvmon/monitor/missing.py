@@ -8,11 +8,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.diagnostics.nearest import MOST_NAMES, did_you_mean, nearest
-from rvmon.errors import MissingNameError, UnknownNameError
+from rvmon.diagnostics.nearest import MOST_NAMES, nearest
+from rvmon.errors import MissingNameError
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.values import shorten
+from rvmon.spec.asked import sources_asked
 
 if TYPE_CHECKING:
     from rvmon.readers.columns import TableRecording
@@ -60,20 +61,12 @@ def expect_names(
         MissingNameError: it lacks others, too; each is told with the column that is most like it.
         UnknownNameError: a name that it may lack is not declared.
     """
-    spec = compiled.checked
-    declared = [*spec.signals, *spec.events]
-    if isinstance(allowed, bool):
-        allowed = declared if allowed else ()
-    allowed = tuple(allowed)
-    for name in allowed:
-        if name not in declared:
-            meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
-            raise UnknownNameError(f"no signal or event named `{name}`: {meant}")
+    some = None if isinstance(allowed, bool) else sources_asked(compiled.checked, allowed)
     names = recording.names
     if names is None:
         return ()
     lacking = {name: ids for name, ids in names_read(compiled, only).items() if name not in names}
-    refused = [name for name in lacking if name not in allowed]
+    refused = [] if allowed is True else [name for name in lacking if name not in (some or ())]
     if refused:
         place = f"{recording.path}: " if isinstance(recording, FileRecording) else ""
         free = list(recording.ignored)

@@ -171,6 +171,8 @@ def _other_unit(stamp: object, stamps: Stamps) -> str:
         return f": is this ISO 8601? `--time {stamps.column}:iso`"
     with suppress(ValueError):
         number = abs(float(str(stamp)))
+        if stamps.unit == "ns" and math.isfinite(number) and not number.is_integer():
+            return f". Are these seconds? `--time {stamps.column}:s`"
         for unit, (least, most) in _EPOCHS.items():
             if stamps.unit == "s" and least <= number < most:
                 return f". Are these {UNIT_WORDS[unit]}? `--time {stamps.column}:{unit}`"

@@ -9,7 +9,7 @@ import pytest
 from pyarrow import parquet
 
 import rvmon
-from rvmon.errors import RvmonError, TraceError, UnknownNameError
+from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
 from rvmon.session import Spec
 from rvmon.testing.differential import cases_of
 from rvmon.testing.doors import content_of, doors, same_doubt, whole
@@ -163,6 +163,29 @@ def test_sources_of_a_stream_can_be_named():
     assert judged(spec, {"t": [0, 1]}, sources=["e"]).verdicts["R1"] == "P"
     with pytest.raises(UnknownNameError, match="`z`: there are p, e"):
         judged(spec, pairs, sources=["z"])
+
+
+def test_all_that_read_recordings_are_told_alike(tmp_path):
+    """One trace, many traces here or elsewhere, robustness, the bare recording."""
+    spec = rvmon.loads("spec s\nsignal x : real\nsignal y : real\nrequirement R1\n  always x < 3\n")
+    (tmp_path / "a.csv").write_text("ms,X\n0,1\n1,nan\n2,-1\n3,2\n")
+    table = {"ms": [0, 1, 2, 3], "X": [1.0, NAN, -1.0, 2.0]}
+    how = {"time": "ms:ms", "columns": {"x": "X"}, "nan": "no update", "no_update": -1}
+    for trace in (table, tmp_path / "a.csv"):
+        report = spec.evaluate(trace, **how)
+        assert (report.verdicts["R1"], report.end) == ("P", 3_000_000)
+        assert [*spec.evaluate_many([trace], **how)] == [report]
+        assert [*spec.evaluate_many([trace] * 2, jobs=2, **how)] == [report] * 2
+        assert spec.reading(**how).evaluate(trace) == report
+        assert spec.reading(**how).evaluate(trace, nan="unknown").verdicts["R1"] == "I"
+        recording = spec.recording(trace, sources=["x"], **how)
+        assert [sample.values for sample in recording] == [{"x": 1.0}, {}, {}, {"x": 2.0}]
+        assert recording.names == {"x"}
+        assert spec.robustness(trace, **how).attempts["R1", 1].kept == 1
+        with pytest.raises(MissingNameError, match="`x`"):
+            spec.robustness(trace, time="ms:ms")
+        with pytest.raises(MissingNameError, match="`x`"):
+            spec.recording(trace, time="ms:ms", allow_missing=["y"])
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton"])
