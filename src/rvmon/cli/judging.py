@@ -11,6 +11,7 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from rvmon.cli.progress import shown_while_reading
+from rvmon.cli.reading import opened
 from rvmon.cli.second_look import can_be_read_again, second_look
 from rvmon.errors import TraceError
 from rvmon.loading import load
@@ -122,7 +123,7 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         if not again and trace.endswith((".csv", ".parquet")):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
         ordered = spec.checked.max_delay is None
-        recording = _opened(spec, trace)
+        recording = opened(spec, trace)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
         missing = spec.expect_names(
@@ -171,15 +172,11 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
     return Judged(trace, replace(report, trace=trace, health=health), missing=missing)
 
 
-def _opened(spec: Spec, trace: str) -> FileRecording:
-    return FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)
-
-
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
     """What is decided up to the place where a recording breaks off."""
     found: list[Attempt] = []
     with suppress(TraceError):
-        recording = _opened(spec, trace)
+        recording = opened(spec, trace)
         monitor = spec.monitor(only=options.only, sources=recording.names)
         for sample in recording:
             found.extend(monitor.step_ns(sample.t, sample.values))

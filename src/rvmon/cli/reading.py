@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import argparse
 
     from rvmon.readers.reading import Telling
+    from rvmon.readers.recording import FileRecording
     from rvmon.session import Spec
 
 OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
@@ -115,7 +116,11 @@ def reading_words(arguments: argparse.Namespace) -> list[str]:
     words = time_words(arguments)
     for text in arguments.map:
         words += ["--map", text]
-    return words if arguments.nan is None else [*words, "--nan", arguments.nan]
+    if arguments.nan is not None:
+        words += ["--nan", arguments.nan]
+    if arguments.allow_missing is not None:
+        words.append(f"--allow-missing={arguments.allow_missing}".rstrip("="))
+    return words
 
 
 def reading_arguments(arguments: argparse.Namespace) -> Telling:
@@ -127,3 +132,14 @@ def reading_arguments(arguments: argparse.Namespace) -> Telling:
 def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
     """The specification for recordings that tell things as the command line says."""
     return spec.reading(**reading_arguments(arguments))
+
+
+def opened(spec: Spec, trace: str) -> FileRecording:
+    """The recording at a path, for a specification that knows how it tells things.
+
+    Raises:
+        TraceError: it cannot be opened, or its header is wrong.
+    """
+    from rvmon.readers.recording import FileRecording
+
+    return FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import instant
-from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, reading_spec
+from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -60,14 +60,13 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.explain.dissect import dissect
     from rvmon.explain.miss import nearest_miss
     from rvmon.loading import load
-    from rvmon.readers.recording import FileRecording
     from rvmon.trace.time import ticks_of_seconds
 
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     name, number = _named(arguments.attempt, spec)
-    recording = FileRecording(arguments.trace, spec.schema, ordered=spec.checked.max_delay is None)
+    recording = opened(spec, arguments.trace)
     allowed = allowed_names(arguments.allow_missing)
     spec.expect_names(recording, only=[name], allow_missing=allowed)
     until = None if arguments.until is None else ticks_of_seconds(arguments.until)
