@@ -92,7 +92,7 @@ def _told_differences(compiled: CompiledSpec, case: Case, report: Report) -> Ite
 
 def _without_doubt(attempt: Attempt) -> Attempt:
     """The record without the position at which unknown input was noticed."""
-    if attempt.decision is not Decision.OPEN or " unknown at " not in attempt.reason:
+    if attempt.decision is not Decision.OPEN or " not known " not in attempt.reason:
         return attempt
     return replace(attempt, reason="it was unknown")
 

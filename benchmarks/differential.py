@@ -32,7 +32,7 @@ MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeM
 _ENGINES = f"""some of {", ".join(FORMS)}; those of `Spec.monitor` may be followed by
 +{NEXT} (samples come in portions, settled by the next stamp), +{INTERRUPT} (put away and taken up
 again at random points), or both"""
-FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale")
+FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale", "ignoring")
 
 
 def run_part(

@@ -23,7 +23,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
-    from rvmon.errors import ModelError, RvmonError, SpecError, TimeOrderError, TraceError
+    from rvmon.errors import (
+        MissingNameError,
+        ModelError,
+        RvmonError,
+        SpecError,
+        TimeOrderError,
+        TraceError,
+    )
     from rvmon.loading import load, loads
     from rvmon.monitor import Monitor
     from rvmon.session import Spec
@@ -38,6 +45,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Attempt",
     "Diagnostic",
+    "MissingNameError",
     "ModelError",
     "Monitor",
     "Report",
@@ -58,6 +66,7 @@ __all__ = [
 _HOMES = {
     "Attempt": "rvmon.verdict.attempt",
     "Diagnostic": "rvmon.diagnostics.diagnostic",
+    "MissingNameError": "rvmon.errors",
     "ModelError": "rvmon.errors",
     "Monitor": "rvmon.monitor",
     "Report": "rvmon.verdict.report",

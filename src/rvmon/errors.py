@@ -6,7 +6,8 @@
     ├── SpecError(ValueError)        a specification is wrong; carries all diagnostics
     ├── ModelError(ValueError)       a model or query is wrong; carries all diagnostics
     ├── TraceError(ValueError)       a recording or a sample is wrong; names file and line
-    │   └── TimeOrderError           a sample's time is not after the one before
+    │   ├── TimeOrderError           a sample's time is not after the one before
+    │   └── MissingNameError         a recording has no column for a name that is read
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
     └── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
 """
@@ -51,6 +52,10 @@ class TraceError(RvmonError, ValueError):
 
 class TimeOrderError(TraceError):
     """A sample's time is not after that of the sample before."""
+
+
+class MissingNameError(TraceError):
+    """A recording in columns lacks names that the judged requirements read; it lists them."""
 
 
 class UnknownNameError(RvmonError, KeyError):

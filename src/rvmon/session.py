@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, lru_cache, partial
+from copy import copy
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
-from rvmon.errors import UnknownNameError
+from rvmon.spec.asked import requirements_asked, sources_asked
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.measured import Margins
     from rvmon.monitor.robustness import RobustnessMonitor
+    from rvmon.readers.columns import TableRecording
+    from rvmon.readers.reading import Reading, ReadingArguments, Telling
+    from rvmon.readers.recording import FileRecording
     from rvmon.spec.checked import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
@@ -47,14 +51,53 @@ class Spec:
 
     @cached_property
     def schema(self) -> Schema:
-        """The declared signals and events with the kinds of their values."""
+        """The declared names with the kinds of their values, and what recordings call them."""
         return Schema(
             {name: signal.type.kind for name, signal in self.checked.signals.items()},
             {
                 name: {field: type_.kind for field, type_ in event.fields.items()}
                 for name, event in self.checked.events.items()
             },
+            self.checked.ignoring,
         )
+
+    def reading(
+        self,
+        *,
+        time: str | None = None,
+        columns: Mapping[str, str] | None = None,
+        nan: str | None = None,
+        no_update: Any = None,
+    ) -> Spec:
+        r"""The same specification, for recordings that tell things otherwise.
+
+        Args:
+            time: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with `s`, `ms`,
+                `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name ends in
+                `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
+            columns: by declared name, of a payload's field `event.field`, the column.
+            nan: what NaN says: `unknown`, which is the default, or `no update`, as in a merge of
+                topics.
+            no_update: a further value that stands for no update; in tables `None`, nulls and masked
+                values do anyway.
+
+        Raises:
+            UnknownNameError: `columns` names what is not declared, `nan` what does not exist.
+            RvmonError: `columns` names a column twice.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
+        >>> spec = spec.reading(time="stamp:ms", columns={"p": "Is P"})
+        >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
+        20000000
+        """
+        from rvmon.readers.naming import told_as
+
+        other = copy(self)
+        other.__dict__["schema"] = told_as(
+            self.schema, time=time, columns=columns, nan=nan, no_update=no_update
+        )
+        return other
 
     @cached_property
     def _compiled(self) -> CompiledSpec:
@@ -99,29 +142,13 @@ class Spec:
         """
         from rvmon.monitor import build_monitor
 
-        given, chosen = self._sources(sources), self._chosen(only)
         return build_monitor(
-            self._compiled, only=chosen, engine=engine, settle=settle, sources=given
+            self._compiled,
+            only=only,
+            engine=engine,
+            settle=settle,
+            sources=sources_asked(self.checked, sources),
         )
-
-    def _sources(self, sources: Iterable[str] | None) -> frozenset[str] | None:
-        """The names that can arrive, all of which are declared."""
-        given = None if sources is None else frozenset(sources)
-        declared = [*self.schema.signals, *self.schema.events]
-        unknown = sorted((given or frozenset()).difference(declared))
-        if unknown:
-            known = ", ".join(declared)
-            raise UnknownNameError(f"no signal or event named `{unknown[0]}`: there are {known}")
-        return given
-
-    def _chosen(self, only: Iterable[str] | None) -> tuple[str, ...] | None:
-        """The ids that were asked for, all of which there are."""
-        chosen = None if only is None else tuple(only)
-        for name in chosen or ():
-            if name not in self.requirements:
-                known = ", ".join(self.requirements)
-                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
-        return chosen
 
     def restore(self, data: bytes) -> Monitor:
         """Make the monitor that a snapshot was taken of; it goes on as that would have.
@@ -141,70 +168,136 @@ class Spec:
         self,
         trace: Any,
         *,
-        time: str = "t",
+        time: str | None = None,
+        columns: Mapping[str, str] | None = None,
+        nan: str | None = None,
+        no_update: Any = None,
+        sources: Iterable[str] | None = None,
+        allow_missing: bool | Iterable[str] = False,
         engine: str = "auto",
         only: Iterable[str] | None = None,
         until: float | None = None,
     ) -> Report:
-        """Judge a finished trace.
+        r"""Judge a finished trace; the same content gives the same records, whatever holds it.
 
         Args:
-            trace: a path (`.csv`, `.jsonl`, `.parquet`), columns by name (arrays, an Arrow table),
-                a `Recording`, or an iterable of `(t, values)` with t in seconds.
-            time: the time column of columns, no signal; if its name ends in `_ns`, integer ticks.
+            trace: a path (`.csv`, `.jsonl`, `.parquet`), a table (arrays or lists by name, an
+                Arrow table, a data frame), a `Recording`, or an iterable of `(t, values)` with t
+                in seconds.
+            time: the time column of a table or a file, no signal, and its unit; see `reading`.
+            columns: what columns are called that have other names than declared; see `reading`.
+            nan: what NaN says: `unknown`, or `no update`, as in a merge of topics; see `reading`.
+            no_update: a further value that stands for no update; see `reading`.
+            sources: the signals and events that can arrive, the others are unknown throughout;
+                default the columns that there are, of JSON lines and pairs all that is declared.
+            allow_missing: whether a trace in columns may lack names that the requirements read, or
+                the names that it may lack: what reads them is inconclusive. If the sources are
+                named, it may.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
 
         Raises:
+            MissingNameError: a trace in columns has none for a name that a requirement reads.
             TraceError: the trace cannot be read; place and cause are named.
-            UnknownNameError: `only` or `engine` names what does not exist.
+            UnknownNameError: `only`, `engine`, `sources` or another argument names what does not
+                exist.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
+        >>> merged = {"t": [0, 1, 2], "x": [1.0, float("nan"), 2.0]}
+        >>> [spec.evaluate(merged, nan=nan).verdicts["R1"] for nan in ("unknown", "no update")]
+        [<Verdict.INCONCLUSIVE: 'I'>, <Verdict.PASS: 'P'>]
         """
-        _expect_engine(engine)
-        chosen = self._chosen(only)
-        end = None if until is None else ticks_of_seconds(until)
-        if chosen == () and engine == "c":
-            engine = "auto"  # nothing to compile
-        from rvmon.monitor.batch_table import evaluate_table
+        from rvmon.monitor.finished import evaluate_trace
 
-        report = evaluate_table(self._compiled, trace, time, only=chosen, engine=engine, until=end)
-        if report is not None:
-            return report
-        if isinstance(trace, str | Path):
-            report = self.evaluate_file(trace, engine=engine, only=chosen, until=until)
-            if report is not None:
-                return report
-        recording = self.recording(trace, time=time)
-        if engine == "c":
-            from rvmon.monitor.batch_c import evaluate_recording
+        return evaluate_trace(
+            self._compiled,
+            trace,
+            self._reading(
+                time=time,
+                columns=columns,
+                nan=nan,
+                no_update=no_update,
+                sources=sources,
+                allow_missing=allow_missing,
+            ),
+            only=requirements_asked(self.checked, only),
+            engine=engine,
+            until=None if until is None else ticks_of_seconds(until),
+        )
 
-            return evaluate_recording(self._compiled, recording, only=chosen, until=end)
-        names = recording.names
-        if names is not None:
-            names = frozenset(names) & {*self.schema.signals, *self.schema.events}
-        monitor = self.monitor(only=chosen, engine=engine, sources=names)
-        for sample in recording:
-            monitor.step_ns(sample.t, sample.values)
-        return monitor.finish_ns(recording.end if end is None else end)
+    def _reading(
+        self,
+        *,
+        sources: Iterable[str] | None = None,
+        allow_missing: bool | Iterable[str] = False,
+        **told: Unpack[Telling],
+    ) -> Reading:
+        from rvmon.readers.reading import Reading
+
+        allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
+        return Reading(self.reading(**told).schema, sources_asked(self.checked, sources), allowed)
+
+    def names_read(self, *, only: Iterable[str] | None = None) -> tuple[str, ...]:
+        """The signals and events that requirements read.
+
+        Args:
+            only: ids of the requirements; default all.
+
+        Raises:
+            UnknownNameError: there is no such requirement.
+        """
+        from rvmon.monitor.missing import names_read
+
+        return tuple(names_read(self._compiled, requirements_asked(self.checked, only)))
+
+    def expect_names(
+        self,
+        recording: FileRecording | TableRecording,
+        *,
+        only: Iterable[str] | None = None,
+        allow_missing: bool | Iterable[str] = False,
+    ) -> tuple[str, ...]:
+        """Refuse a recording in columns that lacks a name which a requirement reads.
+
+        Args:
+            recording: a file, or a table in memory.
+            only: ids of the requirements; default all.
+            allow_missing: whether it may lack names, or the names that it may lack.
+
+        Returns:
+            The names that it lacks, and may.
+
+        Raises:
+            MissingNameError: it lacks others.
+            UnknownNameError: a name that it may lack is not declared.
+        """
+        from rvmon.monitor.missing import expect_names
+
+        chosen = None if only is None else tuple(only)
+        return expect_names(
+            self._compiled, recording, self.schema.columns, only=chosen, allowed=allow_missing
+        )
 
     def evaluate_many(
         self,
         traces: Iterable[Any],
         *,
-        time: str = "t",
         engine: str = "auto",
         only: Iterable[str] | None = None,
         jobs: int = 1,
+        **reading: Unpack[ReadingArguments],
     ) -> Iterator[Report]:
         r"""Judge many traces, in their order; the specification is compiled once per process.
 
         Args:
             traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
-            time: the time column of columns; if its name ends in `_ns`, integer ticks.
             engine: `auto` or the name of one.
             only: ids of the requirements to judge; default all.
             jobs: processes; 1 judges in this one.
+            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
 
         Raises:
             TraceError: a trace cannot be read; the reports before it have been given out.
@@ -215,20 +308,16 @@ class Spec:
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
         ['P', 'F']
         """
-        chosen = None if only is None else tuple(only)
-        if jobs < 2:
-            return (self.evaluate(trace, time=time, engine=engine, only=chosen) for trace in traces)
-        return self._evaluate_elsewhere(traces, time, engine, chosen, jobs)
+        from rvmon.monitor.many import evaluate_traces
 
-    def _evaluate_elsewhere(
-        self, traces: Iterable[Any], time: str, engine: str, only: tuple[str, ...] | None, jobs: int
-    ) -> Iterator[Report]:
-        import pickle
-        from concurrent.futures import ProcessPoolExecutor
-
-        judge = partial(_evaluate_here, pickle.dumps(self.checked), time, engine, only)
-        with ProcessPoolExecutor(jobs) as pool:
-            yield from pool.map(judge, traces)
+        return evaluate_traces(
+            self._compiled,
+            traces,
+            self._reading(**reading),
+            only=requirements_asked(self.checked, only),
+            engine=engine,
+            jobs=jobs,
+        )
 
     def evaluate_file(
         self,
@@ -255,7 +344,6 @@ class Spec:
         """
         from rvmon.monitor.batch_file import evaluate_file
 
-        _expect_engine(engine)
         return evaluate_file(
             self._compiled,
             self.schema,
@@ -271,10 +359,10 @@ class Spec:
         self,
         trace: Any,
         *,
-        time: str = "t",
         only: Iterable[str] | None = None,
         until: float | None = None,
         streams: bool = True,
+        **reading: Unpack[ReadingArguments],
     ) -> Margins:
         """By how much a finished trace meets each requirement, or fails to, in base units.
 
@@ -284,10 +372,10 @@ class Spec:
 
         Args:
             trace: as `evaluate` takes it.
-            time: the time column of columns.
             only: ids of the requirements; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             streams: whether to give a figure per sample, too; they are kept in memory.
+            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
 
         Returns:
             The figures of the attempts by requirement and number, and as streams.
@@ -298,10 +386,11 @@ class Spec:
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
+        from rvmon.monitor.finished import open_trace
         from rvmon.monitor.robustness import margins_of
 
-        chosen = self._chosen(only)
-        recording = self.recording(trace, time=time)
+        chosen = requirements_asked(self.checked, only)
+        recording = open_trace(self._compiled, trace, self._reading(**reading), only=chosen)
         return margins_of(
             self._compiled,
             recording,
@@ -332,37 +421,23 @@ class Spec:
         """
         from rvmon.monitor.robustness import RobustnessMonitor
 
-        given, chosen = self._sources(sources), self._chosen(only)
         return RobustnessMonitor(
-            self._compiled, only=chosen, settle=settle, sources=given, streams=streams
+            self._compiled,
+            only=requirements_asked(self.checked, only),
+            settle=settle,
+            sources=sources_asked(self.checked, sources),
+            streams=streams,
         )
 
-    def recording(self, trace: Any, *, time: str = "t") -> Recording:
+    def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:
         """Whatever `evaluate` takes as a trace, as a recording.
 
-        Raises:
-            TraceError: the trace cannot be read.
+        Args:
+            trace: it need not be read yet.
+            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors. Any name
+                may be missing, unless `allow_missing` says otherwise.
         """
-        from rvmon.readers.any_trace import recording_of
+        from rvmon.monitor.finished import open_trace
 
-        return recording_of(trace, self.schema, time=time, ordered=self.checked.max_delay is None)
-
-
-def _expect_engine(name: str) -> None:
-    from rvmon.monitor.compiled import ALL_ENGINES, expect_engine
-
-    expect_engine(name, ALL_ENGINES)
-
-
-def _evaluate_here(
-    checked: bytes, time: str, engine: str, only: tuple[str, ...] | None, trace: Any
-) -> Report:
-    return _spec_of(checked).evaluate(trace, time=time, engine=engine, only=only)
-
-
-@lru_cache(maxsize=1)
-def _spec_of(checked: bytes) -> Spec:
-    """The specification that another process sent; a worker compiles it for its first trace."""
-    import pickle
-
-    return Spec(pickle.loads(checked))  # noqa: S301 - from the process that began this one
+        reading.setdefault("allow_missing", True)
+        return open_trace(self._compiled, trace, self._reading(**reading), only=None)

@@ -25,6 +25,7 @@ def test_exported_names_are_pinned():
     assert rvmon.__all__ == [
         "Attempt",
         "Diagnostic",
+        "MissingNameError",
         "ModelError",
         "Monitor",
         "Report",

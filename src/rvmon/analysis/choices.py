@@ -142,7 +142,7 @@ class _Options:
         values: list[Value | Silence] = [
             *self._scalars(SignalValue(name), self.spec.signals[name].type)
         ]
-        if ProbeAtom(Probe.KNOWN, name) in self.leaves:
+        if ProbeAtom(Probe.KNOWN, name) in self.leaves and name not in self.spec.ignoring:
             values.append(None)
         return [SILENT, *values] if name in self.remembered else values
 

@@ -9,7 +9,17 @@ from rvmon.analysis.examine import Examination
 from rvmon.analysis.subject import Conflict, Implication
 from rvmon.diagnostics.diagnostic import Diagnostic, Label
 from rvmon.diagnostics.span import Span
-from rvmon.spec.checked import Binary, BoundAtom, CheckedSpec, Constant, Requirement, Unary
+from rvmon.spec.checked import (
+    Binary,
+    BoundAtom,
+    CheckedSpec,
+    Constant,
+    EndPolicy,
+    Formula,
+    Mode,
+    Requirement,
+    Unary,
+)
 from rvmon.spec.printer import format_duration
 from rvmon.spec.rules.rule import finding
 from rvmon.spec.tense import FUTURE, subformulas
@@ -50,7 +60,7 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
             rules.NEVER_PASSES,
             f"{name} can never pass, whatever comes",
             *place,
-            mend="what is owed contradicts itself or the trigger, whose instant counts",
+            mend=_can_pass(spec.requirements[name]),
         )
 
 
@@ -83,15 +93,36 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
 
 def _can_fail(requirement: Requirement) -> str:
     """What lets a requirement fail that never does."""
-    open_ended = any(
+    if any(map(_has_no_end, subformulas(requirement.consequent))):
+        return "give it a deadline with `within`, or say `at end: strong`"
+    return "what is owed always holds where it is looked at: look at the comparisons in it"
+
+
+def _is_open(requirement: Requirement) -> bool:
+    """Whether something may be owed to the end of the run."""
+    return requirement.mode is Mode.WHENEVER or any(
+        map(_has_no_end, subformulas(requirement.consequent))
+    )
+
+
+def _has_no_end(part: Formula) -> bool:
+    """Whether it is an operator that looks ahead for ever."""
+    return (
         isinstance(part, Unary | Binary)
         and part.op in FUTURE
         and (part.interval is None or part.interval.high is None)
-        for part in subformulas(requirement.consequent)
     )
-    if open_ended:
-        return "give it a deadline with `within`, or say `at end: strong`"
-    return "what is owed always holds where it is looked at: look at the comparisons in it"
+
+
+def _can_pass(requirement: Requirement) -> str:
+    """What lets a requirement pass that never does."""
+    policy = requirement.at_end
+    if policy in (EndPolicy.STRICT, EndPolicy.STRONG, EndPolicy.FAIL) and _is_open(requirement):
+        return (
+            f"`at end: {policy}` lets nothing pass that is owed to the end: leave it out, or say "
+            "for how long with `for`"
+        )
+    return "what is owed contradicts itself or the trigger, whose instant counts"
 
 
 def _has_trigger(requirement: Requirement) -> bool:

@@ -1,7 +1,7 @@
 """The command `rvmon`: one file per subcommand, each with `add_parser` and `run`.
 
-Exit codes: 0 fine, 1 a requirement failed, 2 wrong input or spec, 3 internal error,
-130 interrupted.
+Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
+3 internal error, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
+from rvmon.cli.reading import with_values
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a narrow encoding costs signs, not the answer
     try:
-        namespace = _parser(words).parse_args(words)
+        namespace = _parser(words).parse_args(with_values(words))
     except SystemExit as stop:  # argparse has said what is wrong
         return stop.code if isinstance(stop.code, int) else 2
     return guarded(namespace)

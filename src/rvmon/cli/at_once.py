@@ -13,14 +13,19 @@ import os
 import stat
 import sys
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 
 from rvmon import __version__
 from rvmon.cache import cache_folder, files_told, is_ours, keep, read_kept
+from rvmon.readers.steps import FEWEST, LONG_STEP, LOOKED_AT, median_step
 
 _VALUED = ("--only", "--const", "--engine", "--format")
 _JUDGED = (0, 1)
 """Exit codes of the program if it has printed a report."""
+
+_Found = tuple[Path, str, list[list[str]]]
+"""The program, what there is to warn of, and for each name that is read its columns."""
 
 
 def judged_at_once(words: Sequence[str]) -> int | None:
@@ -49,7 +54,10 @@ def judged_at_once(words: Sequence[str]) -> int | None:
     key = hashlib.sha256(json.dumps(said).encode()).hexdigest()
     path = folder / f"run-{key}.json"
     found = _known(path) or _made(path, spec, text, options)
-    return None if found is None else _judged(*found, trace)
+    if found is None:
+        return None
+    program, warnings, read = found
+    return None if _is_doubtful(trace, read) else _judged(program, warnings, trace)
 
 
 def _options(words: Sequence[str]) -> dict[str, list[str]] | None:
@@ -83,22 +91,45 @@ def _is_plain_file(trace: str) -> bool:
         return False
 
 
-def _known(path: Path) -> tuple[Path, str] | None:
-    """The program that was compiled before, and what there is to warn of."""
+def _is_doubtful(trace: str, read: list[list[str]]) -> bool:
+    """Whether there is something to say of what the file's head holds, or nobody can tell here.
+
+    Args:
+        trace: the file.
+        read: for each name that is read, the columns of which it needs one.
+    """
+    try:
+        with open(trace, encoding="utf-8") as file:
+            rows = [line.strip("\n") for line in islice(file, LOOKED_AT + 1)]
+    except (OSError, UnicodeDecodeError):
+        return True
+    header = [name.strip() for name in rows[0].split(",")] if rows else []
+    if any('"' in row for row in rows) or not all(set(header) & set(one) for one in read):
+        return True
+    if "t" not in header:
+        return False
+    try:
+        place = header.index("t")
+        times = [float(row.split(",")[place]) for row in rows[1:] if row.strip()]
+    except (ValueError, IndexError):
+        return True
+    return len(times) >= FEWEST and median_step(times) > 0.99 * LONG_STEP
+
+
+def _known(path: Path) -> _Found | None:
+    """The program that was compiled before, what there is to warn of, and what is read."""
     body = read_kept(path)
     if body is None:
         return None
     try:
-        name, warnings = json.loads(body)
+        name, warnings, read = json.loads(body)
         program = path.parent / name
-        return (program, warnings) if is_ours(program) else None
+        return (program, warnings, read) if is_ours(program) else None
     except (ValueError, TypeError, OSError):
         return None
 
 
-def _made(
-    path: Path, spec: str, text: str, options: dict[str, list[str]]
-) -> tuple[Path, str] | None:
+def _made(path: Path, spec: str, text: str, options: dict[str, list[str]]) -> _Found | None:
     """The same, compiled now from the text; `None` if there is something to say against it."""
     from rvmon.cli.constants import constants_of
     from rvmon.codegen.c_program import built_program
@@ -112,6 +143,10 @@ def _made(
             return None
         ids = None if only is None else [name.strip() for name in only[0].split(",")]
         program = built_program(loaded.plan(only=ids))
+        read = [
+            [name, *(f"{name}.{field}" for field in loaded.schema.events.get(name, ()))]
+            for name in loaded.names_read(only=ids)
+        ]
     except RvmonError:
         return None
     warnings = ""
@@ -119,8 +154,8 @@ def _made(
         from rvmon.diagnostics.render import render_full
 
         warnings = render_full(loaded.warnings)
-    keep(path, json.dumps([program.name, warnings]).encode())
-    return program, warnings
+    keep(path, json.dumps([program.name, warnings, read]).encode())
+    return program, warnings, read
 
 
 def _judged(program: Path, warnings: str, trace: str) -> int | None:

@@ -8,11 +8,13 @@ import sys
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
+from rvmon.cli.reading import add_time
 from rvmon.errors import TraceError, UnknownNameError
 
 if TYPE_CHECKING:
     from rvmon.timed.conformance import Allowed, Conformance
     from rvmon.timed.model import Network
+    from rvmon.trace.schema import Stamps
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -29,6 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
     parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings")
+    add_time(parser)
     parser.add_argument(
         "--observe",
         metavar="LABELS",
@@ -59,6 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Compare, show, and return the exit code."""
     from rvmon.timed.load import load_network
     from rvmon.timed.recorded import labels_of
+    from rvmon.trace.stamps import stamps_of
     from rvmon.trace.time import ticks_of_seconds
 
     network = load_network(arguments.model)
@@ -66,11 +70,12 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = _chosen(arguments.observe, labels)
     until = None if arguments.until is None else ticks_of_seconds(arguments.until)
     tolerance = ticks_of_seconds(arguments.tolerance)
+    stamps = None if arguments.time is None else stamps_of(arguments.time)
     answers: dict[str, Conformance] = {}
     broken = False
     for path in arguments.traces:
         try:
-            answers[path] = _compare(network, path, labels, chosen, until, tolerance)
+            answers[path] = _compare(network, path, stamps, labels, chosen, until, tolerance)
         except TraceError as error:
             print(f"error: {error}", file=sys.stderr)
             broken = True
@@ -94,6 +99,7 @@ def _chosen(listed: str | None, labels: tuple[str, ...]) -> frozenset[str] | Non
 def _compare(
     network: Network,
     path: str,
+    stamps: Stamps | None,
     labels: tuple[str, ...],
     chosen: frozenset[str] | None,
     until: int | None,
@@ -105,7 +111,7 @@ def _compare(
     from rvmon.trace.schema import Schema
 
     wanted = frozenset(labels) if chosen is None else chosen
-    recording = FileRecording(path, Schema({}, {name: {} for name in wanted}))
+    recording = FileRecording(path, Schema({}, {name: {} for name in wanted}, stamps=stamps))
     actions, length, occurred = actions_in(recording, wanted)
     shown = occurred if recording.names is None else wanted & recording.names
     if chosen is None:

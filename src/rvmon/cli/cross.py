@@ -10,6 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.reading import add_reading, opened, reading_spec
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
     )
+    add_reading(parser)
     parser.add_argument(
         "--peers",
         metavar="PYTHON",
@@ -60,14 +62,13 @@ def run(arguments: argparse.Namespace) -> int:
 
     from rvmon.cli.constants import constants_of
     from rvmon.loading import load
-    from rvmon.readers.recording import FileRecording
     from rvmon.report.run_text import health_lines
     from rvmon.testing.case import Case
     from rvmon.testing.cross import crossings
 
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
-    spec = load(arguments.spec, const=constants_of(arguments.const))
+    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     checked = spec.checked
     if not checked.requirements:
         raise RvmonError(f"error: {arguments.spec} has no requirement: there is nothing to compare")
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise RvmonError(f"error: no requirement `{unknown[0]}`: there are {known}")
         chosen = {name: checked.requirements[name] for name in names}
         checked = replace(checked, requirements=chosen)
-    recording = FileRecording(arguments.trace, spec.schema, ordered=spec.checked.max_delay is None)
+    recording = opened(spec, arguments.trace)
     samples, late = _as_run_takes_them(recording, checked)
     if not samples:
         raise RvmonError(f"error: {arguments.trace} has no sample: nothing to compare")

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.reading import add_time, time_words
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "-o", "--output", metavar="FILE", help="where to write, - to print (default: DATA's .rv)"
     )
+    add_time(parser)
     parser.add_argument("--force", action="store_true", help="overwrite what is there")
 
 
@@ -40,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise RvmonError(
             f"error: {output} is there already: give another place with -o, or --force to overwrite"
         )
-    profile = profile_of(arguments.data)
+    profile = profile_of(arguments.data, arguments.time)
     text = starter_text(profile)
     if output == "-":
         sys.stdout.write(text)
@@ -50,7 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise RvmonError(f"error: {output}: {error.strerror or error}") from None
     print(f"wrote {output}: {_contents(profile)}")
-    print(f"try:   {shlex.join(['rvmon', 'run', output, arguments.data])}")
+    words = ["rvmon", "run", output, arguments.data, *time_words(arguments)]
+    print(f"try:   {shlex.join(words)}")
     return 0
 
 

@@ -5,18 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from rvmon.cli.progress import shown_while_reading
+from rvmon.cli.reading import opened
 from rvmon.cli.second_look import can_be_read_again, second_look
 from rvmon.errors import TraceError
 from rvmon.loading import load
+from rvmon.readers.reading import Telling
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec
-from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 
@@ -36,6 +37,8 @@ class Options:
         until: the instant in seconds to which recordings are judged; default their last sample.
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
+        allow_missing: the names that recordings in columns may lack; `True`: all.
+        told: how recordings tell things, as `Spec.reading` takes it.
     """
 
     only: tuple[str, ...] | None = None
@@ -43,6 +46,8 @@ class Options:
     until: float | None = None
     strict_columns: bool = False
     robustness: bool = False
+    allow_missing: bool | tuple[str, ...] = False
+    told: Telling = field(default_factory=Telling)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +59,14 @@ class Judged:
         report: the verdicts, or `None` if the recording broke off at an error.
         before: for a broken recording, the attempts decided before the place of the error.
         error: what was wrong with the recording.
+        missing: the names that requirements read and that it lacks.
     """
 
     trace: str
     report: Report | None
     before: tuple[Attempt, ...] = ()
     error: str = ""
+    missing: tuple[str, ...] = ()
 
 
 def judge_all(
@@ -73,7 +80,7 @@ def judge_all(
     """Judge recordings, in their order.
 
     Args:
-        spec: for judging in this process.
+        spec: for judging in this process; it reads as the options say.
         path: of the same spec, for other processes to load.
         constants: overridden in it.
         traces: paths.
@@ -93,7 +100,7 @@ def judge_all(
 def _load_and_judge(
     path: str, constants: Mapping[str, str], options: Options, trace: str
 ) -> Judged:
-    return judge(load(path, const=constants), trace, options)
+    return judge(load(path, const=constants).reading(**options.told), trace, options)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,9 +123,12 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         if not again and trace.endswith((".csv", ".parquet")):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
         ordered = spec.checked.max_delay is None
-        recording = FileRecording(trace, spec.schema, ordered=ordered)
+        recording = opened(spec, trace)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
+        missing = spec.expect_names(
+            recording, only=options.only, allow_missing=options.allow_missing
+        )
         end = None if options.until is None else ticks_of_seconds(options.until)
         report = None
         meter = None
@@ -158,14 +168,15 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         return Judged(_shown(trace), None, tuple(before), place + message)
     report = second_look(spec, trace, report, recording.names, goals=options.only is None)
     trace = _shown(trace)
-    return Judged(trace, _named(report, trace, recording.health()))
+    health = (*recording.rows.alternations.remarked(report.health), *recording.health())
+    return Judged(trace, replace(report, trace=trace, health=health), missing=missing)
 
 
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
     """What is decided up to the place where a recording breaks off."""
     found: list[Attempt] = []
     with suppress(TraceError):
-        recording = FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)
+        recording = opened(spec, trace)
         monitor = spec.monitor(only=options.only, sources=recording.names)
         for sample in recording:
             found.extend(monitor.step_ns(sample.t, sample.values))
@@ -210,13 +221,8 @@ def _shown(trace: str) -> str:
     return os.fsencode(trace).decode("utf-8", "replace")
 
 
-def _named(report: Report, trace: str, health: Sequence[Health]) -> Report:
-    """The report with its recording's name, and with what the reader noticed."""
-    return replace(report, trace=trace, health=(*report.health, *health))
-
-
 def _refuse_mismatch(recording: FileRecording, spec: Spec) -> None:
-    ignored = [health.name for health in recording.health() if health.kind is HealthKind.IGNORED]
+    ignored = list(recording.ignored)
     declared = {*spec.schema.signals, *spec.schema.events}
     missing = sorted(declared - (recording.names or declared))
     faults = [

@@ -11,7 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import instant, positive
+from rvmon.cli.reading import (
+    add_allow_missing,
+    add_reading,
+    allowed_names,
+    reading_arguments,
+    reading_spec,
+    reading_words,
+)
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 
@@ -44,6 +53,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=instant,
         help="judge to T seconds, be it before or after the last sample",
     )
+    add_reading(parser)
+    add_allow_missing(parser)
     parser.add_argument(
         "--engine",
         metavar="NAME",
@@ -72,9 +83,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument(
         "--require-triggered",
-        metavar="IDS",
-        nargs="?",
-        const="",
+        metavar="[=IDS]",
         help="exit with 1 if one of these (default: any) was triggered in no recording",
     )
     parser.add_argument(
@@ -91,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.loading import load
 
     constants = constants_of(arguments.const)
-    spec = load(arguments.spec, const=constants)
+    spec = reading_spec(load(arguments.spec, const=constants), arguments)
     _show_warnings(spec)
     _refuse_places(arguments, spec)
     options = Options(
@@ -100,6 +109,8 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.until,
         arguments.strict_columns,
         arguments.robustness,
+        allowed_names(arguments.allow_missing),
+        reading_arguments(arguments),
     )
     must_trigger = _ids(arguments.require_triggered or None, spec)
     judged = list(
@@ -111,6 +122,7 @@ def run(arguments: argparse.Namespace) -> int:
     if len(reports) < len(judged):
         return 2
     failed = any(_failed(report, strict=arguments.strict) for report in reports)
+    failed |= any(one.missing for one in judged)
     if arguments.require_triggered is not None:
         silent = _never_triggered(reports, must_trigger)
         for name in silent:
@@ -149,13 +161,26 @@ def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
             print(f"error: {one.error}", file=sys.stderr)
             for line in _before_lines(one.before):
                 print(f"  judged before that: {line}", file=sys.stderr)
+        if one.missing:
+            names = ", ".join(f"`{name}`" for name in one.missing)
+            told = f"{one.trace} has no column for {names}: what reads that is inconclusive"
+            print(f"warning: {told}", file=sys.stderr)
     if form == "json":
+        _show_doubts(judged)
         texts = [_json(one) for one in judged]
         print(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
 
     print_reports([one.report for one in judged if one.report is not None], spec.checked)
+
+
+def _show_doubts(judged: Sequence[Judged]) -> None:
+    """Warn of stamps in a doubtful unit, as the text for people does."""
+    for one in judged:
+        for health in () if one.report is None else one.report.health:
+            if health.kind is HealthKind.UNIT:
+                print(f"warning: {one.trace}: `{health.name}`: {health.remark}", file=sys.stderr)
 
 
 def _json(one: Judged) -> str:
@@ -203,7 +228,7 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
             return [] if trace == "-" else list(spec.recording(trace))
 
         def command(trace: str) -> str:
-            return shlex.join(["rvmon", "run", arguments.spec, trace])
+            return shlex.join(["rvmon", "run", arguments.spec, trace, *reading_words(arguments)])
 
         write_run_pages(Path(arguments.report), spec.checked, reports, read, command)
 

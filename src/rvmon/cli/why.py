@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import instant
+from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=instant,
         help="judge to T seconds, be it before or after the last sample",
     )
+    add_reading(parser)
+    add_allow_missing(parser)
     parser.add_argument(
         "--format",
         choices=("text", "json"),
@@ -61,9 +64,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
-    spec = load(arguments.spec, const=constants_of(arguments.const))
+    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     name, number = _named(arguments.attempt, spec)
-    recording = spec.recording(arguments.trace)
+    recording = opened(spec, arguments.trace)
+    allowed = allowed_names(arguments.allow_missing)
+    spec.expect_names(recording, only=[name], allow_missing=allowed)
     until = None if arguments.until is None else ticks_of_seconds(arguments.until)
     samples = [one for one in in_order(recording) if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)

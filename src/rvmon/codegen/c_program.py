@@ -94,9 +94,11 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
         # What is larger than all that doubles tell apart may have been rounded to that.
         most = f"{min(limits.get(name, EXACT), EXACT - 1)}.0"
         is_event = "true" if type_ is None else "false"
-        yield f"    {{{c_string(name)}, {number}, {event}, {kind}, {is_event}, {tables}, {most}}},"
+        ignores = "true" if name in spec.ignoring else "false"
+        said = f"{number}, {event}, {kind}, {is_event}, {ignores}, {tables}, {most}"
+        yield f"    {{{c_string(name)}, {said}}},"
     if not things:
-        yield '    {"", 0, -1, KIND_BOOL, false, NULL, NULL, 0.0},'
+        yield '    {"", 0, -1, KIND_BOOL, false, false, NULL, NULL, 0.0},'
     yield "};"
     yield f"#define ENTRY_COUNT {max(len(things), 1)}"
     yield ""

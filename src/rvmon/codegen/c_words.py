@@ -128,7 +128,9 @@ def _plain(plan: Plan, names: Names) -> Iterator[str]:
         number = names.signal(name)
         uses = plan.uses.get(name)
         yield f"    plain = plain && ((in->value[{number}] == NULL)"
-        counts = uses is not None and (uses.history or uses.marked)
+        # What NaN leaves as it was, the row alone does not say.
+        ignores = plan.spec.signals[name].ignores_nan
+        counts = ignores or (uses is not None and (uses.history or uses.marked))
         other = "false" if counts else f"(in->signal[{number}] == NULL)"
         yield f"                      || {other});"
     yield "    return plain;"

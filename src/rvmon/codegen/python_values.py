@@ -83,8 +83,14 @@ class ValueWriter:
             yield from indented(self._occurs(variable, name))
             return
         signal = self.plan.signals.index(name)
-        yield f"if {variable} != {variable}:"
-        yield f"    {variable} = None"
+        if self.plan.spec.signals[name].ignores_nan:
+            yield f"if {variable} is None or {variable} != {variable}:"
+            yield "    return dirty"
+        else:
+            yield f"if {variable} != {variable}:"
+            yield f"    {variable} = None"
+            yield f"    if s[{signal}] is not None:"
+            yield f"        self.clerk.lost({signal}, t, 'nan')"
         yield from self._on_every_update(variable, name)
         yield f"if self.first[{signal}] is None:"
         yield f"    self.first[{signal}] = t"
@@ -110,15 +116,15 @@ class ValueWriter:
         """Keep another value of a signal."""
         signal = self.plan.signals.index(name)
         yield f"if s[{signal}] is None:"
-        yield f"    if self.first[{signal}] is None:"
-        yield f"        self.first[{signal}] = t"
+        yield f"    self.found({signal}, t)"
         if self.tells_birth(name):
             yield f"    if not self.births[{signal}]{'' if given else f' and {variable} is not None'}:"
             yield f"        self.births[{signal}] = 1"
         yield from self._found(name)
         if not given:
-            yield f"elif {variable} is None:"
-            yield from self._found(name) if self.plan.knowers(name) else ("    pass",)
+            yield f"if {variable} is None:"
+            yield f"    self.clerk.lost({signal}, t, 'none')"
+            yield from self._found(name)
         known = variable if given else f"MISSING if {variable} is None else {variable}"
         yield f"self.last{signal} = {known}"
         yield f"s[{signal}] = {variable}"

@@ -7,10 +7,11 @@ from copy import deepcopy
 from heapq import heappop, heappush
 from typing import assert_never
 
-from rvmon.dataflow.doubt import Doubt
 from rvmon.dataflow.graph import Graph
+from rvmon.dataflow.hidden import Hidden
 from rvmon.dataflow.inputs import NEVER, Inputs, Reported
 from rvmon.dataflow.leaves import Evaluate, before_birth, evaluator
+from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.since import Previous, Since
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf, State, StateOp
 from rvmon.spec.checked import Compare, ProbeAtom, SignalAtom
@@ -54,7 +55,7 @@ class Flow:
         self._fading: list[int] = []
         self._wakes: dict[int, int] = {}
         self._left = True
-        self.memory: dict[int, Since | Previous | Doubt] = {}
+        self.memory: dict[int, Since | Previous | Hidden] = {}
         self._momentary = frozenset(
             place
             for place, reads in graph.reads.items()
@@ -160,6 +161,11 @@ class Flow:
         return t if self.values[place] == value else self._until.get((place, value))
 
     @property
+    def outages(self) -> Mapping[str, Outage]:
+        """By name what is not known now, and since when."""
+        return self.inputs.outages
+
+    @property
     def next_change(self) -> int:
         """The first position after this one at which a value can change by time alone."""
         if self.gap is None or self.origin is None:
@@ -229,7 +235,7 @@ class Flow:
         return previous
 
     def _doubt(self, place: int, state: State) -> Evaluate:
-        node = self.memory[place] = Doubt(state.pulse, state.every, self.gap or 1)
+        node = self.memory[place] = Hidden(state.pulse, state.every, self.gap or 1)
         (operand,) = self.graph.operands[place]
         values = self.values
 

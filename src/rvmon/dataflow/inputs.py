@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.spec.checked import CheckedSpec
+from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Payload, Scalar, Value
 
 NEVER = 1 << 63
@@ -95,6 +97,7 @@ class Inputs:
         updated: the names that were updated for this position.
         changed: by signal, whether an update for this position brought another value.
         absent: names without a source.
+        outages: by name what is not known, and since when.
         expired: by signal how often it became stale, and the first instant of that.
     """
 
@@ -106,6 +109,8 @@ class Inputs:
         self.updated: set[str] = set()
         self.expired: dict[str, tuple[int, int]] = {}
         self.changed: dict[str, int] = {}
+        self.outages = outages_at_first(spec, self.absent)
+        self._spec = spec
         self._perishable = [
             (name, slot) for name, slot in self.slots.items() if slot.stale_after is not None
         ]
@@ -126,6 +131,11 @@ class Inputs:
                 self.occurrences.setdefault(name, []).append(value)
             else:
                 changed = slot.update(t, value)
+                if slot.value is None:
+                    why = HealthKind.NONE if value is None else HealthKind.NAN
+                    note_lost(self.outages, self._spec, name, why, t)
+                elif name in self.outages:
+                    note_found(self.outages, name, t)
                 self.changed[name] = max(changed, self.changed.get(name, FALSE))
 
     def forget_occurrences(self) -> None:
@@ -139,6 +149,8 @@ class Inputs:
         made = Inputs.__new__(Inputs)
         made.slots = {name: slot.copy() for name, slot in self.slots.items()}
         made.absent = self.absent
+        made.outages = dict(self.outages)
+        made._spec = self._spec
         made.occurrences = {name: list(values) for name, values in self.occurrences.items()}
         made.updated = set(self.updated)
         made.expired = dict(self.expired)
@@ -159,8 +171,10 @@ class Inputs:
         """Make stale what is so at `t`; returns the names."""
         expired = [name for name, slot in self._perishable if slot.stale_at <= t]
         for name in expired:
-            count, first = self.expired.get(name, (0, self.slots[name].stale_at))
+            since = self.slots[name].stale_at
+            count, first = self.expired.get(name, (0, since))
             self.expired[name] = (count + 1, first)
+            note_lost(self.outages, self._spec, name, HealthKind.STALE, since)
             self.slots[name].value = None
             self.slots[name].stale_at = NEVER
         return expired

@@ -36,6 +36,7 @@ class Anatomy:
         start: first tick of the window that is shown.
         end: its last tick.
         origin: from which people count seconds, ticks.
+        late: when what it had awaited came after its deadline, ticks; `None` if it did not.
         strands: the trigger, then what is owed, each before its parts.
     """
 
@@ -43,4 +44,5 @@ class Anatomy:
     start: int
     end: int
     origin: int
+    late: int | None
     strands: tuple[Strand, ...]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from rvmon.explain.anatomy import Anatomy, Strand
 from rvmon.explain.eye import Eye, subformulas
+from rvmon.explain.late import late_arrivals
 from rvmon.explain.spans import both, outside
 from rvmon.explain.tempo import small_step
 from rvmon.spec.checked import BoundAtom, CheckedSpec, Constant, Formula
@@ -42,7 +43,8 @@ def dissect(
     begin = samples[0].t
     start, stop = max(attempt.triggered - margin, begin), min(last + margin, end)
     eye = Eye(spec, requirement, samples, end, attempt, names)
-    return Anatomy(attempt, start, stop, begin, strands_of(eye, start, stop))
+    late = late_arrivals(spec, requirement, [attempt], samples, end, names).get(attempt.number)
+    return Anatomy(attempt, start, stop, begin, late, strands_of(eye, start, stop))
 
 
 def strands_of(eye: Eye, start: int, stop: int) -> tuple[Strand, ...]:

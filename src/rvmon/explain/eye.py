@@ -79,7 +79,7 @@ class Eye:
         self.log = state_truths(
             spec, roots, samples, end, self._instance(attempt), attempt.captured, names
         )
-        self.positions = _positions(spec, samples, end)
+        self.positions = positions_of(spec, samples, end)
         self.made: dict[int, Truth] = {}
 
     def _instance(self, attempt: Attempt) -> Instance | None:
@@ -278,7 +278,7 @@ def _holds(spans: Spans, t: int) -> bool:
     return any(low <= t <= high for low, high in spans)
 
 
-def _positions(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequence[int] | None:
+def positions_of(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequence[int] | None:
     """The positions; `None` where every tick is one."""
     match spec.time:
         case TimeModel.HELD:

@@ -12,6 +12,7 @@ from rvmon.explain.spans import FOREVER, Spans, union
 from rvmon.formula.state import FALSE, TRUE, State
 from rvmon.monitor.instances import Instance, seen_by
 from rvmon.monitor.lane import Lane
+from rvmon.readers.coalesce import updates_in
 from rvmon.spec.checked import CheckedSpec, TimeModel
 from rvmon.trace.sample import Sample, Scalar
 
@@ -71,7 +72,7 @@ def state_truths(
     lane = Lane(flow)
     for sample in samples:
         lane.through(sample.t - 1)
-        lane.sample(sample.t, seen_by(instance, sample.values))
+        lane.sample(sample.t, seen_by(instance, updates_in(sample.values, spec.ignoring)))
     lane.through(end)
     found = {}
     for root in roots:

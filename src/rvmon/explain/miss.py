@@ -4,33 +4,21 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import assert_never
+from dataclasses import dataclass
 
-from rvmon.dataflow.graph import graph_of
 from rvmon.explain.log import Truth, state_truths
 from rvmon.explain.spans import Spans
+from rvmon.explain.states import state_of, values_read
 from rvmon.formula.factory import Factory
-from rvmon.formula.lower import lower
-from rvmon.formula.numeric import operands
-from rvmon.formula.state import Elapsed, Leaf, Lost, Missing, State, Unborn
 from rvmon.spec.checked import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
     CheckedSpec,
-    Compare,
-    Constant,
     EventAtom,
     Formula,
-    Literal,
-    Probe,
-    ProbeAtom,
     Requirement,
-    SignalAtom,
-    SignalValue,
-    TimeModel,
 )
 from rvmon.spec.printer import format_formula
 from rvmon.trace.sample import Sample
@@ -80,7 +68,7 @@ def nearest_miss(
         return ""
     options = [_flat(part, BinaryOp.AND) for part in _flat(trigger, BinaryOp.OR)]
     factory = Factory()
-    states = {part: _state(part, requirement, factory, spec) for o in options for part in o}
+    states = {part: state_of(part, requirement, factory, spec) for o in options for part in o}
     truths = state_truths(spec, list(states.values()), samples, end, None, {}, names)
     seen = {part: truths[state] for part, state in states.items()}
     misses = [_miss(parts, seen) for parts in options]
@@ -94,36 +82,9 @@ def read_as_values(spec: CheckedSpec, requirement: Requirement) -> frozenset[str
     Returns:
         `None` if updates that repeat a value, payloads or positions may make a difference.
     """
-    stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
-    if spec.time is TimeModel.SAMPLED or requirement.for_each is not None:
-        return None
-    factory = Factory()
-    graph = graph_of(
-        _state(part, requirement, factory, spec)
-        for option in _flat(requirement.trigger, BinaryOp.OR)
-        for part in _flat(option, BinaryOp.AND)
-        if part != BoundAtom(Bound.END)
-    )
-    leaves = [node.leaf for node in graph.nodes if node.leaf is not None]
-    names = frozenset(graph.by_name)
-    return names if all(map(_is_of_values, leaves)) and not names & stale else None
-
-
-def _is_of_values(leaf: Leaf) -> bool:
-    match leaf:
-        case Compare(left=left, right=right):
-            parts = (part for side in (left, right) for part in operands(side))
-            return all(isinstance(part, SignalValue | Literal) for part in parts)
-        case ProbeAtom(probe=probe):
-            return probe is Probe.KNOWN
-        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed() | Unborn():
-            return True
-        case Missing(atom=atom):
-            return _is_of_values(atom)
-        case Lost():
-            return False
-        case _:
-            assert_never(leaf)
+    options = _flat(requirement.trigger, BinaryOp.OR)
+    parts = [part for option in options for part in _flat(option, BinaryOp.AND)]
+    return values_read(spec, requirement, [part for part in parts if part != BoundAtom(Bound.END)])
 
 
 def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
@@ -132,13 +93,6 @@ def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
             return tuple(dict.fromkeys((*_flat(left, op), *_flat(right, op))))
         case _:
             return (formula,)
-
-
-def _state(part: Formula, requirement: Requirement, factory: Factory, spec: CheckedSpec) -> State:
-    alone = replace(requirement, trigger=part, consequent=Constant(True), captures=())
-    state = lower(alone, factory, spec.period).trigger
-    assert state is not None, "`end` stands alone"  # noqa: S101
-    return state
 
 
 def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
@@ -160,7 +114,7 @@ def _holds(spans: Spans, t: int) -> bool:
 def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], start: int, end: int) -> str:
     if not miss.missing:
         when = "" if miss.at is None else f" at {format_ticks(miss.at)}"
-        return f"its trigger came true{when} out of the unknown, which is no edge"
+        return f"its trigger was true{when}, but not known to be false before: no edge was seen"
     if miss.at is None:
         return "; ".join(_apart(miss.parts, seen, start, end))
     at = miss.at
@@ -168,9 +122,9 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], start: int, end: int) 
     for part in miss.there[1:]:
         rest = Binary(BinaryOp.AND, rest, part)
     unknown = any(_holds(seen[part].may, at) for part in miss.missing)
-    lacking = "never known to be true" if unknown else "never true"
-    while_ = f"{lacking} while `{format_formula(rest)}`"
-    return f"{_listed(miss.missing)} {while_}, as first at {format_ticks(at)}"
+    lacking = "was never known to be true" if unknown else "was never true"
+    while_ = f"while `{format_formula(rest)}` was (first at {format_ticks(at)})"
+    return f"{_listed(miss.missing)} {lacking} {while_}"
 
 
 def _apart(
@@ -179,12 +133,12 @@ def _apart(
     """What is to be said of parts of which none was ever true."""
     groups: dict[str, list[Formula]] = {}
     for part in parts:
-        word = "never true"
+        word = "was never true"
         low, high = seen[part].may[0]
         if low <= start and high >= end:
-            word = "never known"
+            word = "was never known"
         elif low <= end:
-            word = "never known to be true"
+            word = "was never known to be true"
         elif isinstance(part, EventAtom):
             word = "never occurred"
         groups.setdefault(word, []).append(part)

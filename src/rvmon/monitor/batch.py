@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rvmon.monitor.columns.evaluate import ColumnJudge, columns_judge
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.readers.ticks import ticks_in_range, ticks_of_column
-from rvmon.spec.checked import CheckedSpec
-from rvmon.trace.schema import Kind
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
@@ -30,80 +27,6 @@ _BY_COLUMNS = ("auto", "python")
 
 _PIECE = 1 << 17
 """Instants that are compared together."""
-
-_WIDEST = 8
-"""Bytes of the widest numbers that are numbers of Python, too."""
-
-
-def _numeric_columns(table: Any, names: Sequence[str]) -> dict[str, NDArray[Any]] | None:
-    """The named columns of a mapping of arrays or of an Arrow table, without copies if possible.
-
-    Args:
-        table: columns by name.
-        names: those that are wanted; what the table has not is left out.
-
-    Returns:
-        Arrays of truth values, integers or floats; `None` if a column is something else.
-    """
-    found = {}
-    is_arrow = hasattr(table, "column_names")
-    if is_arrow and len(set(table.column_names)) < len(table.column_names):
-        return None
-    for name in names:
-        if is_arrow:
-            if name not in table.column_names:
-                continue
-            column = table.column(name)
-            if column.null_count:
-                return None
-            column = column.to_numpy(zero_copy_only=False)
-        elif name in table:
-            column = table[name]
-        else:
-            continue
-        # A subclass, as an array with a mask, means something by its cells that is not seen here.
-        if type(column) not in (np.ndarray, np.memmap) or column.ndim != 1:
-            return None
-        if column.dtype.kind not in "bif" or column.dtype.itemsize > _WIDEST:
-            return None
-        found[name] = column
-    return found
-
-
-def arrays_of(
-    table: Any, spec: CheckedSpec, time: str
-) -> tuple[NDArray[np.int64], dict[str, NDArray[Any]]] | None:
-    """Ticks and the declared columns, if all are arrays that fit their declarations.
-
-    Args:
-        table: a mapping of arrays, or an Arrow table.
-        spec: gives the names and types.
-        time: the column of seconds; if its name ends in `_ns`, of integer ticks.
-
-    Returns:
-        `None` if something is not so. Whether the instants increase is not looked at.
-
-    Raises:
-        TraceError: an instant is not finite or out of range.
-    """
-    columns = _numeric_columns(table, [time, *spec.signals, *spec.events])
-    if columns is None or time not in columns:
-        return None
-    stamps = columns.pop(time)
-    if any(len(column) != len(stamps) for column in columns.values()):
-        return None
-    fits = {Kind.BOOL: "b", Kind.INT: "i", Kind.REAL: "fi"}
-    for name, column in columns.items():
-        kind = spec.signals[name].type.kind if name in spec.signals else Kind.BOOL
-        if column.dtype.kind not in fits.get(kind, ""):
-            return None
-    if time.endswith("_ns"):
-        if stamps.dtype.kind != "i":
-            return None
-        times = ticks_in_range(stamps)
-    else:
-        times = ticks_of_column(stamps)
-    return times, columns
 
 
 def in_order(times: NDArray[np.int64]) -> bool:

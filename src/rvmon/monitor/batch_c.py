@@ -79,27 +79,39 @@ def array_columns(spec: CheckedSpec, columns: Mapping[str, NDArray[Any]]) -> dic
 
 
 def evaluate_recording(
-    compiled: CompiledSpec, recording: Recording, *, only: Sequence[str] | None, until: int | None
+    compiled: CompiledSpec,
+    recording: Recording,
+    *,
+    sources: frozenset[str] | None,
+    only: Sequence[str] | None,
+    until: int | None,
 ) -> Report:
     """Judge a recording; so many samples at a time are in memory.
+
+    Args:
+        compiled: the specification.
+        recording: its samples.
+        sources: the names that can arrive; `None`: all.
+        only: ids of the requirements; default all.
+        until: the end of the trace in ticks, if after its last sample.
 
     Raises:
         TimeOrderError: an instant is not after the one before.
         TraceError: a name or a value that the specification does not know, or an instant with two
             payloads of one event.
     """
-    validator = Validator(compiled.checked, recording.names, frozenset())
+    validator = Validator(compiled.checked, sources, frozenset())
 
     def checked(sample: Sample) -> Sample:
         return Sample(whole_ticks(sample.t), validator.check(sample.t, sample.values))
 
     samples = map(checked, recording)
-    with _Judging(compiled, only, recording.names) as judging:
+    with _Judging(compiled, only, sources) as judging:
         library = judging.library
         while some := list(islice(samples, PIECE)):
             times = np.array([sample.t for sample in some], np.int64)
             judging.take(times, columns_of_samples(some, library.names, library.limits))
-        return judging.report(recording.end if until is None else until)
+        return judging.report(until)
 
 
 class _Judging:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.batch import evaluate_plain
-from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.readers.block_readers import reader_of
 from rvmon.readers.blocks import NotPlainError
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     _Block = tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]
 
 
-def _fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[str]:
+def fillable(compiled: CompiledSpec, only: Sequence[str] | None) -> frozenset[str]:
     """The names of which only the present value matters, not whether there was an update."""
     spec = compiled.checked
     chosen = [one for name, one in compiled.requirements.items() if only is None or name in only]
@@ -61,15 +61,19 @@ def evaluate_file(
     Returns:
         `None` where rows have to be read and judged one by one: the file is not plain, or each row
         may matter.
+
+    Raises:
+        UnknownNameError: there is no such engine.
     """
+    expect_engine(engine, ALL_ENGINES)
     seen = Counter[str]()
-    reader = reader_of(path, seen)
+    reader = reader_of(path, schema, seen)
     if reader is None:
         return None
-    fillable = _fillable(compiled, only)
+    holding = fillable(compiled, only)
 
     def read() -> Iterator[_Block]:
-        found = ((block.times, block.columns) for block in reader(path, schema, fillable))
+        found = ((block.times, block.columns) for block in reader(path, schema, holding))
         return found if until is None or not cut else _up_to(until, found)
 
     try:

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Protocol
 
 from rvmon.automaton.machine import INFINITY, Token
 from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.outages import Outage
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.doubt import Doubt
 from rvmon.trace.sample import Scalar
-from rvmon.trace.time import TIME_LIMIT, format_ticks
+from rvmon.trace.time import TIME_LIMIT
 
 if TYPE_CHECKING:
     from rvmon.monitor.episode import Episode
@@ -26,7 +28,7 @@ class Open:
         token: of the run that takes the unknown for the worse.
         better: of the run that takes it for the better; `None` as long as both are the same.
         seen: the values of the judge's leaves at the trigger.
-        doubt: when and why the two runs parted; empty if they did not.
+        doubt: when and why the two runs parted; `None` if they did not.
         sure: whether its trigger was TRUE; else it is in doubt.
         doubtful_number: as `number`, if its trigger was not TRUE at first.
         clouded: whether its trigger was unknown while it ran.
@@ -52,7 +54,7 @@ class Open:
         self.token = token
         self.better: Token | None = None
         self.seen = seen
-        self.doubt = ""
+        self.doubt: Doubt | None = None
         self.sure = False
         self.doubtful_number = 0
         self.clouded = False
@@ -154,9 +156,14 @@ class Bench(ABC):
         values = self.flow.values
         return tuple([values[place] for place, _ in self.leaves])
 
-    def _doubt(self) -> str:
-        values = self.flow.values
-        unknown = [text for place, text in self.leaves if values[place] == UNKNOWN]
-        return (
-            f"{', '.join(f'`{text}`' for text in unknown)} unknown at {format_ticks(self.position)}"
-        )
+    def _doubt(self) -> Doubt:
+        """What is not known at this position of all that is read of the input."""
+        values, reads, outages = self.flow.values, self.flow.graph.reads, self.flow.outages
+        found: dict[str, Outage] = {}
+        texts = []
+        for place, text in self.leaves:
+            if values[place] == UNKNOWN:
+                own = {name: outages[name] for name in sorted(reads[place].names & outages.keys())}
+                found |= own
+                texts += [] if own else [text]
+        return Doubt(self.position, tuple(found.values()), tuple(texts))

@@ -9,6 +9,7 @@ from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.generated import Forms, GeneratedMonitor
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import can_feed
+from rvmon.spec.asked import requirements_asked
 
 _GENERATED = ("auto", "python")
 
@@ -40,11 +41,7 @@ def build_monitor(
     """
     if settle not in ("now", "next"):
         raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
-    wanted = None if only is None else frozenset(only)
-    unknown = sorted((wanted or frozenset()) - compiled.requirements.keys())
-    if unknown:
-        known = ", ".join(compiled.requirements)
-        raise UnknownNameError(f"no requirement `{unknown[0]}`: there are {known}")
+    wanted = requirements_asked(compiled.checked, only)
     chosen = [
         requirement
         for name, requirement in compiled.requirements.items()

@@ -64,7 +64,7 @@ def explained(
     cause = finding.cause
     start = finding.start(before[1], t, triggered)
     return Explanation(
-        told(finding.sentence, t, start, flow),
+        told(finding.sentence, t, start, triggered, flow),
         deadline=None if cause is None else reasons.deadline(before),
         blame=None if verdict or cause is None else reasons.words.blame(cause, t, start, flow),
     )
@@ -104,7 +104,7 @@ def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) 
     residual = after(judge.machine.residual(location), [now // 2 - anchor for anchor in anchors])
     owed = judge.compiled.words.owed(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    reason = f"still owed: {owed}{longer(judge, attempt, end)}{doubt}"
+    reason = f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}"
     return Explanation(reason, owed, deadline=_deadline(judge, attempt))
 
 
@@ -130,14 +130,20 @@ def earlier(worse: tuple[int, bool] | None, better: tuple[int, bool] | None) -> 
     return min(found, default=None)
 
 
+def still_owed(owed: str, end: int | None) -> str:
+    """What an undecided attempt waits for, or waited for when the trace ended."""
+    when = "" if end is None else f" when the recording ended at {format_ticks(end)}"
+    return f"still owed{when}: {owed}"
+
+
 def longer(judge: Bench, attempt: Open, end: int | None) -> str:
     """How much longer a trace that has ended would decide an attempt, whatever it brings."""
     if end is None:
         return ""
     reach = horizon(judge.compiled.obligation.owed)
     if reach is None:
-        return "; no time bounds all of it"
+        return "; it has no deadline"
     latest = attempt.triggered + reach
     if latest <= end:
-        return "; a tick longer would decide it"
-    return f"; more than {format_ticks(latest - end)} longer would decide it"
+        return "; 1 ns more would have decided it"
+    return f"; a recording more than {format_ticks(latest - end)} longer would have decided it"

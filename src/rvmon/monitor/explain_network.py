@@ -8,7 +8,7 @@ from rvmon.dataflow.alone import known_alone, settled
 from rvmon.dataflow.network import Network
 from rvmon.monitor.bench import Open
 from rvmon.monitor.cause_network import NetworkCauseFinder
-from rvmon.monitor.explain import Explanation, earlier, longer
+from rvmon.monitor.explain import Explanation, earlier, longer, still_owed
 from rvmon.monitor.network_judge import WAITING, NetworkJudge
 from rvmon.monitor.owed_network import owed_at
 from rvmon.monitor.sentence import told
@@ -34,7 +34,7 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
         # What had long been settled when the attempt began was no deadline of it.
         if alone is not None and alone[0] >= attempt.token[1][0] - 1:
             deadline = alone[0]
-    sentence = told(words.sentence(cause, verdict), t, start, judge.flow)
+    sentence = told(words.sentence(cause, verdict), t, start, attempt.triggered, judge.flow)
     return Explanation(sentence, deadline=deadline, blame=blame)
 
 
@@ -52,7 +52,7 @@ def network_open(
     network = judge.moment(network, now).network
     owed = owed_at(network, core, position, network.grown, judge.compiled.words)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    reason = f"still owed: {owed or 'what lies ahead'}{longer(judge, attempt, end)}{doubt}"
+    reason = f"{still_owed(owed or 'what lies ahead', end)}{longer(judge, attempt, end)}{doubt}"
     return Explanation(reason, owed, _deadline(judge, attempt, now))
 
 

@@ -21,14 +21,16 @@ from rvmon.codegen.runtime.nodes import MISSING
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow import since as flowing
-from rvmon.dataflow.doubt import Doubt
 from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.hidden import Hidden
 from rvmon.dataflow.inputs import Inputs, Slot
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.positions import Positions
 from rvmon.errors import SnapshotError
 from rvmon.monitor.bench import Open
+from rvmon.monitor.doubt import Doubt
 from rvmon.monitor.episode import Episode
 from rvmon.monitor.generated import GeneratedLanes, GeneratedMonitor
 from rvmon.monitor.health import HealthLog
@@ -65,7 +67,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Intake: ("floor", "conflicts", "late", "crowded", "_held", "_taken"),
     Conflicts: ("_seen",),
     Lanes: _LANES,
-    GeneratedLanes: ("unit", "_counts", *_LANES),
+    GeneratedLanes: ("outages", "unit", "_counts", *_LANES),
     Unit: _UNIT,
     Rule: (
         *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
@@ -91,7 +93,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
         *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
         *("_dirty", "_fading", "_wakes", "_left"),
     ),
-    Inputs: ("slots", "occurrences", "updated", "expired", "changed"),
+    Inputs: ("slots", "occurrences", "updated", "expired", "changed", "outages"),
     Slot: (
         *(
             "value",
@@ -107,14 +109,14 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     ),
     flowing.Since: ("optimistic", "pessimistic", "wake"),
     flowing.Previous: ("seen", "wake"),
-    Doubt: ("_now", "_value", "wake"),
+    Hidden: ("_now", "_value", "wake"),
 }
 """Per class the fields that a run changes, in an order in which what is pointed at comes first."""
 
 _MADE: Mapping[str, type] = {
     one.__name__: one
     for one in (
-        *(Attempt, Blame, Open, Network, Positions, Run),
+        *(Attempt, Blame, Doubt, Outage, Open, Network, Positions, Run),
         *(generated.History, generated.Since, flowing._Run),
     )
 }

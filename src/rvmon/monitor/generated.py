@@ -10,6 +10,7 @@ from rvmon.codegen.python_unit import machine_of, unit_class
 from rvmon.codegen.runtime.nodes import LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
+from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.monitor.bench import Bench
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.hosted import HostedRule
@@ -18,6 +19,7 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.monitor.seat import Seat
+from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -85,6 +87,8 @@ class GeneratedLanes(Lanes):
         super().__init__(spec, forms.others, engine, sources, ledger)
         self.alone = not forms.others
         self.unit = unit
+        absent = frozenset() if sources is None else {*spec.signals, *spec.events} - sources
+        self.outages = outages_at_first(spec, absent)
         self._counts = [0] * len(forms.requirements)
         self._seats = [
             Seat(one, forms.plan, unit, ledger, self._counts, noted)
@@ -101,6 +105,16 @@ class GeneratedLanes(Lanes):
                     rule.judge.restless = rule.restless = True
                     unit.restless |= 1 << index
                     unit.active |= 1 << index
+
+    # What the unit calls.
+
+    def lost(self, signal: int, t: int, why: str) -> None:
+        """Hear that a signal is not known from `t` on."""
+        note_lost(self.outages, self.spec, self.unit.SIGNALS[signal], HealthKind(why), t)
+
+    def found(self, signal: int, t: int) -> None:
+        """Hear that a signal has a value from `t` on."""
+        note_found(self.outages, self.unit.SIGNALS[signal], t)
 
     # What the monitor calls.
 

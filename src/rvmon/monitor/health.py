@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.intake import MOST_HELD, Intake
+from rvmon.readers.alternation import Alternations
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
@@ -22,10 +23,12 @@ class HealthLog:
 
     Attributes:
         began: the instant of the first sample; `None` before it.
+        alternations: how known and unknown values of columns follow each other.
     """
 
     def __init__(self) -> None:
         self.began: int | None = None
+        self.alternations = Alternations()
         self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
 
     def note(self, t: int, values: Mapping[str, Value]) -> None:
@@ -51,17 +54,15 @@ class HealthLog:
         import numpy as np
 
         for name, column in columns.items():
-            if column.dtype.kind != "f":
-                continue
-            # Mostly one sum tells that there is none.
-            with np.errstate(invalid="ignore", over="ignore"):
-                total = np.add.reduce(column)
-            if np.isnan(total):
-                rows = np.flatnonzero(np.isnan(column))
-                if len(rows):
-                    key = (HealthKind.NAN, name, name)
-                    count, first = self._seen.get(key, (0, int(times[rows[0]])))
-                    self._seen[key] = (count + len(rows), first)
+            if holds_nan(column):
+                unknown = np.isnan(column)
+                self.alternations.note_column(name, unknown)
+                rows = np.flatnonzero(unknown)
+                key = (HealthKind.NAN, name, name)
+                count, first = self._seen.get(key, (0, int(times[rows[0]])))
+                self._seen[key] = (count + len(rows), first)
+            elif column.dtype.kind == "f":
+                self.alternations.note_known(name, len(column))
 
     def _add(self, shown: str, name: str, value: object, t: int) -> None:
         key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
@@ -124,6 +125,18 @@ class HealthLog:
                     Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since + when)
                 )
         return found
+
+
+def holds_nan(column: NDArray[Any]) -> bool:
+    """Whether a column of signals or events holds NaN."""
+    import numpy as np
+
+    if column.dtype.kind != "f":
+        return False
+    # Mostly one sum tells that there is none; that of infinities may be NaN, too.
+    with np.errstate(invalid="ignore", over="ignore"):
+        total = np.add.reduce(column)
+    return bool(np.isnan(total) and np.isnan(column).any())
 
 
 def by_name(entry: Health) -> tuple[str, HealthKind]:

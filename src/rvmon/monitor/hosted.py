@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from rvmon.automaton.machine import Token
@@ -9,6 +10,7 @@ from rvmon.codegen.plan import Plan
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.outages import Outage
 from rvmon.monitor.bench import Bench, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
@@ -36,6 +38,12 @@ class Standing(Flow):
     def follow(self) -> None:
         """Stand where the generated code stands now."""
         self.origin, self.position = self._unit.origin, self._unit.position
+
+    @property
+    def outages(self) -> Mapping[str, Outage]:
+        """See `Flow.outages`."""
+        found: Mapping[str, Outage] = self._unit.clerk.outages
+        return found
 
     def last_with(self, place: int, value: int, t: int) -> int | None:
         """See `Flow.last_with`; of the propositions that a requirement owes."""

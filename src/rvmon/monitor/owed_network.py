@@ -58,7 +58,7 @@ class _Owing:
                 return self._own(core, "by", position, high)
             case Release(right=right, low=low, high=high):
                 spawned = self._spawned(right, position - (-low // self.gap))
-                own = self._own(core, "to", position, high)
+                own = self._own(core, "until", position, high)
                 return all_of([spawned, own])
             case _:
                 assert_never(core)

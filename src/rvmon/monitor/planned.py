@@ -10,6 +10,7 @@ from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.planning import plan_of
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.spec.asked import requirements_asked
 
 
 def can_feed(requirement: CompiledRequirement) -> bool:
@@ -97,15 +98,11 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
         RvmonError: one of them is beyond generated code; which and why is said.
     """
     chosen = list(compiled.requirements.values())
-    if only is not None:
-        names = list(only)
+    names = requirements_asked(compiled.checked, only)
+    if names is not None:
         if not names:
             known = ", ".join(compiled.requirements)
             raise UnknownNameError(f"the list of requirements is empty: there are {known}")
-        for name in names:
-            if name not in compiled.requirements:
-                known = ", ".join(compiled.requirements)
-                raise UnknownNameError(f"no requirement `{name}`: there are {known}")
         chosen = [one for one in chosen if one.requirement.id in names]
     if compiled.checked.max_delay is not None:
         raise RvmonError(

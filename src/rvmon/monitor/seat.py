@@ -59,7 +59,7 @@ class Seat(Witness):
     def judge_now(self, rule: Rule) -> Judge:
         """The judge of the requirement, as it would stand now if it had judged."""
         unit = self._unit
-        flow = Stood(self._plan, unit.v, unit.since, unit.until)
+        flow = Stood(self._plan, unit.v, unit.since, unit.until, unit.clerk.outages)
         flow.origin, flow.position = unit.origin, unit.position
         return self.judge(flow, (rule.letter, rule.other), rule.position, rule.undecided())
 

@@ -55,41 +55,81 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
+class Turned:
+    """What a proposition was at the decision, and whether it became so just then.
+
+    Attributes:
+        proposition: which.
+        seen: `true` or `false`.
+    """
+
+    proposition: State
+    seen: str
+
+
+@dataclass(frozen=True, slots=True)
+class AfterTrigger:
+    """How long after the trigger the decision was, if what decided began there."""
+
+
+@dataclass(frozen=True, slots=True)
 class LastWith:
     """When a proposition had a truth for the last time.
 
     Attributes:
         proposition: of which.
         value: the truth.
+        verb: `been true`, `been false` or `occurred`.
+        lasting: whether it is more than a matter of single instants.
     """
 
     proposition: State
     value: int
+    verb: str
+    lasting: bool
 
 
-Sentence = tuple[str | Place | LastWith, ...]
+Part = str | Place | Turned | AfterTrigger | LastWith
+
+Sentence = tuple[Part, ...]
 """Its parts in order."""
 
 
-def told(sentence: Sentence, decided: int, start: int, flow: Flow) -> str:
+def told(sentence: Sentence, decided: int, start: int, triggered: int, flow: Flow) -> str:
     """A sentence about one decision.
 
     Args:
         sentence: about all that are like it.
         decided: its instant, ticks.
         start: the instant at which what decided was instantiated, ticks.
+        triggered: the instant of the trigger of the attempt, ticks.
         flow: as it stood at the decision.
     """
 
-    def part(one: str | Place | LastWith) -> str:
+    def part(one: Part) -> str:
         match one:
             case str():
                 return one
             case Place():
                 return format_ticks(one.ticks(decided, start))
-            case LastWith():
-                seen = flow.last_with(flow.graph.index[one.proposition], one.value, decided)
-                return "never" if seen is None else format_ticks(seen)
+            case Turned(proposition=proposition, seen=seen):
+                since = flow.since[flow.graph.index[proposition]]
+                verb = "became" if start < since == decided else "was"
+                long = f" (since {format_ticks(since)})" if since < decided else ""
+                return f"{verb} {seen} at {format_ticks(decided)}{long}"
+            case AfterTrigger():
+                if start != triggered or start == decided:
+                    return ""
+                return f", {format_ticks(decided - start)} after the trigger"
+            case LastWith(proposition=proposition, value=value, verb=verb):
+                last = flow.last_with(flow.graph.index[proposition], value, decided)
+                if last is None:
+                    return f"it had never {verb} before"
+                if last == decided:
+                    return f"it came at {format_ticks(last)}, too late"
+                if flow.gap == 1 and one.lasting:
+                    return f"it had {verb} until {format_ticks(last + 1)}"
+                return f"it had last {verb} at {format_ticks(last)}"
             case _:
                 assert_never(one)
 

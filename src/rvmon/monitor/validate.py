@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rvmon.errors import TraceError
+from rvmon.readers.coalesce import updates_in
 from rvmon.spec.checked import CheckedSpec, Type
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Kind
@@ -33,13 +34,14 @@ class Validator:
     ) -> None:
         self._signals = {name: signal.type for name, signal in spec.signals.items()}
         self._events = {name: event.fields for name, event in spec.events.items()}
+        self._ignoring = spec.ignoring
         self._single = single
         declared = {*self._signals, *self._events}
         self._expected = frozenset(declared if sources is None else declared & sources)
         self._declared = declared
 
     def check(self, t: int, values: Mapping[str, Any]) -> Mapping[str, Value]:
-        """The sample in plain Python values.
+        """The sample in plain Python values, without what is no update.
 
         Raises:
             TraceError: a name or a value that the specification does not know; it is named.
@@ -57,7 +59,7 @@ class Validator:
                 plain[name] = self._occurrence(name, value, t)
             else:
                 plain[name] = _scalar(value, type_, f"`{name}`", t)
-        return plain
+        return updates_in(plain, self._ignoring)
 
     def _unknown(self, name: str, t: int) -> str:
         where = f"sample at {format_ticks(t)}: "

@@ -8,6 +8,7 @@ from typing import Any
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.runtime.bulk import unpacked
 from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.outages import Outage
 from rvmon.monitor.bench import Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.explain import explained, just_before
@@ -85,7 +86,7 @@ class Witness:
         instants = {}
         for index, place in enumerate(self.places):
             instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
-        flow = Stood(self._plan, nodes, dict(zip(self.places, since, strict=True)), instants)
+        flow = Stood(self._plan, nodes, dict(zip(self.places, since, strict=True)), instants, {})
         passed = attempt.verdict is Verdict.PASS
         letter = letter if passed else other
         token = just_before(self._machine, before, letter, position, t, self._plan.gap)
@@ -110,15 +111,24 @@ class Stood(Flow):
         plan: has the nodes.
         values: by node, its truth.
         since: by node of a letter, the position from which on it has had that.
+        outages: by name what was not known.
         until: by three times the node plus a truth, the last position at which it had that before.
     """
 
-    def __init__(self, plan: Plan, values: Any, since: Any, until: Any) -> None:
+    def __init__(
+        self, plan: Plan, values: Any, since: Any, until: Any, outages: Mapping[str, Outage]
+    ) -> None:
         self.graph = plan.graph
         self.gap = plan.gap
         self.values = values
         self.since = since
         self._instants = until
+        self._outages = outages
+
+    @property
+    def outages(self) -> Mapping[str, Outage]:
+        """See `Flow.outages`."""
+        return self._outages
 
     def last_with(self, place: int, value: int, t: int) -> int | None:
         """See `Flow.last_with`; of the propositions that the requirement owes."""

@@ -3,22 +3,76 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.core import Constant, Core, Literal, Release, Sense, Until
-from rvmon.formula.lower import Origin
+from rvmon.formula.lower import Origin, has_future
 from rvmon.formula.progress import after, value
 from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.cause import Cause
-from rvmon.monitor.sentence import Base, LastWith, Place, Sentence
-from rvmon.spec.checked import Formula, Unary, UnaryOp
-from rvmon.spec.printer import format_duration, format_formula
+from rvmon.monitor.sentence import AfterTrigger, Base, LastWith, Place, Sentence, Turned
+from rvmon.spec.checked import EventAtom, Formula, Unary, UnaryOp
+from rvmon.spec.printer import format_formula
+from rvmon.spec.tense import is_pulse
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
 _APART = 50
 """Instants that are so many binary digits apart are told from each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Atom:
+    """A proposition as people read of it.
+
+    Attributes:
+        quoted: its text.
+        positive: whether it has to be true.
+        is_event: whether it occurs, rather than being true.
+        lasting: whether what it has to be is more than a matter of single instants.
+    """
+
+    quoted: str
+    positive: bool
+    is_event: bool
+    lasting: bool
+
+    def truth(self, right: bool) -> str:
+        """What it is if it is as it has to be, or is not."""
+        return "true" if self.positive is right else "false"
+
+    def was(self, right: bool) -> str:
+        """The same, as what was seen."""
+        if self.is_event:
+            return "occurred" if self.positive is right else "did not occur"
+        return f"was {self.truth(right)}"
+
+    def had_to(self, verb: str) -> str:
+        """What was required, with `be` or `stay`."""
+        if self.is_event:
+            return "it had to occur" if self.positive else "it was not to occur"
+        return f"it had to {verb} {self.truth(True)}"
+
+    @property
+    def kept(self) -> str:
+        """That it was all the time as it had to be."""
+        return self.was(True) if self.is_event else f"stayed {self.truth(True)}"
+
+    @property
+    def due(self) -> str:
+        """What had to come."""
+        if self.is_event:
+            return "had to occur" if self.positive else "had to be absent"
+        return "had to come true" if self.positive else "had to become false"
+
+    @property
+    def been(self) -> str:
+        """What it had done when it was last as it had to be."""
+        if self.is_event and self.positive:
+            return "occurred"
+        return "been absent" if self.is_event else f"been {self.truth(True)}"
 
 
 class Words:
@@ -59,63 +113,91 @@ class Words:
 
     def sentence(self, cause: Cause, verdict: bool) -> Sentence:
         """One sentence about a decision and all that have this cause."""
-        node, decided = cause.node, Place(Base.DECISION)
-        if isinstance(node, Literal):
-            return (f"{self._named(node, verdict)} at ", decided)
-        if cause.over:
+        node = cause.node
+        if cause.over and not isinstance(node, Literal):
             return self._window_over(node)
         if cause.literal is None:
-            return (f"`{self.text(node)}` {_decided(verdict)} at ", decided)
-        named = self._named(cause.literal, verdict)
-        if isinstance(node, Until):
-            if verdict:
-                return (f"{named} ", Place(Base.AGE), " after ", Place(Base.START))
-            return (f"{named} at ", decided, f", before `{self.text(node.right)}`")
+            became = "was fulfilled" if verdict else "could be fulfilled no more"
+            return (f"{self._quoted(node)} {became} at ", Place(Base.DECISION))
+        atom = self._atom(cause.literal)
         if verdict:
-            return (f"{named} at ", decided, ", which ends what was owed")
+            seen: Sentence = (f"{atom.quoted} {atom.was(True)} at ", Place(Base.DECISION))
+            return (*seen, *self._in_time(node))
+        if atom.is_event:
+            seen = (f"{atom.quoted} {atom.was(False)} at ", Place(Base.DECISION))
+        else:
+            seen = (f"{atom.quoted} ", Turned(cause.literal.proposition, atom.truth(False)))
+        return (*seen, *self._asked(node, atom))
+
+    def _in_time(self, node: Literal | Until | Release) -> Sentence:
+        """What is to be said of what came true and ended an obligation."""
+        if isinstance(node, Literal):
+            return ()
+        if isinstance(node, Release):
+            return ("; after that nothing more was owed",)
+        after: Sentence = (", ", Place(Base.AGE), " after ", Place(Base.START))
+        high = self.window(node)[1]
+        return after if high is None else (*after, "; it was due by ", Place(Base.START, high))
+
+    def _asked(self, node: Literal | Until | Release, atom: _Atom) -> Sentence:
+        """What was required of a proposition that was otherwise."""
+        if isinstance(node, Literal):
+            return (f"; {atom.had_to('be')} then",)
+        if isinstance(node, Until):
+            high = self.window(node)[1]
+            due: Sentence = () if high is None else (", due by ", Place(Base.START, high))
+            return (
+                AfterTrigger(),
+                f"; {atom.had_to('stay')} until {self._quoted(node.right)}",
+                *due,
+            )
+        formula = self.formula(node)
+        if formula is None or not has_future(formula):  # a `whenever` or `always` around it
+            all_along = " at all times" if isinstance(node.left, Constant) else " then"
+            return (f"; {atom.had_to('be')}{all_along}",)
         if not isinstance(node.left, Constant):
-            return (f"{named} at ", decided)
-        return (f"{named} ", Place(Base.AGE), f" into {self._kept(node, cause)}")
-
-    def _kept(self, node: Release, cause: Cause) -> str:
-        """What was to be kept up, in two words: `never-for-2 s`, `always`."""
-        origin = self._origins.get(cause.literal) if cause.literal else None
-        never = origin is not None and not self._is_positive(origin)
-        first, last = self.window(node)
-        if last is None:
-            return "never" if never else "always"
-        span = f"for-{format_duration(last)}"
-        if first > 0:
-            span = f"from-{format_duration(first)}-{span}"
-        return f"never-{span}" if never else span
-
-    def _is_positive(self, origin: Origin) -> bool:
-        formula, positive = origin.formula, origin.positive
-        while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
-            formula, positive = formula.operand, not positive
-        return positive
-
-    def _named(self, literal: Literal, verdict: bool) -> str:
-        """The proposition that decided, with its truth where that is not plain."""
-        origin = self._origins.get(literal)
-        if origin is None:
-            return "a proposition"
-        formula, positive = origin.formula, origin.positive
-        while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
-            formula, positive = formula.operand, not positive
-        return f"`{format_formula(formula)}`" + ("" if positive is verdict else " false")
+            return (AfterTrigger(), f"; {atom.had_to('stay')} until {self._quoted(node.left)}")
+        low, high = self.window(node)
+        from_ = (" from ", Place(Base.START, low))
+        if high is None:
+            return (AfterTrigger(), f"; {atom.had_to('stay')}", *from_, " on")
+        if low == high:
+            return (AfterTrigger(), f"; {atom.had_to('be')} at ", Place(Base.START, high))
+        to = Place(Base.START, high)
+        if low == 0 and not atom.is_event:
+            return (AfterTrigger(), f"; {atom.had_to('stay')} until ", to)
+        return (AfterTrigger(), f"; {atom.had_to('stay')}", *from_, " to ", to)
 
     def _window_over(self, node: Until | Release) -> Sentence:
         low, high = self.window(node)
+        first = Place(Base.START, low)
         last = Place(Base.DECISION) if high is None else Place(Base.START, high)
-        window = ("window [", Place(Base.START, low), ", ", last)
         right = node.right
+        atom = self._atom(right) if isinstance(right, Literal) else None
         if isinstance(node, Release):
-            return (*window, f"] over, `{self.text(right)}` throughout")
-        if not isinstance(right, Literal):
-            return (*window, f"] closed without `{self.text(right)}`")
-        seen = LastWith(right.proposition, TRUE if right.sense is Sense.TRUE else FALSE)
-        return (*window, f"] closed, `{self.text(right)}` last true: ", seen)
+            held = "held" if atom is None else atom.kept
+            named = self._quoted(right) if atom is None else atom.quoted
+            return (f"{named} {held} from ", first, " to ", last)
+        window: Sentence = (" at ", last) if low == high else (" between ", first, " and ", last)
+        if atom is None or not isinstance(right, Literal):
+            return (f"{self._quoted(right)} had to come true", *window, ", and did not")
+        value = TRUE if right.sense is Sense.TRUE else FALSE
+        seen = LastWith(right.proposition, value, atom.been, atom.lasting)
+        return (f"{atom.quoted} {atom.due}", *window, ", and did not; ", seen)
+
+    def _quoted(self, node: Core) -> str:
+        return "what was owed" if self.formula(node) is None else f"`{self.text(node)}`"
+
+    def _atom(self, literal: Literal) -> _Atom:
+        """A proposition, and what it has to be for the literal to hold."""
+        origin = self._origins.get(literal)
+        if origin is None:
+            return _Atom("a proposition", literal.sense is Sense.TRUE, False, True)
+        formula, positive = origin.formula, origin.positive
+        while isinstance(formula, Unary) and formula.op is UnaryOp.NOT:
+            formula, positive = formula.operand, not positive
+        quoted, is_event = f"`{format_formula(formula)}`", isinstance(formula, EventAtom)
+        return _Atom(quoted, positive, is_event, not (positive and is_pulse(formula)))
 
     def blame(self, cause: Cause, t: int, start: int, flow: Flow) -> Blame:
         """What failed at `t`, instantiated at `start`."""
@@ -156,7 +238,7 @@ class Words:
         if clock == NO_CLOCK or not isinstance(node, Until | Release) or node.high is None:
             return text
         last = anchors[clock] + node.high
-        return f"{text} {'by' if isinstance(node, Until) else 'to'} {format_ticks(last)}"
+        return f"{text} {'by' if isinstance(node, Until) else 'until'} {format_ticks(last)}"
 
 
 def all_of(parts: Sequence[str]) -> str:
@@ -166,7 +248,7 @@ def all_of(parts: Sequence[str]) -> str:
     '`p` and `q` by 7 s'
     """
     kept = dict.fromkeys(part for part in parts if part)
-    dated = tuple(part.rpartition(word)[0] for part in kept for word in (" by ", " to "))
+    dated = {f"{part.rpartition(word)[0]}`" for part in kept for word in ("` by ", "` until ")}
     return " and ".join(part for part in kept if part not in dated)
 
 
@@ -189,7 +271,3 @@ def deadline(residual: Residual, anchors: Sequence[int]) -> int | None:
     """The last instant before time alone settles what is owed; see `Attempt`."""
     found = settled_alone(residual, anchors)
     return None if found is None else found[0]
-
-
-def _decided(verdict: bool) -> str:
-    return "came true" if verdict else "came false"

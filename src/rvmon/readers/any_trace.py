@@ -2,39 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rvmon.trace.sample import Recording, Sample, Trace
+from rvmon.trace.sample import Recording, Trace
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import ticks_of_seconds
+
+if TYPE_CHECKING:
+    from rvmon.readers.columns import TableRecording
+    from rvmon.readers.pairs import PairRecording
+    from rvmon.readers.recording import FileRecording
 
 
-def recording_of(trace: Any, schema: Schema, *, time: str, ordered: bool) -> Recording:
+def recording_of(
+    trace: Any, schema: Schema, *, ordered: bool, sources: frozenset[str] | None = None
+) -> Recording:
     """A trace as a recording; it need not be read yet.
 
     Args:
-        trace: a path, columns by name (arrays, an Arrow table), a recording, or an iterable of
-            `(t, values)` with t in seconds.
-        schema: the declared names.
-        time: the time column of columns; if its name ends in `_ns`, integer ticks.
-        ordered: whether a stamp of a file that is before the one above it is an error.
+        trace: a path, a table (columns by name, an Arrow table, a data frame), a recording, or an
+            iterable of `(t, values)` with t in seconds.
+        schema: the declared names, and how the trace tells them; a recording says so itself.
+        ordered: whether a stamp that is before the one above it is an error.
+        sources: the names that can arrive; default those that the trace has.
 
     Raises:
         TraceError: the trace cannot be read.
     """
+    recording: FileRecording | TableRecording | PairRecording | None = _of_columns_or_lines(
+        trace, schema, ordered=ordered
+    )
+    if recording is None and hasattr(trace, "names") and hasattr(trace, "end"):
+        given: Recording = trace
+        return given if sources is None else Trace(tuple(given), sources, given.end)
+    if recording is None:
+        from rvmon.readers.pairs import PairRecording
+
+        recording = PairRecording(trace, schema, ordered=ordered)
+    if sources is not None:
+        recording.names = sources
+    return recording
+
+
+def _of_columns_or_lines(
+    trace: Any, schema: Schema, *, ordered: bool
+) -> FileRecording | TableRecording | None:
+    """A file or a table as a recording; `None` if it is neither."""
     if isinstance(trace, str | Path):
         from rvmon.readers.recording import FileRecording
 
         return FileRecording(trace, schema, ordered=ordered)
-    if hasattr(trace, "names") and hasattr(trace, "end"):
-        recording: Recording = trace
-        return recording
-    if isinstance(trace, Mapping) or hasattr(trace, "column_names"):
-        from rvmon.readers.columns import trace_of_columns
+    from rvmon.readers.tables import columns_by_name
 
-        return trace_of_columns(trace, schema, time)
-    from rvmon.readers.pairs import pairs_of
+    columns = columns_by_name(trace)
+    if columns is None:
+        return None
+    from rvmon.readers.columns import TableRecording
 
-    return Trace(tuple(Sample(ticks_of_seconds(t), values) for t, values in pairs_of(trace)))
+    return TableRecording(columns, schema, ordered=ordered)

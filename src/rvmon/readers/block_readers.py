@@ -15,13 +15,16 @@ if TYPE_CHECKING:
     Reader = Callable[[str | Path, Schema, frozenset[str]], Iterator[Block]]
 
 
-def reader_of(path: str | Path, ignored: Counter[str]) -> Reader | None:
-    """What reads blocks of a file, by the ending of its name.
+def reader_of(path: str | Path, schema: Schema, ignored: Counter[str]) -> Reader | None:
+    """What reads blocks of a file, by the ending of its name; `None` if each row has to be read.
 
     Args:
         path: of the file.
+        schema: says whether values stand for no update: these are looked for in rows.
         ignored: counts undeclared names, where each line has its own.
     """
+    if schema.gaps:
+        return None
     match Path(path).suffix.lower():
         case ".csv":
             from rvmon.readers.csv_blocks import csv_blocks

@@ -57,6 +57,21 @@ def coalesce(
         yield pending
 
 
+def updates_in(values: Mapping[str, Value], ignoring: frozenset[str]) -> Mapping[str, Value]:
+    """What a sample says, without NaN and null of signals of which these are no update.
+
+    >>> updates_in({"x": None, "y": float("nan"), "z": 1.0}, frozenset({"x", "z"}))
+    {'y': nan, 'z': 1.0}
+    """
+    if not ignoring:
+        return values
+    return {
+        name: value
+        for name, value in values.items()
+        if name not in ignoring or (value is not None and value == value)
+    }
+
+
 def _merge(
     first: Sample, then: Mapping[str, Value], events: Container[str], conflicts: Conflicts
 ) -> dict[str, Value]:

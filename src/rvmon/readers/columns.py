@@ -1,121 +1,108 @@
-"""Columns in memory (NumPy arrays, lists, an Arrow table) as samples."""
+"""Columns in memory as samples, row by row."""
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Iterator, Mapping, Sequence
-from numbers import Integral
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.trace.sample import Sample, Trace
-from rvmon.trace.schema import Schema
-from rvmon.trace.time import ticks_of_seconds, whole_ticks
+from rvmon.readers.csv_rows import Layout, layout_of, row_values
+from rvmon.readers.doubtful_unit import doubt_unit
+from rvmon.readers.naming import stamps_among
+from rvmon.readers.rows import Row, Rows
+from rvmon.readers.steps import LOOKED_AT
+from rvmon.readers.tables import cells_of
+from rvmon.readers.values import plain
+from rvmon.trace.health import Health
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.stamps import ticks_of_stamp
 
 
-def trace_of_columns(table: Any, schema: Schema, time: str) -> Trace:
-    """Columns as a recording; see `columns_of` and `column_samples` for what is taken and raised.
+class TableRecording:
+    """A table in memory as a recording, row by row.
 
-    >>> trace_of_columns({"t": [0, 1]}, Schema({}, {}), "t").names
-    frozenset()
+    Attributes:
+        columns: by name, see `rvmon.readers.tables.columns_by_name`.
+        layout: what they are.
+        names: declared names that have a source.
+        end: `None`: it ends with its last row.
+        ignored: the columns that stand for nothing.
+        rows: what makes samples of it.
+
+    >>> from rvmon.trace.schema import Kind
+    >>> table = TableRecording({"t": [0, 1], "v": [2, None]}, Schema({"v": Kind.REAL}, {}))
+    >>> [sample.values for sample in table]
+    [{'v': 2.0}, {}]
     """
-    columns = columns_of(table)
-    names = frozenset(columns) & {*schema.signals, *schema.events} - {time}
-    return Trace(tuple(column_samples(columns, schema, time)), names)
+
+    end: int | None = None
+
+    def __init__(self, columns: Mapping[str, Any], schema: Schema, *, ordered: bool = True) -> None:
+        """Look at the names of columns.
+
+        Args:
+            columns: by name; undeclared ones are passed over, and so is a signal or event by the
+                name of the time column, as in files.
+            schema: the declared names, and how the table tells them.
+            ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+
+        Raises:
+            TraceError: there is no such time column.
+        """
+        self.columns = columns
+        header = list(columns)
+        self.layout: Layout = layout_of(header, stamps_among(header, schema), schema)
+        self.names: frozenset[str] | None = self.layout.names
+        self.ignored = self.layout.ignored
+        self.rows = Rows(schema, "row", ordered=ordered)
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Samples in order of the table, equal stamps merged.
+
+        Raises:
+            TraceError: a column is none, they differ in length, or a row is wrong.
+        """
+        return self.rows.samples(self._read())
+
+    def _read(self) -> Iterator[Row]:
+        """Number from 0, ticks and values of each row."""
+        layout = self.layout
+        places = [layout.time, *(column.index for column in layout.columns)]
+        names = [layout.header[place] for place in places]
+        cells = {name: cells_of(name, self.columns[name]) for name in names}
+        lengths = {name: len(column) for name, column in cells.items()}
+        if len(set(lengths.values())) > 1:
+            listed = ", ".join(f"`{name}` {length}" for name, length in lengths.items())
+            raise TraceError(f"columns differ in length: {listed}")
+        for row, (stamp, *own) in enumerate(zip(*cells.values(), strict=True)):
+            yield row, _ticks(stamp, layout.stamps, row), values_of_cells(layout, own)
+
+    def unit_doubts(self) -> list[Health]:
+        """Whether its first stamps look like milliseconds; of a table that was read."""
+        stamps = self.layout.stamps
+        if stamps.is_said or stamps.unit != "s":
+            return []
+        column = self.columns[stamps.column]
+        first = cells_of(stamps.column, getattr(column, "iloc", column)[:LOOKED_AT])
+        return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)
 
 
-def columns_of(table: Any) -> dict[str, list[Any]]:
-    """Turn a mapping of arrays, or an Arrow table, into lists.
-
-    Raises:
-        TraceError: it is neither, a column is none, there are two of a name, or they differ in
-            length.
-
-    >>> columns_of({"t": [0, 1], "v": [2.0, 3.0]})
-    {'t': [0, 1], 'v': [2.0, 3.0]}
-    """
-    if hasattr(table, "column_names"):
-        columns = _arrow_columns(table)
-    elif isinstance(table, Mapping):
-        columns = {str(name): _cells(name, column) for name, column in table.items()}
-    else:
-        raise TraceError(
-            f"expected a path, columns by name or (t, values) pairs, found {type(table).__name__}"
-        )
-    lengths = {name: len(column) for name, column in columns.items()}
-    if len(set(lengths.values())) > 1:
-        listed = ", ".join(f"`{name}` {length}" for name, length in lengths.items())
-        raise TraceError(f"columns differ in length: {listed}")
-    return columns
-
-
-def _arrow_columns(table: Any) -> dict[str, list[Any]]:
-    names = table.column_names
-    for name in names:
-        if names.count(name) > 1:
-            raise TraceError(f"column `{name}` stands twice in the table")
-    return {name: arrow_cells(table.column(name)) for name in names}
-
-
-def arrow_cells(column: Any) -> list[Any]:
-    """The cells of an Arrow array; dates and durations as text: they are no numbers of seconds."""
-    from pyarrow import types
-
-    if types.is_temporal(column.type):
-        return [str(cell) for cell in column.to_numpy(zero_copy_only=False)]
-    cells: list[Any] = column.to_pylist()
-    return cells
-
-
-def _cells(name: Any, column: Any) -> list[Any]:
-    """The cells of an array or a list, as `arrow_cells` gives them."""
-    if getattr(column, "ndim", 1) > 0 and not isinstance(column, str | bytes):
-        if getattr(getattr(column, "dtype", None), "kind", None) in ("m", "M"):
-            return [str(cell) for cell in column]
-        try:
-            return list(column.tolist() if hasattr(column, "tolist") else column)
-        except TypeError:
-            pass
-    found = reprlib.repr(column)
-    raise TraceError(f"column `{name}`: expected an array or a list of values, found {found}")
-
-
-def column_samples(
-    columns: Mapping[str, Sequence[Any]], schema: Schema, time: str = "t"
-) -> Iterator[Sample]:
-    """One sample per row: every declared signal is updated, events occur where they are true.
+def values_of_cells(layout: Layout, cells: Sequence[Any]) -> dict[str, Value]:
+    """What a row of values says; `None` is absent.
 
     Args:
-        columns: of equal length; undeclared ones are passed over, and so is a signal or event by
-            the name of the time column, as in files.
-        schema: the declared names.
-        time: the column of seconds; if its name ends in `_ns`, of integer ticks.
-
-    Raises:
-        TraceError: there is no such time column, or an instant is no finite number; of ticks, no
-            whole one.
+        layout: what the columns are.
+        cells: in the order of its columns.
     """
-    if time not in columns:
-        raise TraceError(
-            f"no time column `{time}`: name it with time=…; there are {', '.join(columns)}"
-        )
-    names = [
-        name
-        for name in columns
-        if name != time and (name in schema.signals or name in schema.events)
-    ]
-    in_ticks = time.endswith("_ns")
-    for row, stamp in enumerate(columns[time]):
-        t = _ticks(stamp, time, row) if in_ticks else ticks_of_seconds(stamp)
-        yield Sample(t, {name: columns[name][row] for name in names})
+    found = zip(layout.columns, map(plain, cells), strict=True)
+    return row_values(((column, cell) for column, cell in found if cell is not None), layout.gaps)
 
 
-def _ticks(stamp: Any, time: str, row: int) -> int:
-    """A stamp of ticks: a whole number, be it held as a float."""
-    whole = isinstance(stamp, Integral) and not isinstance(stamp, bool)
-    if not whole and not (isinstance(stamp, float) and stamp.is_integer()):
-        raise TraceError(
-            f"`{time}` holds whole numbers of ticks (ns), found {stamp!r} in row {row}: "
-            "give integers, or seconds in a column whose name does not end in `_ns`"
-        )
-    return whole_ticks(int(stamp))
+def _ticks(stamp: Any, stamps: Stamps, row: int) -> int:
+    """The instant of a row; ticks may be held as floats that are whole."""
+    whole = stamps.unit == "ns" and isinstance(stamp, float) and stamp.is_integer()
+    try:
+        return ticks_of_stamp(int(stamp) if whole else stamp, stamps)
+    except TraceError as error:
+        raise TraceError(f"row {row}: {error}") from None

@@ -12,7 +12,7 @@ import numpy as np
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_rows import Column, Layout, read_layout
-from rvmon.readers.decimals import Cells, decimals, nanoseconds, truth_values, whole_numbers
+from rvmon.readers.decimals import Cells, decimals, instants, truth_values, whole_numbers
 from rvmon.readers.held import held_values
 from rvmon.readers.pieces import BLOCK, whole_lines
 from rvmon.readers.ticks import ticks_in_range
@@ -80,22 +80,22 @@ def _plain_layout(header: bytes, schema: Schema) -> Layout:
 def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[str, Any]) -> Block:
     text = np.frombuffer(body, np.uint8)
     ends = np.flatnonzero((text == ord(",")) | (text == ord("\n")))
-    rows, rest = divmod(len(ends), layout.width)
+    width = len(layout.header)
+    rows, rest = divmod(len(ends), width)
     if rest:
         raise NotPlainError
-    table = ends.reshape(rows, layout.width)
+    table = ends.reshape(rows, width)
     is_end = text[table] == ord("\n")
     if not is_end[:, -1].all() or is_end[:, :-1].any():
         raise NotPlainError
-    starts = np.concatenate(([0], ends[:-1] + 1)).reshape(rows, layout.width)
+    starts = np.concatenate(([0], ends[:-1] + 1)).reshape(rows, width)
     if (table - starts).max() > csv.field_size_limit():  # whoever reads rows refuses it
         raise NotPlainError
 
     def cells(index: int) -> Cells:
         return Cells(text, starts[:, index], table[:, index])
 
-    read = whole_numbers if layout.in_ticks else nanoseconds
-    times = _plain(read(cells(layout.time)))
+    times = _plain(instants(cells(layout.time), layout.stamps.unit))
     if not (times[1:] > times[:-1]).all():
         raise NotPlainError
     try:

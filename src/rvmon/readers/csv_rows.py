@@ -1,17 +1,19 @@
-"""CSV: a header, a time column `t` or `t_ns`, a column per signal, event or payload field."""
+"""CSV: a header, a time column, a column per signal, event or payload field."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.values import is_whole, scalar_of_text, shorten
+from rvmon.readers.naming import aliases_of, stamps_among
+from rvmon.readers.values import as_declared, scalar_of_text, shorten
+from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Scalar, Value
-from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_text
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import ticks_of_cell
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,31 +25,43 @@ class Column:
     field: str | None
     kind: Kind
 
+    @property
+    def called(self) -> str:
+        """The name in the header."""
+        return self.name if self.field is None else f"{self.name}.{self.field}"
+
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What the header says.
+    """What the header says, and how its rows are read.
 
     Attributes:
-        width: number of columns.
+        header: names of the columns.
         time: index of the time column.
-        in_ticks: whether it is `t_ns`.
+        stamps: what it holds.
         signals: columns of signals.
         events: columns of events and of their payload fields.
         ignored: names of the columns that the spec does not declare.
+        gaps: values that stand for no update.
     """
 
-    width: int
+    header: tuple[str, ...]
     time: int
-    in_ticks: bool
+    stamps: Stamps
     signals: tuple[Column, ...]
     events: tuple[Column, ...]
     ignored: tuple[str, ...]
+    gaps: Gaps
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """The columns that the spec reads, without the time."""
+        return self.signals + self.events
 
     @property
     def names(self) -> frozenset[str]:
         """The declared names that have a column."""
-        return frozenset(column.name for column in (*self.signals, *self.events))
+        return frozenset(column.name for column in self.columns)
 
 
 def _other_separator(header: list[str]) -> str:
@@ -69,17 +83,24 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
         if name in seen:
             raise TraceError(f"column `{shorten(name)}` stands twice in the header")
         seen[name] = index
-    times = [name for name in ("t", "t_ns") if name in seen]
-    if len(times) != 1:
-        found = ", ".join(f"`{shorten(name)}`" for name in header[:8]) or "nothing"
-        raise TraceError(
-            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
-            f"in the header; found {'both' if times else found}{_other_separator(header)}"
-        )
+    stamps = stamps_among(header, schema, _other_separator(header))
+    return layout_of(header, stamps, schema)
+
+
+def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
+    """Match names, none of which stands twice, with the declared ones.
+
+    Args:
+        header: of all columns, in order.
+        stamps: of the time column, one of them; it is no signal.
+        schema: the declared names, and what columns are called.
+    """
+    aliases = aliases_of(schema)
     signals, events, ignored = [], [], []
-    for name, index in seen.items():
+    for index, column in enumerate(header):
+        name = aliases.get(column, column)
         event, _, field = name.rpartition(".")
-        if name == times[0]:
+        if column == stamps.column:
             continue
         if name in schema.signals:
             signals.append(Column(index, name, None, schema.signals[name]))
@@ -88,14 +109,15 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
         elif field in schema.events.get(event, {}):
             events.append(Column(index, event, field, schema.events[event][field]))
         else:
-            ignored.append(name)
+            ignored.append(column)
     return Layout(
-        len(header),
-        seen[times[0]],
-        times[0] == "t_ns",
+        tuple(header),
+        header.index(stamps.column),
+        stamps,
         tuple(signals),
         tuple(events),
         tuple(ignored),
+        schema.gaps,
     )
 
 
@@ -123,57 +145,55 @@ def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
     Raises:
         TraceError: a cell is no value of its kind; the message names the column.
     """
-    if len(row) != layout.width:
-        raise TraceError(f"{len(row)} cells where the header has {layout.width}")
-    t = _ticks(row[layout.time], in_ticks=layout.in_ticks)
-    values: dict[str, Value] = {}
-    for column in layout.signals:
-        if cell := row[column.index]:
-            values[column.name] = _scalar(cell, column)
-    given = [(column, cell) for column in layout.events if (cell := row[column.index])]
-    return t, values | occurrences((column, _scalar(cell, column)) for column, cell in given)
+    if len(row) != len(layout.header):
+        raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}")
+    t = ticks_of_cell(row[layout.time], layout.stamps)
+    no_update = layout.gaps.no_update
+    absent = "" if no_update is None else str(no_update)
+    given = (
+        (column, _scalar(cell, column))
+        for column in layout.columns
+        if (cell := row[column.index]) and cell != absent
+    )
+    return t, row_values(given, layout.gaps)
 
 
-def occurrences(cells: Iterable[tuple[Column, Scalar]]) -> dict[str, Value]:
-    """Events of a row: an event with a payload cell occurs unless its own cell says false.
+def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Value]:
+    """What a row says: the one reading of rows, whatever holds them.
+
+    A signal is updated by its cell. An event with a payload cell occurs unless its own cell says
+    false; one without occurs where its own cell is true.
 
     Args:
-        cells: those that say something, of the columns of events and of their fields.
+        cells: those that are not absent.
+        gaps: the values that stand for no update.
+
+    >>> from rvmon.trace.gaps import NO_GAPS
+    >>> columns = [Column(1, "pick", None, Kind.BOOL), Column(2, "pick", "id", Kind.INT)]
+    >>> [row_values(zip(columns, cells), NO_GAPS) for cells in ([True, 7.0], [False, 7], [1])]
+    [{'pick': {'id': 7}}, {'pick': False}, {'pick': True}]
     """
-    flags: dict[str, Scalar] = {}
+    values: dict[str, Any] = {}
     payloads: dict[str, dict[str, Scalar]] = {}
-    for column, value in cells:
+    for column, cell in cells:
+        if gaps and gaps.holds(cell):
+            continue
+        value = as_declared(cell, column.kind)
         if column.field is None:
-            flags[column.name] = value
+            values[column.name] = value
         else:
             payloads.setdefault(column.name, {})[column.field] = value
-    found: dict[str, Value] = dict(flags)
-    found.update(
-        (name, payload) for name, payload in payloads.items() if flags.get(name) is not False
-    )
-    return found
+    for name, payload in payloads.items():
+        if values.get(name) is not False:
+            values[name] = payload
+    return values
 
 
 def _scalar(cell: str, column: Column) -> Scalar:
     try:
         return scalar_of_text(cell, column.kind)
     except TraceError as error:
-        name = column.name if column.field is None else f"{column.name}.{column.field}"
-        raise TraceError(f"column `{name}`: {error}") from None
-
-
-def _ticks(cell: str, *, in_ticks: bool) -> int:
-    if not in_ticks:
-        return ticks_of_text(cell)
-    with suppress(ValueError):
-        # Python reads 1_000 as a number; no recording means it.
-        t = int(cell.replace("_", "?"))
-        if abs(t) < TIME_LIMIT:
-            return t
-    # Python reads no more than some thousand digits, which are a whole number as well.
-    if is_whole(cell):
-        raise TraceError(f"time `{shorten(cell)}` is out of range: at most 2**62 ns (146 years)")
-    raise TraceError(f"time `{shorten(cell)}` is not a whole number of nanoseconds")
+        raise TraceError(f"column `{column.called}`: {error}") from None
 
 
 def csv_samples(

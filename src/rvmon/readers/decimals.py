@@ -19,6 +19,9 @@ _MOST = 19
 
 _POINT = np.uint8((ord(".") - ord("0")) % 256)
 
+_PLACES = {"s": 9, "ms": 6, "us": 3}
+"""So many digits behind the point are whole ticks."""
+
 _POWERS = 10.0 ** np.arange(_DIGITS + 1)
 
 
@@ -65,20 +68,27 @@ def decimals(cells: Cells) -> NDArray[np.float64] | None:
     return np.where(minus & (mantissa == 0), -0.0, made)
 
 
-def nanoseconds(cells: Cells) -> NDArray[np.int64] | None:
-    """Cells of decimal seconds as ticks; `None` if one has more than 9 digits behind the point.
+def instants(cells: Cells, unit: str) -> NDArray[np.int64] | None:
+    """Cells of stamps as ticks; `None` if one is no plain number, or no whole number of ticks.
+
+    Args:
+        cells: decimal numbers, of `ns` whole ones.
+        unit: `s`, `ms`, `us` or `ns`; of others, `None` is returned.
 
     >>> text = np.frombuffer(b"0.5,12", np.uint8)
-    >>> nanoseconds(Cells(text, np.array([0, 4]), np.array([3, 6]))).tolist()
+    >>> instants(Cells(text, np.array([0, 4]), np.array([3, 6])), "s").tolist()
     [500000000, 12000000000]
     """
-    read = _mantissas(cells, _MOST, _reader(cells))
-    if read is None:
+    if unit == "ns":
+        return whole_numbers(cells)
+    places = _PLACES.get(unit)
+    read = None if places is None else _mantissas(cells, _MOST, _reader(cells))
+    if read is None or places is None:
         return None
     mantissa, behind = read
-    if (behind > 9).any():
+    if (behind > places).any():
         return None
-    factor = 10 ** (9 - behind)
+    factor = 10 ** (places - behind)
     if (np.abs(mantissa) > (1 << 62) // factor).any():
         return None
     ticks: NDArray[np.int64] = mantissa * factor

@@ -21,9 +21,12 @@ def held_values(some: NDArray[Any], given: NDArray[np.bool_], before: Any | None
         before: the value above the first row; `None` if there is none.
 
     Raises:
-        NotPlainError: there is no value for the first row.
+        NotPlainError: there is no value for the first row, or some are NaN: in the gaps these would
+            count as further ones.
     """
     if before is None and not given[:1].all():
+        raise NotPlainError
+    if before != before or (some.dtype.kind == "f" and np.isnan(some).any()):
         raise NotPlainError
     first = np.array([] if before is None else [before], some.dtype if len(some) else None)
     filled: NDArray[Any] = np.concatenate((first, some))[np.cumsum(given) - 1 + len(first)]

@@ -18,9 +18,11 @@ import numpy as np
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.held import held_values
+from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.pieces import BLOCK, whole_lines
-from rvmon.readers.ticks import ticks_in_range, ticks_of_column
+from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.stamps import stamps_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,7 +60,7 @@ def jsonl_blocks(
     """Read a plain file of JSON lines.
 
     Plain is: objects of numbers and truth values with the names of the first line, be they nested;
-    no null, labels, payloads or lists of events; instants that increase.
+    no null, labels, payloads or lists of events; instants that increase; names as declared.
 
     Args:
         path: of the file.
@@ -71,6 +73,8 @@ def jsonl_blocks(
         NotPlainError: it is not; the blocks before were right.
     """
     ignored.clear()
+    if schema.stamps is not None or schema.columns:
+        raise NotPlainError
     decoder = shape = None
     last = None
     held: dict[str, Any] = {}
@@ -117,7 +121,7 @@ def _shape_of(line: bytes, schema: Schema) -> tuple[Any, _Shape]:
         first = msgspec.json.decode(line)
     except (msgspec.DecodeError, RecursionError):
         raise NotPlainError from None
-    stamps = [name for name in ("t", "t_ns") if isinstance(first, dict) and name in first]
+    stamps = [name for name in DEFAULT_COLUMNS if isinstance(first, dict) and name in first]
     if len(stamps) != 1 or ("events" in first and "events" not in schema.signals):
         raise NotPlainError
     shape = _Shape(stamps[0])
@@ -183,7 +187,7 @@ def _instants(stamps: list[Any], shape: _Shape) -> NDArray[np.int64]:
     if found.dtype.kind not in ("i" if shape.stamp == "t_ns" else "fi"):
         raise NotPlainError
     try:
-        return ticks_in_range(found) if shape.stamp == "t_ns" else ticks_of_column(found)
+        return ticks_of_column(found, stamps_of(shape.stamp))
     except TraceError:  # whoever reads lines says in which it is
         raise NotPlainError from None
 

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 import msgspec
 
 from rvmon.errors import TraceError
-from rvmon.readers.values import DESCRIPTION, shorten
+from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
+from rvmon.readers.values import DESCRIPTION, as_declared, fits, shorten
+from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
+from rvmon.trace.stamps import stamps_of, ticks_of_stamp
+from rvmon.trace.time import TIME_LIMIT
 
 _MISSING = object()
+
+_NAN = re.compile(r"\bNaN\b")
 
 _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 """The first half of an escaped surrogate pair without the second."""
@@ -32,8 +39,14 @@ def jsonl_samples(
         ignored: names that the spec does not declare are counted here.
 
     Raises:
-        TraceError: with the line's number.
+        TraceError: with the line's number; or a field of an event is to have another name.
     """
+    for name in schema.columns:
+        if name not in schema.signals and name not in schema.events:
+            raise TraceError(
+                f"`{name}` is a field of an event: in JSON lines only signals and events can "
+                "have other names"
+            )
     decode = msgspec.json.Decoder().decode
     for number, line in enumerate(lines, 1):
         if number == 1:
@@ -41,7 +54,7 @@ def jsonl_samples(
         if not line.strip():
             continue
         try:
-            t, values = read_object(decode(line), schema, ignored)
+            t, values = read_object(_decoded(line, decode), schema, ignored)
         except msgspec.DecodeError as error:
             if "truncated" in str(error) and _HALF_PAIR.search(line):
                 raise TraceError(
@@ -54,6 +67,17 @@ def jsonl_samples(
         except (TraceError, RecursionError) as error:
             raise TraceError(f"line {number}: {error}") from None
         yield number, t, values
+
+
+def _decoded(line: str, decode: Callable[[str], Any]) -> Any:
+    """The value of a line; JSON has no NaN, but many that write JSON do."""
+    try:
+        return decode(line)
+    except msgspec.DecodeError:
+        if _NAN.search(line):
+            with suppress(ValueError):
+                return json.loads(line)
+        raise
 
 
 def read_object(
@@ -72,17 +96,19 @@ def read_object(
     if not isinstance(decoded, dict):
         raise TraceError('expected an object such as {"t": 0.5, "speed": 0.2}')
     fields = dict(decoded)
-    t = _ticks(fields)
+    t = _ticks(fields, schema)
+    aliases = aliases_of(schema)
     values: dict[str, Value] = {}
     if "events" not in schema.signals and isinstance(fields.get("events"), list | str):
         for name in _listed(fields.pop("events")):
             if not isinstance(name, str):
                 raise TraceError(f"`events`: `{_written(name)}` is not the name of an event")
-            if name in schema.events:
-                values[name] = True
+            declared = aliases.get(name, name)
+            if declared in schema.events:
+                values[declared] = True
             else:
                 ignored[name] += 1
-    _collect(fields, "", schema, values, ignored)
+    _collect(fields, "", schema, aliases, values, ignored)
     return t, values
 
 
@@ -100,78 +126,87 @@ def _written(value: object) -> str:
     return shorten(value if isinstance(value, str) else msgspec.json.encode(value).decode())
 
 
-def _ticks(fields: dict[str, Any]) -> int:
-    seconds, ticks = fields.pop("t", _MISSING), fields.pop("t_ns", _MISSING)
-    if (seconds is _MISSING) == (ticks is _MISSING):
-        raise TraceError("expected one time, `t` (seconds) or `t_ns` (integer nanoseconds)")
-    if seconds is not _MISSING:
-        if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
-            raise TraceError(f"time `{_written(seconds)}` is not a number of seconds")
-        return ticks_of_seconds(seconds)
-    if isinstance(ticks, (int, float)) and not isinstance(ticks, bool):
-        if abs(ticks) >= TIME_LIMIT:  # beyond 64 bits integers are decoded as floats
-            raise TraceError(
-                f"time `{_written(ticks)}` is out of range: at most 2**62 ns (146 years)"
-            )
-        if isinstance(ticks, int):
-            return ticks
-    raise TraceError(f"time `{_written(ticks)}` is not a whole number of nanoseconds")
+def _ticks(fields: dict[str, Any], schema: Schema) -> int:
+    """The instant of a line; what says it is taken out of the fields."""
+    if schema.stamps is not None:
+        stamps = schema.stamps
+        stamp = _taken(fields, stamps.column)
+        if stamp is _MISSING:
+            raise TraceError(f"there is no time `{shorten(stamps.column)}`")
+    else:
+        given = [name for name in DEFAULT_COLUMNS if name in fields]
+        if len(given) != 1:
+            raise TraceError("expected one time, `t` (seconds) or `t_ns` (integer nanoseconds)")
+        stamps = stamps_of(given[0])
+        stamp = fields.pop(given[0])
+    if stamps.unit == "ns" and isinstance(stamp, float) and abs(stamp) >= TIME_LIMIT:
+        # Beyond 64 bits integers are decoded as floats.
+        raise TraceError(f"time `{_written(stamp)}` is out of range: at most 2**62 ns (146 years)")
+    is_number = isinstance(stamp, int | float) and not isinstance(stamp, bool)
+    return ticks_of_stamp(stamp if is_number else _written(stamp), stamps)
+
+
+def _taken(fields: dict[str, Any], path: str) -> Any:
+    """A value out of nested fields whose names are joined with dots."""
+    if path in fields:
+        return fields.pop(path)
+    head, dot, rest = path.partition(".")
+    inner = fields.get(head)
+    if not dot or not isinstance(inner, dict):
+        return _MISSING
+    return _taken(inner, rest)
 
 
 def _collect(
     fields: Mapping[str, object],
     prefix: str,
     schema: Schema,
+    aliases: Mapping[str, str],
     values: dict[str, Value],
     ignored: Counter[str],
 ) -> None:
     for key, value in fields.items():
-        name = prefix + key
+        path = prefix + key
+        name = aliases.get(path, path)
+        known = name in schema.signals or name in schema.events
+        if known and schema.gaps and schema.gaps.holds(value):
+            continue
         if name in schema.signals:
             values[name] = _scalar(value, schema.signals[name], name)
         elif name in schema.events:
-            values[name] = _occurrence(value, schema.events[name], name)
+            values[name] = _occurrence(value, schema.events[name], name, schema.gaps)
         elif isinstance(value, dict):
-            _collect(value, name + ".", schema, values, ignored)
+            _collect(value, path + ".", schema, aliases, values, ignored)
         else:
-            ignored[name] += 1
+            ignored[path] += 1
 
 
-def _occurrence(value: object, fields: Mapping[str, Kind], name: str) -> Value:
-    if value is None or isinstance(value, bool):
-        return value
+def _occurrence(value: object, fields: Mapping[str, Kind], name: str, gaps: Gaps) -> Value:
+    made = as_declared(value, Kind.BOOL)
+    if made is None or isinstance(made, bool):
+        return made
     if isinstance(value, dict):
-        return _payload(value, fields, name)
+        return _payload(value, fields, name, gaps)
     if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
-        return tuple(_payload(item, fields, name) for item in value)
+        return tuple(_payload(item, fields, name, gaps) for item in value)
     raise TraceError(
         f"event `{name}`: expected true, false or a payload such as {{...}}, "
         f"found `{_written(value)}`"
     )
 
 
-def _payload(value: Mapping[str, object], fields: Mapping[str, Kind], name: str) -> Payload:
+def _payload(
+    value: Mapping[str, object], fields: Mapping[str, Kind], name: str, gaps: Gaps
+) -> Payload:
     return {
         key: _scalar(item, fields[key], f"{name}.{key}")
         for key, item in value.items()
-        if key in fields
+        if key in fields and not gaps.holds(item)
     }
 
 
 def _scalar(value: object, kind: Kind, name: str) -> Scalar:
-    match kind, value:
-        case _, None:
-            return None
-        case Kind.BOOL, bool():
-            return value
-        case Kind.BOOL, 0 | 1:
-            return value == 1
-        case ((Kind.INT | Kind.REAL), bool()):
-            pass
-        case Kind.INT, int():
-            return value
-        case Kind.REAL, int() | float():
-            return float(value)
-        case Kind.LABEL, str():
-            return value
+    made = as_declared(value, kind)
+    if fits(made, kind):
+        return made  # type: ignore[no-any-return]
     raise TraceError(f"field `{name}`: `{_written(value)}` is not {DESCRIPTION[kind]}")

@@ -1,22 +1,24 @@
-"""Parquet: a time column `t` or `t_ns`, a column per signal, event or payload field, as in CSV.
+"""Parquet: a time column, a column per signal, event or payload field, as in CSV.
 
 Needs pyarrow, the extra `arrow`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.columns import arrow_cells
-from rvmon.readers.csv_rows import Column, Layout, occurrences, read_layout
+from rvmon.readers.columns import values_of_cells
+from rvmon.readers.csv_rows import Column, Layout, read_layout
+from rvmon.readers.tables import arrow_cells
 from rvmon.readers.values import shorten
 from rvmon.trace.sample import Value
-from rvmon.trace.schema import Kind, Schema
-from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds, whole_ticks
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import ticks_of_stamp
+from rvmon.trace.time import TIME_LIMIT
 
 if TYPE_CHECKING:
     import numpy as np
@@ -52,8 +54,8 @@ def _opened(path: str | Path) -> Any:
         raise _damage(error) from None
 
 
-def _batches(path: str | Path, names: Sequence[str]) -> Iterator[Any]:
-    """Columns of the file, some rows at a time.
+def _batches(path: str | Path, layout: Layout) -> Iterator[list[Any]]:
+    """The column of stamps and those that the spec reads, as the layout has them, rows by rows.
 
     Raises:
         TraceError: it cannot be read to its end.
@@ -61,6 +63,8 @@ def _batches(path: str | Path, names: Sequence[str]) -> Iterator[Any]:
     file = _opened(path)
     import pyarrow
 
+    places = [layout.time, *(column.index for column in layout.columns)]
+    names = [layout.header[place] for place in places]
     batches = file.iter_batches(ROWS, columns=names)
     while True:
         try:
@@ -69,7 +73,7 @@ def _batches(path: str | Path, names: Sequence[str]) -> Iterator[Any]:
             return
         except (pyarrow.ArrowException, OSError) as error:
             raise _damage(error) from None
-        yield batch
+        yield [batch.column(name) for name in names]
 
 
 def _damage(error: Exception) -> TraceError:
@@ -113,37 +117,33 @@ def parquet_blocks(
 
 def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) -> Iterator[Block]:
     layout = parquet_layout(path, schema)
-    columns = (*layout.signals, *layout.events)
+    columns = layout.columns
     if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
         raise NotPlainError
-    stamp = "t_ns" if layout.in_ticks else "t"
     last = -TIME_LIMIT
     held: dict[str, Any] = {}
-    for batch in _batches(path, [stamp, *(c.name for c in columns)]):
-        times = _instants(batch, stamp, in_ticks=layout.in_ticks)
+    for stamps, *batch in _batches(path, layout):
+        times = _instants(stamps, layout.stamps)
         if not len(times) or times[0] <= last or not (times[1:] > times[:-1]).all():
             raise NotPlainError
         last = int(times[-1])
         found = {}
-        for column in columns:
+        for column, cells in zip(columns, batch, strict=True):
             gaps = column.name in fillable
             if column in layout.events:
-                found[column.name] = _occurrences(batch, column.name, gaps=gaps)
+                found[column.name] = _occurrences(cells, gaps=gaps)
                 continue
-            found[column.name] = _values_held(batch, column, held, gaps=gaps)
+            found[column.name] = _values_held(cells, column, held, gaps=gaps)
             held[column.name] = found[column.name][-1]
         yield Block(times, found)
 
 
-def _instants(batch: Any, stamp: str, *, in_ticks: bool) -> NDArray[np.int64]:
-    from rvmon.readers.ticks import ticks_in_range, ticks_of_column
+def _instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
+    from rvmon.readers.ticks import ticks_of_column
 
-    column = batch.column(stamp)
-    if column.null_count:
+    if column.null_count or stamps.unit == "iso":
         raise NotPlainError
-    if in_ticks:
-        return ticks_in_range(_array_of(column, "i"))
-    return ticks_of_column(_array_of(column, "fi"))
+    return ticks_of_column(_array_of(column, "i" if stamps.unit == "ns" else "fi"), stamps)
 
 
 def _array_of(column: Any, kinds: str) -> NDArray[Any]:
@@ -153,18 +153,17 @@ def _array_of(column: Any, kinds: str) -> NDArray[Any]:
     return array
 
 
-def _occurrences(batch: Any, name: str, *, gaps: bool) -> NDArray[Any]:
+def _occurrences(column: Any, *, gaps: bool) -> NDArray[Any]:
     """Where an event occurs; a null says that it does not."""
     from pyarrow import types
 
-    column = batch.column(name)
     if not types.is_boolean(column.type) or (column.null_count and not gaps):
         raise NotPlainError
     return _array_of(column.fill_null(False) if column.null_count else column, "b")
 
 
 def _values_held(
-    batch: Any, column: Column, held: Mapping[str, Any], *, gaps: bool
+    cells: Any, column: Column, held: Mapping[str, Any], *, gaps: bool
 ) -> NDArray[Any]:
     """A signal of which nulls hold the value above them, the first ones that of the batch before.
 
@@ -175,7 +174,7 @@ def _values_held(
 
     from rvmon.readers.held import held_values
 
-    cells, kinds = batch.column(column.name), _FITTING[column.kind]
+    kinds = _FITTING[column.kind]
     if not cells.null_count:
         return _array_of(cells, kinds)
     if not gaps:
@@ -194,52 +193,12 @@ def parquet_samples(
         TraceError: with the row's number.
     """
     layout = parquet_layout(path, schema)
-    stamp = "t_ns" if layout.in_ticks else "t"
-    columns = (*layout.signals, *layout.events)
-    names = [stamp, *(_called(column) for column in columns)]
-    truths = [_called(column) for column in columns if column.kind is Kind.BOOL]
     row = 0
-    for batch in _batches(path, names):
-        for own in zip(*(arrow_cells(batch.column(name)) for name in names), strict=True):
+    for batch in _batches(path, layout):
+        for stamp, *cells in zip(*map(arrow_cells, batch), strict=True):
             row += 1
-            cells = dict(zip(names, own, strict=True))
-            _refuse_numbers_as_truths(cells, truths, row)
-            yield row, _ticks(cells[stamp], row, in_ticks=layout.in_ticks), _values(cells, layout)
-
-
-def _refuse_numbers_as_truths(cells: Mapping[str, Any], names: Sequence[str], row: int) -> None:
-    for name in names:
-        cell = cells[name]
-        if isinstance(cell, int | float) and not isinstance(cell, bool):
-            raise TraceError(
-                f"row {row}: column `{shorten(name)}`: the number `{cell}` is no truth value: "
-                "cast the column to bool"
-            )
-
-
-def _called(column: Column) -> str:
-    return column.name if column.field is None else f"{column.name}.{column.field}"
-
-
-def _values(cells: Mapping[str, Any], layout: Layout) -> dict[str, Value]:
-    given = {
-        column.name: cells[column.name]
-        for column in layout.signals
-        if cells[column.name] is not None
-    }
-    found = [(column, cells[_called(column)]) for column in layout.events]
-    return given | occurrences((column, value) for column, value in found if value is not None)
-
-
-def _ticks(stamp: Any, row: int, *, in_ticks: bool) -> int:
-    try:
-        if isinstance(stamp, bool):
-            pass
-        elif in_ticks and isinstance(stamp, int):
-            return whole_ticks(stamp)
-        elif not in_ticks and isinstance(stamp, int | float):
-            return ticks_of_seconds(stamp)
-    except TraceError as error:
-        raise TraceError(f"row {row}: {error}") from None
-    wanted = "a whole number of nanoseconds" if in_ticks else "a number of seconds"
-    raise TraceError(f"row {row}: time `{shorten(str(stamp))}` is not {wanted}")
+            try:
+                t = ticks_of_stamp(stamp, layout.stamps)
+            except TraceError as error:
+                raise TraceError(f"row {row}: {error}") from None
+            yield row, t, values_of_cells(layout, cells)

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import sys
-from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections import Counter, deque
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
-from rvmon.errors import TimeOrderError, TraceError
-from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
+from rvmon.readers.doubtful_unit import doubt_unit
+from rvmon.readers.rows import Row, Rows
+from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import format_ticks
+from rvmon.trace.stamps import stamps_of
 
 FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet"}
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
@@ -29,6 +32,7 @@ class FileRecording:
         names: declared names that have a column; `None` for JSON lines, where any may come.
         end: `None`: these formats end with their last sample.
         ignored: the names that are not declared, counted as they are read.
+        rows: what makes samples of it.
     """
 
     end: int | None = None
@@ -38,7 +42,7 @@ class FileRecording:
 
         Args:
             path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`.
-            schema: the names that the spec declares.
+            schema: the names that the spec declares, and how the recording tells them.
             ordered: whether a stamp before the one above it is an error; not so under `max delay`.
 
         Raises:
@@ -47,10 +51,11 @@ class FileRecording:
         self.path = str(path)
         self._schema = schema
         self._ordered = ordered
-        self._conflicts = Conflicts()
         self.ignored: Counter[str] = Counter()
         self._format = _format_of(self.path)
+        self.rows = Rows(schema, "row" if self._format == "parquet" else "line", ordered=ordered)
         self._open_text: TextIO | None = None
+        self._stamps = schema.stamps or stamps_of("t")
         self.names: frozenset[str] | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
@@ -64,6 +69,7 @@ class FileRecording:
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
+        self._stamps = layout.stamps
         self.ignored.update(dict.fromkeys(layout.ignored, 1))
 
     def __iter__(self) -> Iterator[Sample]:
@@ -86,10 +92,20 @@ class FileRecording:
             else:
                 from rvmon.readers.jsonl_rows import jsonl_samples
 
-                yield from self._merged(jsonl_samples(text, self._schema, self.ignored))
+                lines = jsonl_samples(self._seeing_unit(text), self._schema, self.ignored)
+                yield from self._merged(lines)
 
-    def _merged(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
-        return coalesce(self._in_order(lines), self._schema.events, self._conflicts)
+    def _seeing_unit(self, lines: Iterable[str]) -> Iterator[str]:
+        """The same lines; the first one says what the stamps are, if nobody did."""
+        for number, line in enumerate(lines):
+            if number == 0 and self._schema.stamps is None and '"t_ns"' in line:
+                self._stamps = stamps_of("t_ns")
+            yield line
+
+    def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
+        yield from self.rows.samples(rows)
+        if not self.rows.count:
+            raise TraceError("holds no sample")
 
     @property
     def fraction_read(self) -> float:
@@ -98,28 +114,22 @@ class FileRecording:
             return 0.0
         return self._open_text.buffer.tell() / max(1, Path(self.path).stat().st_size)
 
+    def unit_doubts(self) -> list[Health]:
+        """Whether its first stamps look like milliseconds; they are read if they were not yet."""
+        first = self.rows.first
+        if not first and self._stamps.unit == "s" and self.path != "-":
+            again = FileRecording(self.path, self._schema, ordered=self._ordered)
+            deque(islice(again, LOOKED_AT), 0)
+            first, self._stamps = again.rows.first, again._stamps
+        return doubt_unit(first, self._stamps)
+
     def health(self) -> list[Health]:
-        """What was noticed while reading: undeclared names and conflicting values."""
+        """What was noticed while reading: undeclared names, conflicts, a doubtful unit of time."""
         ignored = [
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
         ]
-        return ignored + self._conflicts.health()
-
-    def _in_order(self, lines: Iterator[tuple[int, int, Mapping[str, Value]]]) -> Iterator[Sample]:
-        last: int | None = None
-        unit = "row" if self._format == "parquet" else "line"
-        for line, t, values in lines:
-            if self._ordered and last is not None and t < last:
-                raise TimeOrderError(
-                    f"{unit} {line}: time goes backwards, from {format_ticks(last)} to "
-                    f"{format_ticks(t)}: sort the recording by time, or allow for late samples "
-                    "with `max delay` in the spec"
-                )
-            last = t
-            yield Sample(t, values)
-        if last is None:
-            raise TraceError("holds no sample")
+        return ignored + self.rows.conflicts() + self.unit_doubts()
 
     def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:
         try:

@@ -6,33 +6,40 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, ticks_of_seconds, whole_ticks
+from rvmon.trace.schema import Stamps
+from rvmon.trace.stamps import ticks_of_stamp
+from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT, whole_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_SECONDS = TIME_LIMIT // TICKS_PER_SECOND
-"""So many whole seconds are in range."""
 
+def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
+    """A column of stamps as ticks, each rounded once as `ticks_of_stamp` does.
 
-def ticks_of_column(seconds: NDArray[Any]) -> NDArray[np.int64]:
-    """Seconds to ticks, each rounded once as `ticks_of_seconds` does.
+    Args:
+        values: int[n] or float[n]; of ticks themselves, int[n].
+        stamps: says their unit, not `iso`.
 
     Raises:
         TraceError: a number is not finite or out of range.
     """
-    if not len(seconds):
+    if not len(values):
         return np.empty(0, np.int64)
-    if seconds.dtype.kind == "i":
-        _refuse(seconds, _SECONDS)
-        return seconds.astype(np.int64) * TICKS_PER_SECOND
-    values = seconds.astype(np.float64, copy=False)
-    _refuse(values, _SECONDS + 1)
+    if stamps.unit == "ns":
+        return ticks_in_range(values)
+    scale = TICKS_PER_UNIT[stamps.unit]
+    most = TIME_LIMIT // scale
+    if values.dtype.kind == "i":
+        _refuse(values, most, stamps)
+        return values.astype(np.int64) * scale
+    values = values.astype(np.float64, copy=False)
+    _refuse(values, most + 1, stamps)
     whole = np.floor(values)
-    parts = (values - whole) * 1e9
-    ticks = whole.astype(np.int64) * TICKS_PER_SECOND + np.rint(parts).astype(np.int64)
+    parts = (values - whole) * float(scale)
+    ticks = whole.astype(np.int64) * scale + np.rint(parts).astype(np.int64)
     for row in np.flatnonzero(np.abs(parts - np.floor(parts) - 0.5) < 1e-5):
-        ticks[row] = ticks_of_seconds(float(values[row]))
+        ticks[row] = ticks_of_stamp(float(values[row]), stamps)
     return ticks_in_range(ticks)
 
 
@@ -51,8 +58,8 @@ def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
     return made
 
 
-def _refuse(seconds: NDArray[Any], most: int) -> None:
-    """Refuse seconds beyond those bounds, and what is no number."""
-    if not -most <= seconds.min() <= seconds.max() <= most:
-        fine = (seconds >= -most) & (seconds <= most)
-        ticks_of_seconds(seconds[~fine][0].item())
+def _refuse(values: NDArray[Any], most: int, stamps: Stamps) -> None:
+    """Refuse stamps beyond those bounds, and what is no number."""
+    if not -most <= values.min() <= values.max() <= most:
+        fine = (values >= -most) & (values <= most)
+        ticks_of_stamp(values[~fine][0].item(), stamps)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from contextlib import suppress
-from typing import assert_never
+from typing import Any, assert_never
 
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
+from rvmon.trace.stamps import is_whole
 
 TRUE_WORDS = frozenset({"true", "True", "TRUE", "1"})
 FALSE_WORDS = frozenset({"false", "False", "FALSE", "0"})
@@ -19,14 +19,14 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
     """Read one cell of text.
 
     Args:
-        text: not empty; `nan` (any case) reads as NaN for reals.
+        text: not empty; `nan` (any case) reads as NaN, but for labels.
         kind: the declared kind of the signal or field.
 
     Raises:
         TraceError: the text is no value of that kind; the caller adds the place.
 
-    >>> scalar_of_text("1", Kind.BOOL), scalar_of_text("1", Kind.REAL)
-    (True, 1.0)
+    >>> [scalar_of_text("1.0", kind) for kind in (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)]
+    [True, 1, 1.0, '1.0']
     """
     match kind:
         case Kind.BOOL:
@@ -46,7 +46,70 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
             return text
         case _:
             assert_never(kind)
+    with suppress(ValueError):
+        number = float(text.replace("_", "?"))
+        made = as_declared(number, kind)
+        if made is None:
+            return number
+        if fits(made, kind):
+            return made  # type: ignore[no-any-return]
     raise TraceError(f"`{shorten(text)}` is not {DESCRIPTION[kind]}")
+
+
+_CLASSES = {Kind.BOOL: bool, Kind.INT: int, Kind.REAL: float, Kind.LABEL: str}
+
+_EXACT = 1 << 53
+"""Floats up to here are the whole numbers that they stand for."""
+
+
+def fits(value: Any, kind: Kind) -> bool:
+    """Whether a value is one of its kind, or unknown."""
+    return value is None or value.__class__ is _CLASSES[kind]
+
+
+def plain(cell: Any) -> Any:
+    """A cell as Python has it: NumPy's scalars as numbers and texts, pandas' NA as `None`."""
+    if cell.__class__ in (float, bool, int, str) or cell is None:
+        return cell
+    if type(cell).__name__ == "NAType":
+        return None
+    item = getattr(cell, "item", None)
+    if callable(item) and getattr(cell, "ndim", 1) == 0:
+        made = item()
+        # Dates and durations would become numbers of some unit of theirs.
+        return cell if getattr(cell.dtype, "kind", "") in "mM" or hasattr(made, "item") else made
+    return cell
+
+
+def as_declared(value: Any, kind: Kind) -> Any:
+    """A value as its kind takes it; one that the kind does not take, as it is.
+
+    Args:
+        value: as `plain` gives it.
+        kind: the declared kind of the signal or field.
+
+    Returns:
+        0 and 1 as truth values, whole floats as the whole numbers that they are, whole numbers as
+        reals; NaN where the kind has none as `None`, which is as unknown.
+
+    >>> as_declared(1.0, Kind.BOOL), as_declared(3.0, Kind.INT), as_declared(3, Kind.REAL)
+    (True, 3, 3.0)
+    >>> as_declared(2, Kind.BOOL), as_declared(float("nan"), Kind.INT)
+    (2, None)
+    """
+    if value.__class__ is _CLASSES[kind] or not isinstance(value, int | float):
+        return value
+    if value != value:
+        return value if kind is Kind.REAL else None
+    match kind:
+        case Kind.BOOL if value in (0, 1):
+            return value == 1
+        case Kind.INT if isinstance(value, float) and value.is_integer() and abs(value) <= _EXACT:
+            return int(value)
+        case Kind.REAL if not isinstance(value, bool):
+            with suppress(OverflowError):
+                return float(value)
+    return value
 
 
 DESCRIPTION = {
@@ -55,11 +118,6 @@ DESCRIPTION = {
     Kind.REAL: "a number",
     Kind.LABEL: "a label",
 }
-
-
-def is_whole(text: str) -> bool:
-    """Whether the text is a whole number, however many digits it has."""
-    return re.fullmatch(r"\s*[+-]?\d+\s*", text) is not None
 
 
 def shorten(text: str, width: int = 40) -> str:

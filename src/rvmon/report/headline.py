@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rvmon.report.afterword import with_afterword
 from rvmon.report.panel import Panel
 from rvmon.report.style import MARKS
 from rvmon.report.view import moment, with_moments
@@ -28,5 +29,6 @@ def headline(run: str, panel: Panel, origin: int) -> str:
         miss = f": {with_moments(panel.miss, panel.view)}" if panel.miss else ""
         return f"{panel.requirement} {MARKS[Verdict.NOT_TRIGGERED].word}, {run}{miss}"
     when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
-    reason = f": {with_moments(attempt.reason, panel.view)}" if attempt.reason else ""
+    told = with_afterword(attempt, panel.late)
+    reason = f": {with_moments(told, panel.view)}" if told else ""
     return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from rvmon.report.afterword import full_reason
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -70,7 +71,9 @@ def _add_case(
         ET.SubElement(case, "skipped", message=_clean(f"NT: never triggered{miss}"))
         return
     reasons = [
-        _clean(f"attempt {attempt.number}, {_when(attempt.decided)}: {attempt.reason}")
+        _clean(
+            f"attempt {attempt.number}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
+        )
         for attempt in report.of(name, verdict)
     ]
     kind = "failure" if verdict is Verdict.FAIL else "skipped"

@@ -24,6 +24,7 @@ class Panel:
         ghost: the nearest passing attempt, for a failed one.
         strands: the truth of each part of the requirement over the view; empty if that would take
             too long.
+        late: when what the attempt had awaited came after its deadline, ticks; `None`: it did not.
         miss: if it was never triggered, what the trigger lacked when it was nearest.
     """
 
@@ -34,6 +35,7 @@ class Panel:
     tracks: tuple[Track, ...]
     ghost: Ghost | None
     strands: tuple[Strand, ...] = ()
+    late: int | None = None
     miss: str = ""
 
     @property

@@ -43,6 +43,7 @@ def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET
         origin=report.origin,
         end=end,
         blamed=frozenset() if blame is None else blamed_names(requirement, blame),
+        late=panel.late,
         ghost=panel.ghost,
     )
     return e(

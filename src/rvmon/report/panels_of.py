@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from rvmon.explain.anatomy import Strand
 from rvmon.explain.dissect import strands_of
 from rvmon.explain.eye import Eye
+from rvmon.explain.late import late_arrivals
 from rvmon.explain.miss import nearest_miss
 from rvmon.report.choose import shown_attempts
 from rvmon.report.nearest import Candidate, nearest_passing
@@ -44,20 +45,23 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
     tracks = tracks_in(content.run)
     if not attempts:
         view = whole_run(report, samples[0].t if samples else report.origin)
-        yield Panel(panel_id(name, None), name, None, view, tracks, None, (), _miss(content, name))
+        miss = _miss(content, name)
+        yield Panel(panel_id(name, None), name, None, view, tracks, None, miss=miss)
     candidates: list[Candidate] = []
     if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
         candidates.append(Candidate(content.run, tracks))
         others = (other for other in content.others if other.samples)
         candidates.extend(Candidate(other, tracks_in(other)) for other in others)
     dissected = _Dissected(content, name)
+    late = _late(content, name, attempts)
     for attempt in attempts:
-        view = view_of(attempt, report)
+        came = late.get(attempt.number)
+        view = view_of(attempt, report, came)
         ghost = None
         if attempt.verdict is Verdict.FAIL:
             ghost = nearest_passing(attempt, tracks, view, candidates)
         strands = dissected.strands(attempt, view)
-        yield Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost, strands)
+        yield Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost, strands, came)
 
 
 class _Dissected:
@@ -102,6 +106,15 @@ def _miss(content: RunPage, name: str) -> str:
     if end is None:
         return ""
     return nearest_miss(content.spec, requirement, run.samples, end, _sources(content))
+
+
+def _late(content: RunPage, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
+    """What came after its deadline: as was found when the run was judged, or by looking now."""
+    run = content.run
+    if name in run.report.late or not run.samples or run.report.end is None:
+        return run.report.late.get(name, {})
+    requirement, end = content.spec.requirements[name], run.report.end
+    return late_arrivals(content.spec, requirement, attempts, run.samples, end, _sources(content))
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:

@@ -37,7 +37,7 @@ def parts_details(panel: Panel, origin: int, end: int) -> ET.Element | None:
     overlay = e(
         "div",
         {"class": "overlay"},
-        *guides_of(panel.attempt, panel.view, end),
+        *guides_of(panel.attempt, panel.view, end, panel.late),
         e("div", {"class": "cursor"}),
     )
     open_ = panel.attempt.verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE)

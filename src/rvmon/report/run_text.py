@@ -6,7 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rvmon.report.afterword import full_reason
 from rvmon.report.forecast import forecast_sentence
+from rvmon.report.wrapped import wrapped
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
@@ -52,17 +54,17 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     console.print(_verdict_table(report, spec))
     for name, requirement in spec.requirements.items():
         if name in report.misses:
-            console.print(_miss_text(name, report.misses[name]))
+            console.print(_miss_text(name, report.misses[name], console.width))
         for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             for attempt in islice(report.of(name, verdict), SHOWN_PER_REQUIREMENT):
-                console.print(_attempt_text(attempt, requirement))
+                console.print(_attempt_text(attempt, requirement, report, console.width))
             rest = report.counts.get(name, {}).get(verdict, 0) - SHOWN_PER_REQUIREMENT
             if rest > 0:
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")
     if report.goals:
         console.print(_goals_text(report.goals))
     for line in health_lines(report.health):
-        console.print(line)
+        console.print(line, markup=False)  # columns have names such as `speed [m/s]`
 
 
 def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
@@ -112,16 +114,17 @@ def _goals_text(goals: Mapping[str, Verdict]) -> Text:
     return text
 
 
-def _miss_text(name: str, miss: str) -> Text:
+def _miss_text(name: str, miss: str, width: int) -> Text:
     from rich.text import Text
 
     from rvmon.report.style import verdict_text
 
     mark = verdict_text(Verdict.NOT_TRIGGERED)
-    return Text.assemble((f"{name} ", "bold"), mark, f"  never triggered\n  {miss}\n")
+    told = f"  never triggered\n{wrapped(miss, width)}\n"
+    return Text.assemble((f"{name} ", "bold"), mark, told)
 
 
-def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
+def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, width: int) -> Text:
     from rich.text import Text
 
     from rvmon.diagnostics.snippet import snippet
@@ -136,7 +139,7 @@ def _attempt_text(attempt: Attempt, requirement: Requirement) -> Text:
         (f"{attempt.requirement} ", "bold"), verdict_text(attempt.verdict), f"  {when}\n"
     )
     if attempt.reason:
-        text.append(f"  {attempt.reason}\n")
+        text.append(f"{wrapped(full_reason(attempt, report), width)}\n")
     if attempt.forecast is not None:
         text.append(f"  {forecast_sentence(attempt.forecast)}\n")
     span = requirement.span
@@ -167,6 +170,9 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
     ignored = [health for health in found if health.kind is HealthKind.IGNORED]
     for health in found:
         if health in ignored:
+            continue
+        if health.kind is HealthKind.UNIT:
+            yield f"  {health.name}  warning: {health.remark}"
             continue
         first = "" if health.first is None else f", first at {format_ticks(health.first)}"
         times = "once" if health.count == 1 else f"{health.count} times"

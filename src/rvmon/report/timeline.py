@@ -44,6 +44,7 @@ def timeline(
     origin: int,
     end: int,
     blamed: frozenset[str] = frozenset(),
+    late: int | None = None,
     ghost: Ghost | None = None,
 ) -> ET.Element:
     """Draw a timeline.
@@ -55,18 +56,19 @@ def timeline(
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the run, ticks.
         blamed: the names that the failed part of the requirement reads.
+        late: when what the attempt had awaited came after its deadline, ticks.
         ghost: drawn behind the tracks, dashed.
     """
     ghosts = {track.name: track for track in ghost.tracks} if ghost else {}
     rows: list[Child] = []
     if attempt is not None:
-        rows.append(_obligation(attempt, view, origin, end))
+        rows.append(_obligation(attempt, view, origin, end, late))
     for track in tracks:
         offending = _offending(attempt) if track.name in blamed else ()
         other = ghosts.get(track.name)
         rows.append(track_row(track, view, end, offending, other, ghost.end if ghost else end))
     rows.append(axis_row(view, origin))
-    guides = [] if attempt is None else guides_of(attempt, view, end)
+    guides = [] if attempt is None else guides_of(attempt, view, end, late)
     overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
     return e("div", {"class": "timeline"}, *rows, overlay)
 
@@ -78,7 +80,9 @@ def _offending(attempt: Attempt | None) -> tuple[int, ...]:
     return tuple(max(instant, attempt.blame.window[0]) for instant in attempt.blame.at)
 
 
-def _obligation(attempt: Attempt, view: View, origin: int, end: int) -> ET.Element:
+def _obligation(
+    attempt: Attempt, view: View, origin: int, end: int, late: int | None
+) -> ET.Element:
     """The window in which something was owed, between labels of its instants."""
     first, last = _window(attempt)
     if last is None:
@@ -87,7 +91,7 @@ def _obligation(attempt: Attempt, view: View, origin: int, end: int) -> ET.Eleme
     right = min(view.fraction(max(end, first) if last is None else last), 1.0)
     kind = "window unbounded" if last is None else "window"
     bar = e("div", {"class": kind, "style": place_of(left, max(right - left, 0.0))})
-    labels = _labels(attempt, view, origin, end)
+    labels = _labels(attempt, view, origin, end, late)
     rows = 1 + max(row for _, row in labels)
     height = {"style": f"height:{rows * 1.35 + 0.9:g}rem"}
     plot = e("div", {"class": "plot owed", **height}, *(label for label, _ in labels), bar)
@@ -100,8 +104,10 @@ def _window(attempt: Attempt) -> tuple[int, int | None]:
     return attempt.triggered, attempt.deadline
 
 
-def _labels(attempt: Attempt, view: View, origin: int, end: int) -> list[tuple[ET.Element, int]]:
-    """Labels of trigger, deadline and decision, each in the first row in which it has room."""
+def _labels(
+    attempt: Attempt, view: View, origin: int, end: int, late: int | None
+) -> list[tuple[ET.Element, int]]:
+    """Labels of trigger, deadline, decision, late arrival: each in the first row with room."""
     wanted = [(attempt.triggered, "trigger", "▼", "trigger")]
     deadline = _window(attempt)[1]
     if deadline is not None and deadline != attempt.triggered:
@@ -111,6 +117,8 @@ def _labels(attempt: Attempt, view: View, origin: int, end: int) -> list[tuple[E
         wanted.append((attempt.decided, "decision", mark.sign, mark.word))
     else:
         wanted.append((end, "end", "■", "end of the run"))
+    if late is not None and late <= view.end:
+        wanted.append((late, "late", "◆", "came late"))
     taken: list[list[tuple[float, float]]] = []
     labels = []
     for instant, kind, sign, word in wanted:
@@ -139,9 +147,9 @@ def _labels(attempt: Attempt, view: View, origin: int, end: int) -> list[tuple[E
     return labels
 
 
-def guides_of(attempt: Attempt, view: View, end: int) -> list[ET.Element]:
-    """Lines through all rows at trigger, deadline and decision."""
-    wanted = [("trigger", attempt.triggered), ("deadline", _window(attempt)[1])]
+def guides_of(attempt: Attempt, view: View, end: int, late: int | None) -> list[ET.Element]:
+    """Lines through all rows at trigger, deadline, decision and late arrival."""
+    wanted = [("trigger", attempt.triggered), ("deadline", _window(attempt)[1]), ("late", late)]
     wanted.append(("end", end) if attempt.decided is None else ("decision", attempt.decided))
     return [
         e(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from rvmon.readers.coalesce import updates_in
 from rvmon.report.concerned import concerned_names, thresholds
 from rvmon.report.tracks import Track, TrackKind
 from rvmon.spec.checked import CheckedSpec, Requirement, Signal
@@ -33,7 +34,7 @@ def tracks_of(
         samples: of one run, in time order.
         health: says which names have no source.
     """
-    updates = _updates(samples, concerned_names(requirement))
+    updates = _updates(spec, samples, concerned_names(requirement))
     absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
     return tuple(
         _signal_track(spec.signals[name], requirement, seen)
@@ -44,11 +45,11 @@ def tracks_of(
 
 
 def _updates(
-    samples: Iterable[Sample], names: Sequence[str]
+    spec: CheckedSpec, samples: Iterable[Sample], names: Sequence[str]
 ) -> Mapping[str, list[tuple[int, Value]]]:
     updates: dict[str, list[tuple[int, Value]]] = {name: [] for name in names}
     for sample in samples:
-        for name, value in sample.values.items():
+        for name, value in updates_in(sample.values, spec.ignoring).items():
             if name in updates:
                 updates[name].append((sample.t, value))
     return updates

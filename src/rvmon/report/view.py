@@ -36,8 +36,14 @@ class View:
         return (instant - self.start) / (self.end - self.start)
 
 
-def view_of(attempt: Attempt, report: Report) -> View:
-    """From before the trigger to behind the decision and the deadline."""
+def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
+    """From before the trigger to behind the decision and the deadline.
+
+    Args:
+        attempt: the one that is shown.
+        report: that it is in.
+        late: when what it had awaited came after the deadline, ticks; shown if that is near.
+    """
     instants = [attempt.triggered]
     if attempt.decided is not None:
         instants.append(attempt.decided)
@@ -49,6 +55,8 @@ def view_of(attempt: Attempt, report: Report) -> View:
     if attempt.deadline is not None:
         instants.append(attempt.deadline)
     first, last = min(instants), max(instants)
+    if late is not None and late - last <= last - first:
+        last = max(last, late)
     margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 2)
     # Outside the run there is nothing to see: a little is shown, to tell where it begins and ends.
     little = margin // 4

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 from rvmon.explain.anatomy import Anatomy, Strand
 from rvmon.explain.spans import Spans
+from rvmon.report.afterword import with_afterword
 from rvmon.report.forecast import forecast_sentence
 from rvmon.report.style import MARKS, verdict_text
+from rvmon.report.wrapped import wrapped
 from rvmon.spec.checked import Requirement
 from rvmon.trace.time import format_ticks
 
@@ -32,7 +34,7 @@ def why_lines(anatomy: Anatomy, requirement: Requirement) -> Iterator[Text]:
     title = f"{attempt.requirement}#{attempt.number}"
     yield Text.assemble((f"{title}  ", "bold"), verdict_text(attempt.verdict))
     for line in _sentences(anatomy, requirement):
-        yield Text(textwrap.fill(line, WIDTH, initial_indent="  ", subsequent_indent="    "))
+        yield Text(wrapped(line, WIDTH))
     yield Text("")
     yield from _axis(anatomy)
     part = ""
@@ -53,7 +55,7 @@ def _sentences(anatomy: Anatomy, requirement: Requirement) -> Iterator[str]:
     for name, value in attempt.captured.items():
         yield f"{name} = {value}"
     if attempt.reason:
-        yield attempt.reason
+        yield with_afterword(attempt, anatomy.late)
     if attempt.forecast is not None:
         yield forecast_sentence(attempt.forecast)
 

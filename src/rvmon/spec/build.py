@@ -11,6 +11,7 @@ from lark import Token
 from lark.tree import Meta
 from lark.visitors import v_args
 
+from rvmon.diagnostics.span import Span
 from rvmon.spec.build_expressions import Children, ExpressionBuilder, first_of, unquoted
 from rvmon.spec.checked import Mode, Role, TimeModel
 from rvmon.spec.goals import BinKind
@@ -95,14 +96,18 @@ class Builder(ExpressionBuilder):
     def role(self, meta: Meta, children: Children) -> Role:
         return Role(str(children[0]))
 
+    def ignored(self, meta: Meta, _: Children) -> Span:
+        return self.span(meta)
+
     def stale(self, meta: Meta, children: Children) -> Any:
         return children[1]
 
     def signals(self, meta: Meta, children: Children) -> SignalItem:
         _, names, type_, *rest = children
         role = first_of([part for part in rest if isinstance(part, Role)])
-        stale = first_of([part for part in rest if not isinstance(part, Role)])
-        return SignalItem(names, type_, role, stale, self.span(meta))
+        ignored = first_of([part for part in rest if isinstance(part, Span)])
+        stale = first_of([part for part in rest if not isinstance(part, Role | Span)])
+        return SignalItem(names, type_, role, ignored, stale, self.span(meta))
 
     def event_name(self, meta: Meta, children: Children) -> EventSyntax:
         return EventSyntax(self.ident(children[0]), ())

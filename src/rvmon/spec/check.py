@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rvmon.spec.checked import CheckedSpec, Event, Requirement, Signal, TimeModel, Type
 from rvmon.spec.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.cycles import find_cycles
@@ -102,7 +104,15 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                 found = types.read(declared.type)
                 if found is not None:
                     type_, units[name] = found
-                    signals[name] = Signal(name, type_, declared.role, None, declared.name.span)
+                    if declared.ignored is not None and type_.kind is not Kind.REAL:
+                        findings.add(type_rules.ignored_nan(declared.ignored, str(type_.kind)))
+                    signals[name] = Signal(
+                        name,
+                        type_,
+                        declared.role,
+                        ignores_nan=declared.ignored is not None,
+                        span=declared.name.span,
+                    )
             case DeclaredEvent():
                 fields = {}
                 for field in declared.event.fields:
@@ -148,7 +158,7 @@ class _Types:
 
 def _with_staleness(checker: Checker, signal: Signal, limit: Expression) -> Signal:
     ticks = _positive(checker, limit, "the age at which a signal is stale")
-    return Signal(signal.name, signal.type, signal.role, ticks, signal.span)
+    return replace(signal, stale_after=ticks)
 
 
 def _positive(checker: Checker, expression: Expression, what: str) -> int | None:

@@ -46,12 +46,22 @@ class Type:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """A declared signal; `stale_after` in ticks."""
+    """A declared signal.
+
+    Attributes:
+        name: of the signal.
+        type: of its values.
+        role: who sets it.
+        stale_after: it is unknown so many ticks after its last update.
+        ignores_nan: whether NaN and null are no update of it, instead of an unknown value.
+        span: where its name is declared.
+    """
 
     name: str
     type: Type
     role: Role | None = None
     stale_after: int | None = None
+    ignores_nan: bool = False
     span: Span | None = None
 
 
@@ -389,3 +399,8 @@ class CheckedSpec:
     covers: Mapping[str, Cover] = field(default_factory=dict)
     coverpoints: Mapping[str, Coverpoint] = field(default_factory=dict)
     crosses: Mapping[str, Cross] = field(default_factory=dict)
+
+    @property
+    def ignoring(self) -> frozenset[str]:
+        """The signals of which NaN and null are no update."""
+        return frozenset(name for name, signal in self.signals.items() if signal.ignores_nan)

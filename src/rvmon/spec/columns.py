@@ -8,7 +8,7 @@ from rvmon.spec.layout import text_of
 from rvmon.spec.pieces import Piece
 
 Row = tuple[str, str, str, str, str]
-"""Word, names, type, role, limit of staleness."""
+"""Word, names, type, role, what it ignores and its limit of staleness."""
 
 
 def aligned(items: Sequence[Sequence[Piece]]) -> list[str]:
@@ -37,8 +37,8 @@ def _row(pieces: Sequence[Piece]) -> Row:
     kinds = [piece.kind for piece in pieces]
     depths = [piece.depth for piece in pieces]
     cuts = [1]
-    for kind in ("COLON", "ROLE", "STALE_AFTER"):
-        found = [n for n, k in enumerate(kinds) if k == kind and depths[n] == 0]
+    for cut in (("COLON",), ("ROLE",), ("IGNORE_NAN", "STALE_AFTER")):
+        found = [n for n, kind in enumerate(kinds) if kind in cut and depths[n] == 0]
         cuts.append(found[0] if found else -1)
     end = len(pieces)
     stale = cuts[3] if cuts[3] >= 0 else end

@@ -38,6 +38,7 @@ _WORDS = {
     "INFINITE": "`inf`",
     "EQUAL": "`=`",
     "STALE_AFTER": "`stale after`",
+    "IGNORE_NAN": "`ignore NaN`",
     "MONITOR_AS_RESPONSE": "`monitor as response`",
     "MONITOR_AS_WRITTEN": "`monitor as written`",
     "MAX_DELAY": "`max delay`",

@@ -57,11 +57,12 @@ class ImportItem:
 
 @dataclass(frozen=True, slots=True)
 class SignalItem:
-    """`signal a, b : TYPE ROLE stale after D`."""
+    """`signal a, b : TYPE ROLE ignore NaN stale after D`; `ignored` is where the words are."""
 
     names: tuple[Ident, ...]
     type: TypeSyntax
     role: Role | None
+    ignored: Span | None
     stale_after: Expression | None
     span: Span
 

@@ -60,6 +60,7 @@ def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> 
         or _never_mend(found, before.text)
         or _name_mend(found, before.text)
         or _let_mend(found, before.text)
+        or _ignore_mend(found, before.text)
         or _structure_mend(found, accepted, before.text)
         or _word_mend(found, accepted, parser, before.text)
         or _decimal_comma(before.text)
@@ -100,6 +101,13 @@ def _let_mend(found: str, before: str) -> str:
     behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
     if found == "let" or behind:
         return "`let` stands behind what is owed: `upon … then … let x = …`"
+    return ""
+
+
+def _ignore_mend(found: str, before: str) -> str:
+    """What mends what a signal ignores, in a wrong place or spelling."""
+    if found == "ignore" and before.startswith("signal"):
+        return "write `ignore NaN` behind the type and role, before `stale after`"
     return ""
 
 

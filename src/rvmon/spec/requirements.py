@@ -57,6 +57,7 @@ from rvmon.spec.tense import (
     mixed_disjunction,
     subformulas,
 )
+from rvmon.spec.traps import capture_traps, traps_at_start, traps_at_trigger
 from rvmon.spec.unit import PLAIN
 from rvmon.spec.values import EVERYWHERE, Quantity, Scope
 from rvmon.trace.schema import Kind
@@ -74,14 +75,14 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
         ctl = _property(checker, item)
-        mode, trigger, consequent = _scoped(
-            checker, item, outer, _parts(checker, item, outer, inner, ctl)
-        )
+        parts = _parts(checker, item, outer, inner, ctl)
+        mode, trigger, consequent = _scoped(checker, item, outer, parts)
     except Refusal as refusal:
         checker.report(refusal.finding)
         return None
     except Reported:
         return None
+    _warn_of_traps(checker, item, parts, captures)
     texts = {clause.word: clause.text for clause in _clauses(item, TextClause)}
     scopes = [clause.span.text for clause in _clauses(item, ScopeClause)]
     return Requirement(
@@ -204,6 +205,20 @@ def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formu
         pulse, level = mixed
         place = body.trigger.span
         checker.report(rules.mixed_trigger(pulse.span or place, level.span or place))
+
+
+def _warn_of_traps(
+    checker: Checker, item: RequirementItem, parts: Parts, captures: Iterable[Capture]
+) -> None:
+    mode, trigger, consequent = parts
+    time = checker.table.time
+    found = [*traps_at_trigger(trigger, consequent, time, item.span)]
+    if not any(_clauses(item, ScopeClause)):  # else the start is where the scope opens
+        found += traps_at_start(mode, trigger, consequent, item.span)
+    lets = zip(_clauses(item, LetClause), captures, strict=True)
+    found += capture_traps(mode, trigger, lets, time)
+    for one in found:
+        checker.report(one)
 
 
 def _at_start_by_mistake(expression: Expression, formula: Formula) -> bool:

@@ -82,7 +82,9 @@ class _Resolver:
                     self._findings.add(rules.double_item(word, item.span, earlier.span))
             case SignalItem(names=names):
                 for name in names:
-                    self._declare(DeclaredSignal(name, item.type, item.role, item.stale_after))
+                    self._declare(
+                        DeclaredSignal(name, item.type, item.role, item.ignored, item.stale_after)
+                    )
             case EventItem(events=events):
                 for event in events:
                     self._declare(DeclaredEvent(event.name, event, item.role))

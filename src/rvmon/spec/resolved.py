@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rvmon.diagnostics.span import Source
+from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.checked import Role
 from rvmon.spec.items import (
     ConstItem,
@@ -31,6 +31,7 @@ class DeclaredSignal:
     name: Ident
     type: TypeSyntax
     role: Role | None
+    ignored: Span | None
     stale_after: Expression | None
 
 

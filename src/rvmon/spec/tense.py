@@ -169,11 +169,15 @@ def mixed_disjunction(trigger: Formula) -> tuple[Formula, Formula] | None:
 
 def reads_field(numeric: Numeric) -> bool:
     """Whether a payload field is read."""
+    return any(True for _ in fields_in(numeric))
+
+
+def fields_in(numeric: Numeric) -> Iterator[FieldValue]:
+    """The payload fields that a number is made of."""
     waiting = [numeric]
     while waiting:
         match waiting.pop():
-            case FieldValue():
-                return True
+            case FieldValue() as field:
+                yield field
             case Arithmetic(args=args):
                 waiting += args
-    return False

@@ -12,6 +12,7 @@ from rvmon.starter.column import Column, Profile, Shape, Shapes
 from rvmon.starter.shapes import shapes_of
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.stamps import stamps_of
 from rvmon.trace.time import TICKS_PER_SECOND
 
 MOST_NAMED = 3
@@ -24,21 +25,24 @@ EVENT_SHARE = 0.1
 """Truth values that are true in single samples only, and in at most this share, are events."""
 
 
-def profile_of(path: str) -> Profile:
+def profile_of(path: str, time: str | None = None) -> Profile:
     """Look a recording over, as `rvmon run` will read it.
 
     Args:
         path: a `.csv`, `.jsonl` or `.ndjson` file.
+        time: the column of stamps and its unit, as `Spec.reading` takes it.
 
     Raises:
         TraceError: the file cannot be read; place and cause are named.
     """
-    shapes = shapes_of(path)
+    stamps = None if time is None else stamps_of(time)
+    shapes = shapes_of(path, stamps)
     if not shapes.declared:
         raise TraceError(f"{path}: no signal or event is found ({_reasons(shapes)})")
     schema = Schema(
         {name: shape.kind for name, shape in shapes.declared.items() if shape.kind is not None},
         {name: shape.fields for name, shape in shapes.declared.items() if shape.kind is None},
+        stamps=stamps,
     )
     followed = {name: _Followed(shape) for name, shape in shapes.declared.items()}
     start = latest = end = samples = lateness = 0

@@ -11,10 +11,11 @@ import msgspec
 
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
+from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.recording import FORMATS
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS
 from rvmon.starter.column import Shape, Shapes
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import Kind, Stamps
 
 MOST_LABELS = 16
 """A text column with more values than this is left out."""
@@ -22,7 +23,6 @@ MOST_LABELS = 16
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
 
-TIMES = ("t", "t_ns")
 _NUMBER = re.compile(
     r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE
 )
@@ -86,8 +86,12 @@ class Seen:
                 self.fields.setdefault(key, Seen()).add(value)
 
 
-def shapes_of(path: str) -> Shapes:
+def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     """Look at the names and values of a `.csv`, `.jsonl` or `.ndjson` file.
+
+    Args:
+        path: of the file.
+        stamps: where it says when; default `t` or `t_ns`.
 
     Raises:
         TraceError: the file cannot be read, or has no time column.
@@ -99,7 +103,8 @@ def shapes_of(path: str) -> Shapes:
         )
     try:
         with open(path, encoding="utf-8-sig", newline="") as text:
-            return _of_csv(text, path) if FORMATS[suffix] == "csv" else _of_json(text, path)
+            look = _of_csv if FORMATS[suffix] == "csv" else _of_json
+            return look(text, path, stamps)
     except OSError as error:
         raise TraceError(f"{path}: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -109,34 +114,39 @@ def shapes_of(path: str) -> Shapes:
         raise TraceError(message if path in message else f"{path}: {message}") from None
 
 
-def _of_csv(text: Iterable[str], path: str) -> Shapes:
+def _of_csv(text: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
     rows = split_lines(text)
     try:
         _, header = next(rows)
     except StopIteration:
         raise TraceError("is empty: expected a header with a time column `t`") from None
-    _require_time(header, path)
+    if stamps is None:
+        _require_time(header, path)
     columns = [Seen() for _ in header]
     for _, row in rows:
         for seen, cell in zip(columns, row, strict=False):
             if cell:
                 seen.add_text(cell)
-    named = zip(header, columns, strict=True)
-    return _shapes({name: seen for name, seen in named if name not in TIMES})
+    return _shapes(_without_time(dict(zip(header, columns, strict=True)), stamps))
+
+
+def _without_time(seen: Mapping[str, Seen], stamps: Stamps | None) -> dict[str, Seen]:
+    times = DEFAULT_COLUMNS if stamps is None else (stamps.column,)
+    return {name: entry for name, entry in seen.items() if name not in times}
 
 
 def _require_time(names: Iterable[str], path: str) -> None:
     known = list(names)
-    if not set(TIMES).intersection(known):
+    if not set(DEFAULT_COLUMNS).intersection(known):
         close = [name for name in known if re.search(r"time|stamp|^sec", name, re.IGNORECASE)]
         which = f"`{close[0]}` looks like it" if close else f"found {', '.join(known[:6])}"
         raise TraceError(
             f"{path}: no time column: {which}; rename the time column to `t` (seconds) or `t_ns` "
-            "(integer nanoseconds)"
+            "(integer nanoseconds), or name it with --time COLUMN[:UNIT]"
         )
 
 
-def _of_json(lines: Iterable[str], path: str) -> Shapes:
+def _of_json(lines: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
     decode = msgspec.json.Decoder().decode
     seen: dict[str, Seen] = {}
     events: dict[str, Seen] = {}
@@ -150,7 +160,7 @@ def _of_json(lines: Iterable[str], path: str) -> Shapes:
             raise TraceError(f"line {number}: not a JSON object ({error})") from None
         if not isinstance(fields, dict):
             raise TraceError(f'line {number}: expected an object such as {{"t": 0.5, "x": 1}}')
-        if not count:
+        if not count and stamps is None:
             _require_time(fields, f"{path}: line {number}")
         count += 1
         listed = fields.get("events")
@@ -158,8 +168,8 @@ def _of_json(lines: Iterable[str], path: str) -> Shapes:
             del fields["events"]
             for name in listed:
                 events.setdefault(name, Seen()).add_payload({})
-        _collect({k: v for k, v in fields.items() if k not in TIMES}, "", seen)
-    return _shapes({**_without_rare_objects(seen, count), **events})
+        _collect(fields, "", seen)
+    return _shapes({**_without_time(_without_rare_objects(seen, count), stamps), **events})
 
 
 def _collect(fields: Mapping[str, Any], prefix: str, seen: dict[str, Seen]) -> None:

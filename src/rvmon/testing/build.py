@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Any
 
 from rvmon.spec.checked import (
@@ -162,6 +162,7 @@ def spec_of(
     time: TimeModel = TimeModel.HELD,
     period: int | None = None,
     stale: Mapping[str, int] | None = None,
+    ignoring: Container[str] = (),
 ) -> CheckedSpec:
     """A specification over the test vocabulary.
 
@@ -170,12 +171,13 @@ def spec_of(
         time: the time model.
         period: of `sampled every`, ticks.
         stale: `stale after` of signals, ticks.
+        ignoring: the signals of which NaN and null are no update.
     """
     return CheckedSpec(
         name="test",
         title="",
         time=time,
-        signals=signals(stale),
+        signals=signals(stale, ignoring),
         events=events(),
         requirements={found.id: found for found in requirements},
         period=period,

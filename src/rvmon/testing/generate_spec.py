@@ -56,6 +56,7 @@ class Profile:
         for_each: whether requirements may hold `for each`.
         policies: whether requirements may hold `at end`.
         stale: whether signals may be `stale after`.
+        ignoring: whether signals may `ignore NaN`.
     """
 
     time: TimeModel | None = None
@@ -70,6 +71,7 @@ class Profile:
     for_each: bool = True
     policies: bool = True
     stale: bool = True
+    ignoring: bool = True
 
 
 def random_spec(dice: Dice, profile: Profile) -> CheckedSpec:
@@ -88,7 +90,7 @@ def random_spec(dice: Dice, profile: Profile) -> CheckedSpec:
         name="random",
         title="",
         time=time,
-        signals=signals(_stale(dice, profile)),
+        signals=signals(_stale(dice, profile), _ignoring(dice, profile)),
         events=events(),
         requirements={requirement.id: requirement for requirement in found},
         period=dice.randint(1, 4) if time is TimeModel.CLOCKED else None,
@@ -98,6 +100,10 @@ def random_spec(dice: Dice, profile: Profile) -> CheckedSpec:
 def _stale(dice: Dice, profile: Profile) -> dict[str, int]:
     names = (*BOOLS, *NUMBERS, LABEL)
     return {n: dice.randint(1, 9) for n in names if profile.stale and chance(dice, 10)}
+
+
+def _ignoring(dice: Dice, profile: Profile) -> frozenset[str]:
+    return frozenset(n for n in NUMBERS[:1] if profile.ignoring and chance(dice, 25))
 
 
 def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Requirement:

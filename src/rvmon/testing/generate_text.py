@@ -51,6 +51,7 @@ _SAMPLES: Mapping[str, Sequence[str]] = {
     "LEADS_TO": ("-->",),
     "INFINITE": ("inf", "∞"),
     "ROLE": ("input", "output"),
+    "IGNORE_NAN": ("ignore NaN", "ignore  NaN"),
     "UNWANTED": ("ignore", "illegal"),
     "TEXT_CLAUSE": ("source", "rationale"),
     "MINUS": ("-",),
@@ -84,7 +85,7 @@ def syntax_of(text: str) -> Hashable | None:
 def _bare(node: Any) -> Hashable:
     match node:
         case Span():
-            return None
+            return "a place"
         case tuple():
             return tuple(map(_bare, node))
         case _ if is_dataclass(node):

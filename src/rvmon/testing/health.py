@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from rvmon.spec.checked import (
@@ -23,6 +24,7 @@ from rvmon.spec.checked import (
 from rvmon.testing.case import Case
 from rvmon.testing.walk import parts_of, subformulas
 from rvmon.testing.word import Word
+from rvmon.testing.wording import heard
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 
@@ -34,6 +36,7 @@ def expected_health(case: Case, word: Word) -> list[Health]:
         case: what a monitor is told.
         word: the same laid out position by position.
     """
+    case = replace(case, actions=tuple(heard(case.spec, case.samples)))
     readers = readers_of(case.spec)
     found = [*_unknown(case), *_stale(case, word), *_unfed(case, readers)]
     return [

@@ -62,7 +62,7 @@ class HeldBack:
             return {name: (first,)}
         if name in self._spec.events:
             return {name: False if value is not None else None}
-        if value is None:
+        if value is None or name in self._spec.ignoring:
             return {name: None}
         count, first_at = self._conflicts.get(name, (0, t))
         self._conflicts[name] = (count + 1, first_at)

@@ -69,8 +69,9 @@ def show_spec(spec: CheckedSpec) -> str:
 def _signal(signal: Signal) -> str:
     labels = f"{{{', '.join(signal.type.labels)}}}"
     type_ = labels if signal.type.kind is Kind.LABEL else signal.type.kind.value
+    ignoring = " ignore NaN" if signal.ignores_nan else ""
     stale = "" if signal.stale_after is None else f" stale after {signal.stale_after} ns"
-    return f"signal {signal.name} : {type_}{stale}"
+    return f"signal {signal.name} : {type_}{ignoring}{stale}"
 
 
 def _requirement(requirement: Requirement) -> Iterator[str]:

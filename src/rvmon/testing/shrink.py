@@ -72,6 +72,9 @@ def _smaller(case: Case) -> Iterator[Case]:
         if signal.stale_after is not None:
             signals = {**case.spec.signals, name: replace(signal, stale_after=None)}
             yield replace(case, spec=replace(case.spec, signals=signals))
+        if signal.ignores_nan:
+            signals = {**case.spec.signals, name: replace(signal, ignores_nan=False)}
+            yield replace(case, spec=replace(case.spec, signals=signals))
     yield from _fewer_values(case)
     yield from _less_time(case)
 

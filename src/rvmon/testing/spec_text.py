@@ -30,7 +30,7 @@ _SYNONYMS = {
     "==": ("==", "="),
 }
 _WORD = re.compile(
-    r"for each|at end|stale after|\d[\d.]*(?: (?:[numk]?s|min|h)\b)?"
+    r"for each|at end|ignore NaN|stale after|\d[\d.]*(?: (?:[numk]?s|min|h)\b)?"
     r"|[\w.]+|<->|->|==|!=|<=|>=|[^\w\s]|\s+"
 )
 _CHAINED = (BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.IFF)
@@ -52,7 +52,8 @@ def _signal(signal: Signal) -> str:
     shown = "{" + ", ".join(type_.labels) + "}" if type_.kind is Kind.LABEL else str(type_.kind)
     unit = f" [{type_.unit}]" if type_.unit else ""
     stale = f" stale after {format_duration(signal.stale_after)}" if signal.stale_after else ""
-    return f"signal {signal.name} : {shown}{unit}{stale}"
+    ignoring = " ignore NaN" if signal.ignores_nan else ""
+    return f"signal {signal.name} : {shown}{unit}{ignoring}{stale}"
 
 
 def _event(event: Event) -> str:
@@ -96,7 +97,7 @@ def meaning(spec: CheckedSpec) -> Hashable:
     """What a specification says: equal for two that differ only in places and brackets."""
     return (
         (spec.time, spec.period),
-        tuple((s.name, s.type, s.stale_after) for s in spec.signals.values()),
+        tuple((s.name, s.type, s.ignores_nan, s.stale_after) for s in spec.signals.values()),
         tuple((e.name, tuple(e.fields.items())) for e in spec.events.values()),
         tuple(_bare(requirement) for requirement in spec.requirements.values()),
     )

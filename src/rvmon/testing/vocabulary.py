@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 
 from rvmon.spec.checked import Event, Signal, Type
 from rvmon.trace.schema import Kind
@@ -21,15 +21,25 @@ FURTHER = "h"
 SIZE = "m"
 
 
-def signals(stale: Mapping[str, int] | None = None) -> dict[str, Signal]:
-    """The signals; `stale` gives those that are `stale after` so many ticks."""
+def signals(
+    stale: Mapping[str, int] | None = None, ignoring: Container[str] = ()
+) -> dict[str, Signal]:
+    """The signals.
+
+    Args:
+        stale: those that are `stale after` so many ticks.
+        ignoring: those of which NaN and null are no update.
+    """
     kinds = {
         **dict.fromkeys(BOOLS, Type(Kind.BOOL)),
         **dict(zip(NUMBERS, (Type(Kind.REAL), Type(Kind.INT)), strict=True)),
         LABEL: Type(Kind.LABEL, labels=LABELS),
     }
     after = stale or {}
-    return {name: Signal(name, type_, stale_after=after.get(name)) for name, type_ in kinds.items()}
+    return {
+        name: Signal(name, type_, stale_after=after.get(name), ignores_nan=name in ignoring)
+        for name, type_ in kinds.items()
+    }
 
 
 def events() -> dict[str, Event]:

@@ -15,7 +15,7 @@ from rvmon.testing.truths import Rest
 from rvmon.testing.walk import intervals, subformulas
 from rvmon.trace.time import format_ticks
 
-_PART = re.compile(r"(`[^`]*`(?: (?:by|to) .*?)?)(?:(?: and |, or )(?=`)|$)")
+_PART = re.compile(r"(`[^`]*`(?: (?:by|until) .*?)?)(?:(?: and |, or )(?=`)|$)")
 
 _PAST = {
     *(UnaryOp.ONCE, UnaryOp.HISTORICALLY, UnaryOp.HELD, UnaryOp.PREVIOUS),
@@ -119,4 +119,4 @@ def _named(part: Formula, instant: int) -> Iterator[str]:
         if until is None:
             yield text
         else:
-            yield from (f"{text} by {until}", f"{text} to {until}")
+            yield from (f"{text} by {until}", f"{text} until {until}")

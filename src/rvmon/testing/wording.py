@@ -46,6 +46,7 @@ def word_of(
     reached = max([*advances, *(sample.t for sample in samples), *_given(end)], default=0)
     if not samples:
         return Word((), None, reached)
+    samples = heard(spec, samples)
     first, last = samples[0].t, samples[-1].t
     # In sampled time `advance` says only what will not come; else it settles all ticks before.
     settled = [] if spec.time is TimeModel.SAMPLED else [t - 1 for t in advances]
@@ -61,6 +62,22 @@ def word_of(
         before = instants[index - 1] if index else None
         letters.append(_letter(spec, samples, before, instant, names))
     return Word(tuple(letters), known_to, reached)
+
+
+def heard(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
+    """The samples, each without NaN and null of a signal that ignores them.
+
+    A sample that says nothing else is a sample all the same.
+    """
+
+    def counts(name: str, value: Value) -> bool:
+        signal = spec.signals.get(name)
+        return signal is None or not signal.ignores_nan or _update(0, value).value is not None
+
+    return [
+        Sample(sample.t, {name: v for name, v in sample.values.items() if counts(name, v)})
+        for sample in samples
+    ]
 
 
 def _given(end: int | None) -> Iterable[int]:

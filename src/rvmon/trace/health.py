@@ -19,6 +19,7 @@ class HealthKind(StrEnum):
     BACKWARDS = "backwards"
     DROPPED = "dropped"
     IGNORED = "ignored"
+    UNIT = "unit"
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+
+from rvmon.trace.gaps import NO_GAPS, Gaps
 
 
 class Kind(StrEnum):
@@ -17,13 +19,37 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Stamps:
+    """Where a recording says when.
+
+    Attributes:
+        column: the name of the column, in JSON lines of the field.
+        unit: `s`, `ms`, `us`, `ns`, or `iso` for dates and times of ISO 8601.
+        is_said: whether a person named the unit, or it is what goes without saying.
+    """
+
+    column: str
+    unit: str
+    is_said: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Schema:
-    """The declared names with their kinds.
+    """The declared names with their kinds, and how recordings tell them.
 
     Attributes:
         signals: kind by name.
         events: for each event the kinds of its payload's fields.
+        ignoring: the signals of which NaN and null are no update.
+        stamps: of recordings; `None`: seconds in `t`, or nanoseconds in `t_ns`.
+        columns: by declared name (of an event's field `event.field`) the column that stands for
+            it, where that has another name.
+        gaps: values that stand for no update, of whatever name.
     """
 
     signals: Mapping[str, Kind]
     events: Mapping[str, Mapping[str, Kind]]
+    ignoring: frozenset[str] = frozenset()
+    stamps: Stamps | None = None
+    columns: Mapping[str, str] = field(default_factory=dict)
+    gaps: Gaps = NO_GAPS

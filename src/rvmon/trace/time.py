@@ -26,6 +26,8 @@ TICKS_PER_UNIT = {
 }
 """Units of duration, each as a whole number of ticks."""
 
+UNIT_WORDS = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
+"""Units of stamps, as people call them."""
 
 _FAR = 4e9
 """Seconds within `TIME_LIMIT`."""
@@ -34,11 +36,12 @@ _SURE = 0.4999
 """So near to a whole number, a product of a fraction and 1e9 is rounded as the exact one is."""
 
 
-def ticks_of_seconds(seconds: float | Fraction) -> int:
+def ticks_of_seconds(seconds: float | Fraction | Decimal) -> int:
     """Round seconds to the nearest tick, once.
 
     Args:
-        seconds: a finite number, NumPy's too; an `int` or `Fraction` is converted exactly.
+        seconds: a finite number, NumPy's too; an `int`, `Fraction` or `Decimal` is
+            converted exactly.
 
     Raises:
         TraceError: it is no number, not finite or beyond `TIME_LIMIT` ticks.
@@ -85,7 +88,7 @@ def whole_ticks(t: Any) -> int:
     return ticks
 
 
-def _shown(number: float) -> str:
+def _shown(number: float | Decimal) -> str:
     """A number for a message; of a very long integer only that it is one."""
     long = isinstance(number, int) and abs(number) > 10**30
     return "beyond 10**30" if long else repr(number)
@@ -104,8 +107,12 @@ def _plain(seconds: Any) -> float | Fraction:
     raise TraceError(f"time {reprlib.repr(seconds)} is no finite number: give seconds as a number")
 
 
-def ticks_of_text(text: str) -> int:
-    """Read decimal seconds exactly; what lies between two ticks is rounded to the nearest.
+def ticks_of_text(text: str, unit: str = "s") -> int:
+    """Read a decimal number exactly; what lies between two ticks is rounded to the nearest.
+
+    Args:
+        text: the number.
+        unit: of it, one of `TICKS_PER_UNIT`.
 
     Raises:
         TraceError: the text is no finite decimal number, or out of range.
@@ -118,11 +125,11 @@ def ticks_of_text(text: str) -> int:
         # Python reads 1_000 as a number; no recording means it.
         number = Decimal(text.replace("_", "?"))
     except InvalidOperation:
-        raise TraceError(f"time `{shown}` is not a number of seconds") from None
+        raise TraceError(f"time `{shown}` is not a number of {UNIT_WORDS[unit]}") from None
     # An exponent is bounded before it becomes digits: 1e999999999 must not fill the memory.
     if number.is_finite() and number.adjusted() <= 18:
         exact = Fraction(0) if number.adjusted() < -30 else Fraction(number)
-        ticks = round(exact * TICKS_PER_SECOND)
+        ticks = round(exact * TICKS_PER_UNIT[unit])
         if abs(ticks) < TIME_LIMIT:
             return ticks
     raise TraceError(f"time `{shown}` is out of range: at most 2**62 ns (146 years)")

@@ -26,6 +26,8 @@ class Report:
         end: the last instant of the trace, ticks; `None` if it has no position.
         misses: by requirement that was not triggered, what its trigger lacked when it was nearest;
             where somebody looked.
+        late: by requirement and number of the attempt, when what it had awaited came after its
+            deadline, ticks; where somebody looked.
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
     """
@@ -38,6 +40,7 @@ class Report:
     origin: int = 0
     end: int | None = None
     misses: Mapping[str, str] = field(default_factory=dict)
+    late: Mapping[str, Mapping[int, int]] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:

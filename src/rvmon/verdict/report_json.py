@@ -22,6 +22,7 @@ class _AttemptsJson(msgspec.Struct):
     attempts: list[dict[str, Any]]
     verdict: Verdict
     nearest_miss: str = ""
+    late: dict[int, int] = {}
 
 
 class _ReportJson(msgspec.Struct):
@@ -56,6 +57,8 @@ def _document(report: Report, attempts: Mapping[str, Sequence[str]]) -> Iterator
         rest: dict[str, object] = {"counts": report.counts[name]}
         if name in report.misses:
             rest["nearest_miss"] = report.misses[name]
+        if report.late.get(name):
+            rest["late"] = report.late[name]
         yield f"],{encoded(rest)[1:]}"
     tail: dict[str, object] = {"health": report.health}
     if report.goals:
@@ -118,4 +121,5 @@ def decode(text: str | bytes) -> Report:
     )
     found = {name: entry.nearest_miss for name, entry in document.requirements.items()}
     misses = {name: miss for name, miss in found.items() if miss}
-    return replace(report, misses=misses, goals=document.goals)
+    late = {name: entry.late for name, entry in document.requirements.items() if entry.late}
+    return replace(report, misses=misses, late=late, goals=document.goals)

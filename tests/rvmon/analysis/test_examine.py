@@ -384,3 +384,12 @@ def test_help_speaks_of_what_is_there(tmp_path, capsys):
     assert "give it a deadline" not in shown
     assert "RV073" in shown
     assert "narrow one of the triggers" not in shown
+
+
+@pytest.mark.parametrize("policy", ["strict", "strong", "fail"])
+def test_a_policy_that_lets_nothing_pass(policy):
+    """What holds to the end stays open, or fails: the policy is named as the cause."""
+    text = f"signal p : bool\nrequirement R\n  always p\n  at end: {policy}\n"
+    (finding,) = analyse(rvmon.loads(text)._compiled).findings
+    assert finding.code == "RV072"
+    assert f"`at end: {policy}` lets nothing pass" in finding.help

@@ -175,3 +175,18 @@ def test_what_is_compiled_is_the_text_that_was_read(folder, monkeypatch, capfd):
     monkeypatch.setattr(type(path), "read_text", read_and_change)
     judged_at_once(command("plain.csv"))
     assert json.loads(capfd.readouterr().out)["requirements"]["D2"]["verdict"] == "P"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,closed,knock\n0,1,0\n1,1,1\n",
+        HEAD + "".join(f"{20 * k},1,5,0\n" for k in range(30)),
+    ],
+    ids=["lacks a name", "milliseconds"],
+)
+def test_what_there_is_to_say_of_a_recording_is_left_to_the_ordinary_way(folder, capfd, text):
+    """A name without a column is an error, and stamps that look like milliseconds are doubted."""
+    (folder / "x.csv").write_text(text)
+    assert judged_at_once(command("x.csv")) is None
+    assert not capfd.readouterr().out

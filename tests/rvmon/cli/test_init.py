@@ -151,3 +151,23 @@ def test_binary_and_missing_files(tmp_path, capsys):
     for name in ("a.csv", "none.csv"):
         assert main(["init", str(tmp_path / name), "-o", "-"]) == 2
         assert name in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "time"),
+    [
+        ("a.csv", "stamp,t,x\n1000,1,1\n2000,2,3\n", "stamp:ms"),
+        ("a.jsonl", '{"at":{"ms":1000},"x":1}\n{"at":{"ms":2000},"x":3}\n', "at.ms:ms"),
+        ("a.csv", "when,x\n2024-05-01T12:00:00Z,1\n2024-05-01T12:00:01Z,2\n", "when:iso"),
+    ],
+)
+def test_stamps_have_a_name_and_a_unit(name, text, time, tmp_path, monkeypatch, capsys):
+    """The column of stamps is no signal, and the command that is shown names it, too."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).write_text(text)
+    assert main(["init", name, "-o", "made.rv", "--time", time]) == 0
+    shown = capsys.readouterr().out
+    assert f"--time {time}" in shown
+    assert {"x"} <= set(rvmon.load("made.rv").schema.signals) <= {"x", "t"}
+    [command] = [line for line in shown.splitlines() if line.startswith("try:")]
+    assert main([*command.split()[2:], "--format", "json"]) == 0

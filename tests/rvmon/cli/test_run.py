@@ -74,7 +74,7 @@ def test_a_failure_shows_cause_window_and_spec_line(files, capsys):
     """Every F says why, over which window, and where in the spec."""
     assert main(["run", "door.rv", "F.csv"]) == 1
     shown = capsys.readouterr().out
-    assert "[1 s, 3 s]" in shown
+    assert "between 1 s and 3 s" in shown
     assert "door.rv:7" in shown
     assert "within 2 s not closed" in shown
     assert "^" in shown
@@ -129,7 +129,14 @@ def test_never_triggered_is_an_error_on_request(files, capsys):
     """--require-triggered fails where no recording triggered a requirement."""
     assert main(["run", "door.rv", "NT.csv", "--require-triggered"]) == 1
     assert "D1 was triggered in no recording" in capsys.readouterr().err
-    assert main(["run", "door.rv", "NT.csv", "P.csv", "--require-triggered", "D1"]) == 0
+    assert main(["run", "door.rv", "NT.csv", "P.csv", "--require-triggered=D1"]) == 0
+
+
+@pytest.mark.parametrize("option", ["--require-triggered", "--require", "--allow-missing"])
+def test_an_option_that_can_go_without_a_value_takes_no_other_word(files, option):
+    """It stands before SPEC as well as behind it: its value follows a `=`."""
+    assert main(["run", option, "door.rv", "P.csv"]) == 0
+    assert main(["run", "door.rv", option, "P.csv"]) == 0
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton", "c"])
@@ -141,7 +148,7 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys, engine):
     assert main(["run", "door.rv", "cut.csv", "--engine", engine]) == 2
     told = capsys.readouterr().err
     assert "cut.csv: line 6: column `closed`: `maybe`" in told
-    assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: window" in told
+    assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
     assert "Traceback" not in told
 
 
@@ -209,9 +216,10 @@ def test_binary_standard_input_is_told(files, monkeypatch, capsys):
 
 def test_strict_columns_refuses_what_the_spec_does_not_name(files, capsys):
     """A column too many or too few is an error only under --strict-columns."""
-    (files / "more.csv").write_text("t,closed,battery\n0,1,5\n")
+    (files / "more.csv").write_text("t,closed,knock,battery\n0,1,,5\n")
     assert main(["run", "door.rv", "more.csv"]) == 0
     assert "battery" in capsys.readouterr().out
+    (files / "more.csv").write_text("t,closed,battery\n0,1,5\n")
     assert main(["run", "door.rv", "more.csv", "--strict-columns"]) == 2
     told = capsys.readouterr().err
     assert "battery" in told
@@ -219,11 +227,12 @@ def test_strict_columns_refuses_what_the_spec_does_not_name(files, capsys):
 
 
 def test_an_absent_column_is_told(files, capsys):
-    """A declared event without a column is unknown, and the health list says so."""
+    """A declared event without a column is unknown if it may be: health and exit code say so."""
     (files / "less.csv").write_text("t,closed\n0,1\n5,0\n")
-    assert main(["run", "door.rv", "less.csv"]) == 0
-    shown = capsys.readouterr().out
-    assert "knock  absent" in shown
+    assert main(["run", "door.rv", "less.csv", "--allow-missing=knock"]) == 1
+    shown = capsys.readouterr()
+    assert "knock  absent" in shown.out
+    assert "less.csv has no column for `knock`" in shown.err
 
 
 def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):
@@ -234,7 +243,7 @@ def test_what_was_never_triggered_says_how_near_it_came(tmp_path, capsys):
         "  upon e and a\n  then within 1 s b\n"
     )
     trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n")
-    miss = "`a` never true while `e`, as first at 1 s"
+    miss = "`a` was never true while `e` was (first at 1 s)"
     assert main(["run", str(spec), str(trace), "--junit", str(junit)]) == 0
     assert miss in capsys.readouterr().out
     assert miss in junit.read_text()
@@ -317,3 +326,16 @@ def test_a_specification_without_requirements_is_told(tmp_path, capsys):
     assert "there are none" in capsys.readouterr().err
     assert main(["explain", spec]) == 2
     assert "there is nothing to explain" in capsys.readouterr().err
+
+
+def test_a_failure_says_how_late_what_it_awaited_came(files, capsys):
+    """Text, JSON and JUnit name the instant where the recording shows it."""
+    (files / "slow.csv").write_text("t,closed,knock\n0,1,\n1,,1\n3.02,0,\n5,,\n")
+    assert main(["run", "door.rv", "slow.csv", "--junit", "v.xml"]) == 1
+    told = "it came at 3.02 s, 20 ms after the deadline"
+    assert told in " ".join(capsys.readouterr().out.split())
+    assert told in (files / "v.xml").read_text()
+    assert main(["run", "door.rv", "slow.csv", "--format", "json"]) == 1
+    text = capsys.readouterr().out
+    assert json.loads(text)["requirements"]["D1"]["late"] == {"1": 3_020_000_000}
+    assert Report.from_json(text).late == {"D1": {1: 3_020_000_000}}

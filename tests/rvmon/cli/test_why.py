@@ -99,7 +99,7 @@ def test_a_requirement_that_was_not_triggered_says_what_lacked(tmp_path, capsys)
     )
     trace.write_text("t,a,b,e\n0,false,false,\n1,,,1\n")
     assert main(["why", str(spec), str(trace), "R1"]) == 2
-    assert "`a` never true while `e`, as first at 1 s" in capsys.readouterr().err
+    assert "`a` was never true while `e` was (first at 1 s)" in capsys.readouterr().err
 
 
 def test_until_is_the_end_that_is_judged(tmp_path, capsys):
@@ -108,4 +108,14 @@ def test_until_is_the_end_that_is_judged(tmp_path, capsys):
     spec.write_text('spec s\nevent e, f\nrequirement R1 "x"\n  upon e\n  then within 5 s f\n')
     trace.write_text("t,e,f\n0,1,\n3,,1\n")
     assert main(["why", str(spec), str(trace), "R1", "--until", "2"]) == 0
-    assert "more than 3 s longer would decide it" in " ".join(capsys.readouterr().out.split())
+    assert "a recording more than 3 s longer would have decided it" in " ".join(
+        capsys.readouterr().out.split()
+    )
+
+
+def test_it_says_how_late_what_was_awaited_came(door, capsys):
+    """The whole recording tells what came after the deadline."""
+    (door / "slow.csv").write_text("t,closed,knock\n0,1,\n1,,1\n3.02,0,\n5,,\n")
+    assert main(["why", "door.rv", "slow.csv", "D1"]) == 0
+    told = "it came at 3.02 s, 20 ms after the deadline"
+    assert told in " ".join(capsys.readouterr().out.split())

@@ -55,7 +55,16 @@ def without_stale(text: str) -> str:
     return text.replace("stale after 700 ms", "")
 
 
-@pytest.fixture(scope="package", params=[str, without_stale], ids=["stale", "steady"])
+def ignoring(text: str) -> str:
+    """The specification to which NaN and null of numbers say nothing."""
+    return text.replace("stale after 700 ms", "ignore NaN stale after 700 ms")
+
+
+@pytest.fixture(
+    scope="package",
+    params=[str, without_stale, ignoring],
+    ids=["stale", "steady", "ignoring"],
+)
 def program(request, tmp_path_factory) -> Program:
     """A program, compiled without a warning."""
     folder = tmp_path_factory.mktemp("build")

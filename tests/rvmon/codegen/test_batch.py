@@ -108,10 +108,11 @@ def test_times_are_rounded_as_everywhere():
         [dice.random(2000) * 1e9, dice.random(2000), [0.5e-9, 1.5e-9, 2.5e-9, -0.5e-9, 4e6 + 0.3]]
     )
     from rvmon.readers.ticks import ticks_of_column
+    from rvmon.trace.stamps import stamps_of
     from rvmon.trace.time import ticks_of_seconds
 
     exact = [ticks_of_seconds(float(value)) for value in seconds]
-    assert ticks_of_column(seconds).tolist() == exact
+    assert ticks_of_column(seconds, stamps_of("t")).tolist() == exact
 
 
 def test_disorder_and_wrong_columns_are_refused_as_ever():

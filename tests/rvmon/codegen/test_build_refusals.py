@@ -66,7 +66,7 @@ def test_wrong_json_is_refused(program, text, message):
     "line",
     [
         *(f'{{"t":1,"arm":{{"speed":{n}}}}}' for n in ("1e400", "01", "5.", ".5", "+1", "-", "1e")),
-        *(f'{{"t":1,"x":{n}}}' for n in ("1e400", "-01", "5.", "1.e5", "NaN", "0x1")),
+        *(f'{{"t":1,"x":{n}}}' for n in ("1e400", "-01", "5.", "1.e5", "0x1")),
         '{"t":01}',
         '{"t_ns":1.0}',
         '{"t":1}\0',
@@ -113,6 +113,9 @@ def test_a_repeated_line_has_a_time_of_json(program):
         '{"t":1,"t":2}',
         '{"t":1,"pick":[{"id":1},{"id":2}]}',
         '{"t":1,"open_door":1.0}',
+        '{"t":1,"parts":2.0}',
+        '{"t":1,"arm":{"speed":NaN}}',
+        '{"t":1,"halt":1}',
         '{"t":1}\r{"t":2}',
     ],
 )

@@ -82,7 +82,8 @@ def test_numbers_within_doubles_are_judged(owed, x, y, verdict):
     spec = spec_of(owed)
     for trace in forms_of(x, y):
         for engine in ("automaton", "c"):
-            assert spec.evaluate(trace, engine=engine).verdicts == {"R1": verdict}, engine
+            report = spec.evaluate(trace, engine=engine, allow_missing=["e"])
+            assert report.verdicts == {"R1": verdict}, engine
 
 
 def test_fields_have_their_limits():

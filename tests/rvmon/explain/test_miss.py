@@ -19,40 +19,40 @@ CASES = {
     "one part lacks at the best moment": (
         "e and a and b",
         [(0, {"a": True, "b": False, "c": True}), (5, {"e": True}), (7, {"b": True, "a": False})],
-        "`b` never true while `e and a`, as first at 5 ns",
+        "`b` was never true while `e and a` was (first at 5 ns)",
     ),
     "two parts lack": (
         "e and a and b",
         [(0, {"a": False, "b": False}), (5, {"e": True})],
-        "`a` or `b` never true while `e`, as first at 5 ns",
+        "`a` or `b` was never true while `e` was (first at 5 ns)",
     ),
     "an event that never occurred": ("e", [(0, {"a": True})], "`e` never occurred"),
-    "a level that was never true": ("a", [(0, {"a": False})], "`a` never true"),
+    "a level that was never true": ("a", [(0, {"a": False})], "`a` was never true"),
     "a level that was false, then unknown": (
         "a",
         [(0, {"a": False}), (5, {"a": None})],
-        "`a` never known to be true",
+        "`a` was never known to be true",
     ),
-    "a level that was unknown throughout": ("a", [(0, {"a": None})], "`a` never known"),
+    "a level that was unknown throughout": ("a", [(0, {"a": None})], "`a` was never known"),
     "an input that never came": (
         "e and a",
         [(0, {"b": True})],
-        "`e` never occurred; `a` never known",
+        "`e` never occurred; `a` was never known",
     ),
     "an input unknown at the best moment": (
         "e and a",
         [(0, {"a": False}), (3, {"a": None}), (5, {"e": True})],
-        "`a` never known to be true while `e`, as first at 5 ns",
+        "`a` was never known to be true while `e` was (first at 5 ns)",
     ),
     "the nearer of two ways": (
         "(e and a and b) or (f and c)",
         [(0, {"a": False, "b": False, "c": True})],
-        "`f` never true while `c`, as first at 0 s",
+        "`f` was never true while `c` was (first at 0 s)",
     ),
     "true, but no edge": (
         "a",
         [(0, {"a": False}), (1, {"a": None}), (2, {"a": True})],
-        "its trigger came true at 2 ns out of the unknown, which is no edge",
+        "its trigger was true at 2 ns, but not known to be false before: no edge was seen",
     ),
 }
 
@@ -71,4 +71,4 @@ def test_a_name_without_a_source_is_never_known():
     spec = loads(SPEC.format("a and b")).checked
     samples = [Sample(0, {"a": True})]
     found = nearest_miss(spec, spec.requirements["R1"], samples, 9, frozenset({"a"}))
-    assert found == "`b` never known to be true while `a`, as first at 0 s"
+    assert found == "`b` was never known to be true while `a` was (first at 0 s)"

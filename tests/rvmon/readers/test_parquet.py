@@ -35,15 +35,23 @@ def test_an_event_of_which_nothing_is_said_does_not_occur(tmp_path):
     [
         ({"knock": [None, {"a": 1}, None]}, "`knock` has no field `a`"),
         ({"t": [False, True, True]}, "row 1: time `False` is not a number of seconds"),
-        ({"knock": [None, 1, 0]}, "row 2: column `knock`: the number `1` is no truth value"),
-        ({"shut": [None, None, 1]}, "row 3: column `shut`: .* cast the column to bool"),
-        ({"shut": [0.0, 1.0, 1.0]}, "row 1: column `shut`: .* cast the column to bool"),
+        ({"knock": [None, 2, 0]}, "sample at 1 s: `knock` is an event: .* found 2"),
+        ({"shut": [None, None, 2]}, "sample at 2 s: `shut`: expected True or False, found 2"),
+        ({"shut": [0.0, 1.0, 0.5]}, "sample at 2 s: `shut`: expected True or False, found 0.5"),
     ],
 )
 def test_columns_of_another_type_are_refused(columns, message, tmp_path):
     """The message names the place, the cause and what to do."""
     with pytest.raises(rvmon.TraceError, match=message):
         judged(tmp_path, **columns)
+
+
+@pytest.mark.parametrize("one", [1, 1.0])
+def test_numbers_are_truth_values_where_these_are_declared(one, tmp_path):
+    """0 and 1, which is how merges and exports leave them."""
+    zero = type(one)(0)
+    assert judged(tmp_path, knock=[zero, one, None], shut=[zero, one, one]) == "P"
+    assert judged(tmp_path, knock=[zero, one, None], shut=[zero, None, one]) == "F"
 
 
 @pytest.mark.parametrize("part", ["page", "footer"])

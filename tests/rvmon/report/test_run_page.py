@@ -291,3 +291,13 @@ def shown_sections(html):
     return [
         a["id"] for tag, a in Reader(html).tags if tag == "section" and a.get("class") == "open"
     ]
+
+
+def test_what_came_late_is_marked():
+    """The page says how long after the deadline it came, and marks where."""
+    page = run_page(content(door(answer=2.02)))
+    assert "it came at 7.02 s, 20 ms after the deadline" in page.replace("\xa0", " ")
+    assert re.search(r'class="label late[^>]*>(?:◆ )?came late', page)
+    far = run_page(content(door(answer=12.0)))
+    assert "10 s after the deadline" in far.replace("\xa0", " ")
+    assert 'class="label late' not in far

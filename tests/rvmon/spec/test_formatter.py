@@ -19,6 +19,9 @@ time sampled  every   20ms
 
 signal gaze_ok,b:bool input
 signal distance : real[m] input stale   after 200ms # how far
+signal range : real[m] ignore
+  NaN stale after 1 s
+signal far : real ignore NaN
 event sensed  input
 event released output
 define ready=gaze_ok&b
@@ -38,6 +41,8 @@ time sampled every 20 ms
 
 signal gaze_ok, b : bool      input
 signal distance   : real [m]  input  stale after 200 ms  # how far
+signal range      : real [m]  ignore NaN stale after 1 s
+signal far        : real      ignore NaN
 event  sensed  input
 event  released  output
 define ready = gaze_ok and b

@@ -155,3 +155,17 @@ def test_unit_factors(text, base, factor):
     """Each unit has the factor of the SI brochure, exactly."""
     assert parse_unit(text).dimension == parse_unit(base).dimension
     assert parse_unit(text).factor / parse_unit(base).factor == factor
+
+
+@pytest.mark.parametrize("type_", ["bool", "int", "{idle, moving}"])
+def test_only_real_signals_ignore_nan(type_, codes):
+    """Values of other types are never NaN."""
+    assert codes(f"signal z : {type_} ignore NaN\n") == ["RV027"]
+    assert codes("signal z : real ignore NaN stale after 1 s\n") == []
+    assert codes("signal z : real [m] input ignore NaN\n") == []
+
+
+@pytest.mark.parametrize("text", ["stale after 1 s ignore NaN", "ignore nan", "ignore"])
+def test_where_what_is_ignored_stands(text, message):
+    """Elsewhere, or spelt otherwise, it is refused with the mend."""
+    assert "write `ignore NaN` behind the type" in message(f"signal z : real {text}\n")

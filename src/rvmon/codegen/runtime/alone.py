@@ -71,6 +71,12 @@ class Monitor:
 
     # What the generated code calls.
 
+    def lost(self, signal: int, t: int, why: str) -> None:
+        """Records have no reasons: since when a signal is not known is not asked for."""
+
+    def found(self, signal: int, t: int) -> None:
+        """Nor until when."""
+
     def of(self, rule: Rule) -> int:
         """The requirement that a rule judges."""
         hidden = rule.index - len(self.NAMES)

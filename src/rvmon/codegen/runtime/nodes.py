@@ -36,6 +36,7 @@ class Nodes:
         p: per event, its payloads.
         w: per node, what it remembers, taking the unknown for the worse.
         b: the same, taking it for the better: the same object, if that is equal.
+        clerk: hears which signals are not known.
         wakes: per node, when it changes by itself.
         wake: before this instant, no sample coming, nothing happens; `LIMIT` at most.
         queued: per node, the instant at which `timers` has it next.
@@ -47,6 +48,7 @@ class Nodes:
         "before",
         "births",
         "c",
+        "clerk",
         "expired",
         "first",
         "gathered",
@@ -94,6 +96,8 @@ class Nodes:
     MARKED: Mapping[int, tuple[int, int | None]]
     """Per node that keeps stretches of time, its bounds."""
     HISTORIES: tuple[int, ...] = ()
+
+    clerk: Any
 
     def __init__(self, absent: frozenset[str] = frozenset()) -> None:
         self.absent = absent
@@ -263,6 +267,12 @@ class Nodes:
             self.queued[place] = t
             heappush(self.timers, (t, place))
 
+    def found(self, signal: int, t: int) -> None:
+        """Note that a signal that was not known has a value."""
+        if self.first[signal] is None:
+            self.first[signal] = t
+        self.clerk.found(signal, t)
+
     def ring(self, t: int) -> int:
         """The leaves and operators that time alone makes change at `t`."""
         dirty = 0
@@ -289,6 +299,8 @@ class Nodes:
             signal = code - self.NODES
             actual = self.stale_at[signal]
             if actual <= t:
+                if self.s[signal] is not None:
+                    self.clerk.lost(signal, actual, "stale")
                 self.s[signal] = None
                 setattr(self, f"last{signal}", MISSING)
                 self.stale_at[signal] = NEVER

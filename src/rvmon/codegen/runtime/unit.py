@@ -45,7 +45,6 @@ class Unit(Nodes):
         "asked",
         "awaited",
         "began",
-        "clerk",
         "dirty",
         "due_at",
         "dues",

@@ -13,13 +13,14 @@ from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
-from rvmon.monitor.columns.leaves import Columns
+from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
 from rvmon.monitor.columns.moves import Moves, moves_of
+from rvmon.monitor.columns.outages import ColumnOutages
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.health import HealthLog
+from rvmon.monitor.health import HealthLog, holds_nan
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.planned import can_generate, plan_requirements
 from rvmon.spec.checked import (
@@ -84,8 +85,10 @@ class ColumnJudge:
                 if bound is not None:
                     self._stale[name] = bound
         self._timeline = Timeline(plan, names, asked)
+        self._ignoring = compiled.checked.ignoring
         self._health = HealthLog()
         self._inputs = Inputs(compiled.checked, names)
+        self._outages = ColumnOutages(compiled.checked, names, self._stale)
         self._last: int | None = None
 
     def take(self, times: NDArray[np.int64], columns: Columns) -> None:
@@ -102,7 +105,10 @@ class ColumnJudge:
             own = times[start : start + CHUNK]
             self._note_stale(own if self._last is None else np.append(self._last, own))
             piece = {name: column[start : start + CHUNK] for name, column in columns.items()}
+            if any(holds_nan(piece[name]) for name in self._ignoring & piece.keys()):
+                raise NotByColumnsError
             self._health.count_columns(own, piece)
+            self._outages.take(own, piece)
             made = self._timeline.take(own, piece)
             for rule in self._rules:
                 rule.take(made, int(own[-1]))
@@ -135,10 +141,11 @@ class ColumnJudge:
         last = self._last or 0
         end = last if until is None else max(last, until)
         piece = self._timeline.last_piece(end)
+        self._outages.pass_to(end)
         for rule in self._rules:
             rule.take(piece, end)
             stands_at = last if piece.axis.start == piece.axis.stop else piece.axis.stop - 1
-            rule.finish(self._timeline, end, stands_at)
+            rule.finish(self._timeline, end, stands_at, self._outages.at)
         kept = [*self._ledger.flush(), *(() if others is None else others.attempts)]
         self._note_stale(np.array([last, end + 1]))
         health = self._health.report(self._chosen, self._inputs, None)
@@ -154,7 +161,7 @@ class ColumnJudge:
                 name: {verdict: counts[verdict] for verdict in _ATTEMPT_VERDICTS}
                 for name, counts in found.items()
             },
-            health=tuple(health),
+            health=self._health.alternations.remarked(health),
             origin=self._health.began or 0,
             end=end,
         )

@@ -15,7 +15,7 @@ from rvmon.formula.state import Leaf
 from rvmon.monitor.build import build_monitor
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.health import HealthLog, by_name
+from rvmon.monitor.health import HealthLog, by_name, holds_nan
 from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.spec.checked import Compare, Probe, ProbeAtom, SignalAtom, TimeModel
 from rvmon.trace.health import HealthKind
@@ -57,6 +57,7 @@ class RowJudge:
         """Tells which rows matter; `None` if all do."""
         if compiled.checked.time is not TimeModel.SAMPLED and all(map(can_feed, self._chosen)):
             self._plan = plan_requirements(compiled, self._chosen)
+        self._ignoring = compiled.checked.ignoring
         self._unknown = HealthLog()
         self._last: int | None = None
 
@@ -77,7 +78,7 @@ class RowJudge:
             lists = [columns[name][rows].tolist() for name in names]
             for t, *values in zip(times[rows].tolist(), *lists, strict=True):
                 step(t, dict(zip(names, values, strict=True)))
-            own = {name: column[start:stop] for name, column in columns.items()}
+            own = {n: columns[n][start:stop] for n in names if n not in self._ignoring}
             self._unknown.count_columns(times[start:stop], own)
             self._last = int(times[stop - 1])
 
@@ -94,7 +95,7 @@ class RowJudge:
         # Of the samples at which a signal was not known, only those that matter were judged.
         kept = [entry for entry in report.health if entry.kind is not HealthKind.NAN]
         health = sorted([*kept, *self._unknown.seen(self._chosen)], key=by_name)
-        return replace(report, health=tuple(health))
+        return replace(report, health=self._unknown.alternations.remarked(health))
 
 
 def _rows_that_matter(
@@ -105,6 +106,9 @@ def _rows_that_matter(
     matters = np.zeros(stop - before, bool)
     own = {name: column[before:stop] for name, column in columns.items()}
     matters[0] |= start == 0
+    if any(holds_nan(own[name]) for name in plan.spec.ignoring & own.keys()):
+        # What such a row leaves as it was, the row alone does not say.
+        matters[:] = True
     for place, own_reads in plan.graph.reads.items():
         leaf = plan.graph.nodes[place].leaf
         if leaf is None or not own_reads.names & own.keys():
@@ -121,6 +125,11 @@ def _rows_that_matter(
     shortest = min((bound for bound in bounds if bound is not None), default=None)
     if shortest is not None:
         matters |= _refreshing(times[before:stop], shortest)
+    for column in own.values():
+        if column.dtype.kind == "f":
+            # From when to when a signal was not known is told, whatever is made of it.
+            lost = np.isnan(column)
+            matters[1:] |= lost[1:] != lost[:-1]
     if before < start:
         matters[0] = False
     return np.flatnonzero(matters) + before

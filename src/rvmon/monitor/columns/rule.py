@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import numpy as np
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.codegen.plan import Plan
+from rvmon.dataflow.outages import Outage
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.bench import Open
 from rvmon.monitor.columns.axis import FAR
@@ -35,6 +37,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Numbers = NDArray[np.int64]
+
+OutagesAt = Callable[[int], Mapping[str, Outage]]
+"""By name what was not known at an instant."""
 
 
 class ColumnRule:
@@ -258,13 +263,14 @@ class ColumnRule:
             if not self._better.differ(self._worse).any():
                 self._better = None
 
-    def finish(self, timeline: Timeline, end: int, last: int) -> None:
+    def finish(self, timeline: Timeline, end: int, last: int, outages_at: OutagesAt) -> None:
         """Settle what is undecided.
 
         Args:
             timeline: has come to the end.
             end: the last instant of the trace.
             last: the last position.
+            outages_at: gives by name what was not known at an instant.
         """
         values = {leaf: timeline.value_here(leaf) for leaf in self._witness.leaves}
         since, until = {}, {}
@@ -273,14 +279,14 @@ class ColumnRule:
             for truth, instant in zip((FALSE, TRUE), ends, strict=True):
                 until[3 * place + truth] = None if instant == UNSEEN else instant
             until[3 * place + UNKNOWN] = None
-        flow = Stood(self._plan, values, since, until)
+        flow = Stood(self._plan, values, since, until, {})
         flow.origin, flow.position = timeline.origin, last
-        opened = [self._opened(index) for index in range(len(self._number))]
+        opened = [self._opened(index, outages_at) for index in range(len(self._number))]
         judge = self._witness.judge(flow, self._letters, last, opened)
         for attempt in opened:
             self._ledger.ended(judge, attempt, end, end)
 
-    def _opened(self, index: int) -> Open:
+    def _opened(self, index: int, outages_at: OutagesAt) -> Open:
         leaves = self._witness.leaves
         seen = self._witness.unpacked(self._seen.item(index))
         made = Open(self._triggered.item(index), self._token(self._worse, index), seen)
@@ -293,7 +299,7 @@ class ColumnRule:
             values = dict(
                 zip(leaves, self._witness.unpacked(self._doubt_seen.item(index)), strict=True)
             )
-            flow = Stood(self._plan, values, {}, {})
+            flow = Stood(self._plan, values, {}, {}, outages_at(instant))
             made.doubt = self._witness.judge(flow, (0, 0), instant, [])._doubt()
         return made
 

@@ -10,7 +10,7 @@ import numpy as np
 from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
 from rvmon.monitor.instants import formatted, seconds_of
 from rvmon.monitor.reasons import Finding, Reasons
-from rvmon.monitor.sentence import LastWith, Place
+from rvmon.monitor.sentence import AfterTrigger, LastWith, Place, Turned
 from rvmon.verdict.attempt_json import Pattern, attempt_text, numbers_texts
 
 if TYPE_CHECKING:
@@ -79,8 +79,8 @@ def _regions(decisions: Decisions, reasons: Reasons) -> Numbers:
 
 
 def _looks_back(finding: Finding) -> bool:
-    """Whether its sentence speaks of what was before the decision."""
-    return any(isinstance(part, LastWith) for part in finding.sentence)
+    """Whether its sentence speaks of what each attempt saw by itself."""
+    return any(isinstance(part, LastWith | Turned | AfterTrigger) for part in finding.sentence)
 
 
 def _passed(attempts: DecidedAttempts, own: Numbers, origin: int) -> list[str]:

@@ -161,6 +161,27 @@ requirement R1
 """,
 )
 
+IGNORED_NAN = Rule(
+    "RV027",
+    "nan-of-no-real",
+    Severity.ERROR,
+    "`ignore NaN` is said of a signal that is not `real`.",
+    "Only real numbers have NaN. `null` of a `bool`, `int` or label signal says that the value is "
+    "lost, and stays that.",
+    """spec demo
+signal people : int  ignore NaN
+
+requirement R1
+  always people < 3
+""",
+    """spec demo
+signal people : int
+
+requirement R1
+  always people < 3
+""",
+)
+
 RULES = (
     WRONG_TYPE,
     WRONG_ARGUMENTS,
@@ -169,7 +190,19 @@ RULES = (
     UNKNOWN_UNIT,
     OUT_OF_RANGE,
     LABELS,
+    IGNORED_NAN,
 )
+
+
+def ignored_nan(span: Span, kind: str) -> Diagnostic:
+    """`ignore NaN` where there is none; `kind` is that of the signal."""
+    shown = "with labels" if kind == "label" else f"of type `{kind}`"
+    return finding(
+        IGNORED_NAN,
+        f"a signal {shown} is never NaN",
+        span,
+        mend="remove `ignore NaN`, or declare the signal `real`",
+    )
 
 
 def needs_formula(span: Span, kind: str) -> Diagnostic:

@@ -101,8 +101,9 @@ def _grain(case: Case, formula: Formula) -> int:
     )
     if moments and held:
         raise Unfit("an event, or an update, is no signal that is held")
-    if any(spec.signals[name].stale_after for name in read if name in spec.signals):
-        raise Unfit("peers know nothing of `stale after`")
+    signals = [spec.signals[name] for name in read if name in spec.signals]
+    if any(one.stale_after or one.ignores_nan for one in signals):
+        raise Unfit("peers know nothing of `stale after` and `ignore NaN`")
     distances = [sample.t - first for sample in case.samples]
     distances += [bound for window in intervals(formula) for bound in _bounds(window)]
     if held and case.end is not None:

@@ -7,7 +7,7 @@ from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 NEVER = 1 << 63
 
 
-class Doubt:
+class Hidden:
     """Follows the truth of a trigger; see `rvmon.formula.state.StateOp.DOUBT`.
 
     Args:

@@ -1,0 +1,85 @@
+"""Random recordings through every door: the reports have to be the same, byte by byte.
+
+    python -m benchmarks.doors 2000 --seed 1
+
+Each recording is written as CSV, JSON lines and Parquet, and held as lists, arrays with masks, an
+Arrow table, pairs and, where these are installed, frames of pandas and polars. Prints how many
+agree with the first of these, and how many but for the position at which an engine noticed unknown
+input; every other disagreement with its seed, and exits with 1 if there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import count, islice
+from pathlib import Path
+
+from rvmon.errors import RvmonError
+from rvmon.session import Spec
+from rvmon.testing.differential import cases_of
+from rvmon.testing.doors import Content, content_of, doors, same_doubt, whole
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+
+EACH = 5
+"""Recordings of a specification."""
+
+
+def told(spec: Spec, trace: object, arguments: dict[str, object], engine: str) -> str:
+    """The report as JSON, or what was refused."""
+    try:
+        return spec.evaluate(trace, engine=engine, allow_missing=True, **arguments).to_json()  # type: ignore[arg-type]
+    except RvmonError as error:
+        return f"{type(error).__name__}"
+
+
+def contents(seed: int, samples: int) -> Iterator[tuple[str, Spec, Content]]:
+    """Random recordings without end, with their seeds; every third has a value in every cell."""
+    profile, traces = Profile(), TraceProfile(samples, 4 * samples, advances=False)
+    for number in count():
+        spec = None
+        for part, case in enumerate(cases_of(f"{seed}/{number}", profile, traces, EACH)):
+            spec = spec or Spec(case.spec)
+            own = f"{seed}/{number}/{part}"
+            content = content_of(random.Random(own), case)
+            if content.rows:
+                yield own, spec, whole(content) if part % 3 == 2 else content
+
+
+def main(argv: Sequence[str]) -> int:
+    """Judge so many recordings, and print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("recordings", type=int, nargs="?", default=2_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--samples", type=int, default=12, help="of a recording, at most")
+    parser.add_argument("--engine", default="auto")
+    options = parser.parse_args(argv)
+    ways = doors()
+    agreeing, alike, refused = Counter[str](), Counter[str](), Counter[str]()
+    found = contents(options.seed, options.samples)
+    with tempfile.TemporaryDirectory() as name:
+        for seed, spec, content in islice(found, options.recordings):
+            expected = None
+            for door, write in ways.items():
+                text = told(spec, *write(content, Path(name)), options.engine)
+                expected = expected or text
+                agreeing[door] += text == expected
+                alike[door] += same_doubt(text) == same_doubt(expected)
+                refused[door] += not text.startswith("{")
+                if same_doubt(text) != same_doubt(expected):
+                    print(f"seed {seed}, {door}:\n  {text}\n  first door: {expected}")
+    print(f"{options.recordings} recordings, seed {options.seed}, judged as the first door's:")
+    for door in ways:
+        print(
+            f"  {door:26} {alike[door]:6}, byte by byte {agreeing[door]:6}, refused {refused[door]}"
+        )
+    return int(any(alike[door] < options.recordings for door in ways))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

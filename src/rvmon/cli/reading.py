@@ -1,0 +1,145 @@
+"""How recordings call things, and what they may lack, as several commands take it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError
+from rvmon.trace.gaps import READINGS_OF_NAN
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rvmon.readers.reading import Telling
+    from rvmon.readers.recording import FileRecording
+    from rvmon.session import Spec
+
+OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
+"""Options whose value can be left out, and otherwise follows a `=`."""
+
+
+def add_time(parser: argparse.ArgumentParser) -> None:
+    """Declare `--time`."""
+    parser.add_argument(
+        "--time",
+        metavar="COLUMN[:UNIT]",
+        help="the column of stamps, and their unit: s, ms, us, ns, or iso (ISO 8601); default: "
+        "t in seconds, or t_ns",
+    )
+
+
+def add_reading(parser: argparse.ArgumentParser) -> None:
+    """Declare `--time`, `--map` and `--nan`."""
+    add_time(parser)
+    parser.add_argument(
+        "--map",
+        metavar="NAME=COLUMN",
+        action="append",
+        default=[],
+        help="the column of a declared name that is called otherwise; can be given repeatedly",
+    )
+    parser.add_argument(
+        "--nan",
+        choices=[reading.replace(" ", "-") for reading in READINGS_OF_NAN],
+        help="what NaN says: unknown (default), or no update, as where topics were merged",
+    )
+
+
+def add_allow_missing(parser: argparse.ArgumentParser) -> None:
+    """Declare `--allow-missing`."""
+    parser.add_argument(
+        "--allow-missing",
+        metavar="[=NAMES]",
+        default=None,
+        help="judge recordings in columns that lack these names (default: any): what reads them "
+        "is I, and the exit code 1",
+    )
+
+
+def with_values(words: Sequence[str]) -> list[str]:
+    """The words of a command line, with an empty value for options that may go without one.
+
+    Otherwise they would take the next word for it.
+
+    >>> with_values(["run", "--allow-missing", "a.rv", "--allow-missing=p"])
+    ['run', '--allow-missing=', 'a.rv', '--allow-missing=p']
+    """
+    made: list[str] = []
+    for place, word in enumerate(words):
+        if word == "--":
+            return [*made, *words[place:]]
+        short = len(word) > 2 and any(name.startswith(word) for name in OPTIONAL_VALUES)
+        made.append(f"{word}=" if short else word)
+    return made
+
+
+def allowed_names(text: str | None) -> bool | tuple[str, ...]:
+    """The value of `--allow-missing`: none, these, or with an empty one all.
+
+    >>> allowed_names(None), allowed_names(""), allowed_names("a, b")
+    (False, True, ('a', 'b'))
+    """
+    if not text:
+        return text is not None
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
+def mapped_names(texts: Sequence[str]) -> dict[str, str]:
+    """The values of `--map`: columns by declared name.
+
+    Raises:
+        RvmonError: a text has another form, or a name stands twice.
+
+    >>> mapped_names(["speed=Speed [m/s]"])
+    {'speed': 'Speed [m/s]'}
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        name, sign, column = text.partition("=")
+        name = name.strip()
+        if not name or not sign or not column:
+            raise RvmonError(f"--map {text}: expected NAME=COLUMN, such as speed=v_mean")
+        if name in found:
+            raise RvmonError(f"--map {text}: `{name}` is mapped twice")
+        found[name] = column
+    return found
+
+
+def time_words(arguments: argparse.Namespace) -> list[str]:
+    """The words that say on another command line where the stamps are."""
+    return [] if arguments.time is None else ["--time", arguments.time]
+
+
+def reading_words(arguments: argparse.Namespace) -> list[str]:
+    """The words that say the same on another command line."""
+    words = time_words(arguments)
+    for text in arguments.map:
+        words += ["--map", text]
+    if arguments.nan is not None:
+        words += ["--nan", arguments.nan]
+    if arguments.allow_missing is not None:
+        words.append(f"--allow-missing={arguments.allow_missing}".rstrip("="))
+    return words
+
+
+def reading_arguments(arguments: argparse.Namespace) -> Telling:
+    """What the command line says, as `Spec.reading` takes it."""
+    nan = None if arguments.nan is None else arguments.nan.replace("-", " ")
+    return {"time": arguments.time, "columns": mapped_names(arguments.map), "nan": nan}
+
+
+def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
+    """The specification for recordings that tell things as the command line says."""
+    return spec.reading(**reading_arguments(arguments))
+
+
+def opened(spec: Spec, trace: str) -> FileRecording:
+    """The recording at a path, for a specification that knows how it tells things.
+
+    Raises:
+        TraceError: it cannot be opened, or its header is wrong.
+    """
+    from rvmon.readers.recording import FileRecording
+
+    return FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)

@@ -1,0 +1,109 @@
+"""What was awaited in vain and came too late: told from the whole recording."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+
+from rvmon.explain.eye import positions_of, subformulas
+from rvmon.explain.log import state_truths
+from rvmon.explain.spans import Spans
+from rvmon.explain.states import state_of
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import has_future
+from rvmon.monitor.instances import Instance
+from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Formula, Requirement, Unary, UnaryOp
+from rvmon.spec.printer import format_formula
+from rvmon.trace.sample import Sample, Scalar
+from rvmon.verdict.attempt import Attempt
+
+
+def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
+    """What a failed attempt had awaited when its window closed.
+
+    Args:
+        requirement: of the attempt.
+        attempt: any.
+
+    Returns:
+        `None` if that is not why it failed, or if what was awaited spoke of the future itself.
+    """
+    blame = attempt.blame
+    if blame is None or blame.window[1] is None or attempt.decided is None:
+        return None
+    if attempt.decided <= blame.window[1]:
+        return None
+    for _, formula in subformulas(requirement.consequent, 0):
+        match formula:
+            case Unary(op=UnaryOp.EVENTUALLY, operand=part):
+                pass
+            case Binary(op=BinaryOp.UNTIL, right=part):
+                pass
+            case _:
+                continue
+        if format_formula(formula) == blame.subformula:
+            return None if has_future(part) else part
+    return None
+
+
+def late_arrivals(
+    spec: CheckedSpec,
+    requirement: Requirement,
+    attempts: Iterable[Attempt],
+    samples: Sequence[Sample],
+    end: int,
+    names: frozenset[str] | None = None,
+) -> dict[int, int]:
+    """By number of the attempt, when what it had awaited came true after the deadline, in ticks.
+
+    Args:
+        spec: the specification.
+        requirement: one of its requirements.
+        attempts: of that; those that missed no deadline, and those whose wait was never over, are
+            left out.
+        samples: the recording, in order.
+        end: its last instant, ticks.
+        names: the signals and events that have a source; `None`: all.
+
+    Cost: one pass over the samples for each choice of captured values.
+    """
+    if not samples:
+        return {}
+    begin, positions = samples[0].t, positions_of(spec, samples, end)
+    seen: dict[tuple[Formula, tuple[tuple[str, Scalar], ...]], Spans] = {}
+    found = {}
+    for attempt in attempts:
+        formula = awaited(requirement, attempt)
+        if formula is None or attempt.blame is None:
+            continue
+        key = (formula, tuple(attempt.captured.items()))
+        if key not in seen:
+            state = state_of(formula, requirement, Factory(), spec)
+            instance = _instance(requirement, attempt.captured, begin)
+            truths = state_truths(spec, [state], samples, end, instance, attempt.captured, names)
+            seen[key] = truths[state].sure
+        deadline = attempt.blame.window[1] or 0
+        came = _first_after(deadline, seen[key], positions)
+        if came is not None:
+            found[attempt.number] = came
+    return found
+
+
+def _first_after(deadline: int, spans: Spans, positions: Sequence[int] | None) -> int | None:
+    """The first position (`None`: every tick is one) after an instant that lies in a span."""
+    place = bisect_right(spans, deadline, key=lambda span: span[1])
+    for low, high in spans[place:]:
+        first = max(low, deadline + 1)
+        if positions is None:
+            return first
+        index = bisect_left(positions, first)
+        if index < len(positions) and positions[index] <= high:
+            return positions[index]
+    return None
+
+
+def _instance(
+    requirement: Requirement, captured: Mapping[str, Scalar], begin: int
+) -> Instance | None:
+    each = requirement.for_each
+    return None if each is None else Instance(1, each.value, captured[each.name], begin)

@@ -1,0 +1,73 @@
+"""Formulas of a requirement as state formulas, and what these read of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import assert_never
+
+from rvmon.dataflow.graph import graph_of
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import lower
+from rvmon.formula.numeric import operands
+from rvmon.formula.state import Elapsed, Leaf, Lost, Missing, State, Unborn
+from rvmon.spec.checked import (
+    BoundAtom,
+    CheckedSpec,
+    Compare,
+    Constant,
+    EventAtom,
+    Formula,
+    Literal,
+    Probe,
+    ProbeAtom,
+    Requirement,
+    SignalAtom,
+    SignalValue,
+    TimeModel,
+)
+
+
+def state_of(
+    formula: Formula, requirement: Requirement, factory: Factory, spec: CheckedSpec
+) -> State:
+    """A formula of a requirement, of present and past only, as the flow reads it."""
+    alone = replace(requirement, trigger=formula, consequent=Constant(True), captures=())
+    state = lower(alone, factory, spec.period).trigger
+    assert state is not None, "`end` stands alone"  # noqa: S101
+    return state
+
+
+def values_read(
+    spec: CheckedSpec, requirement: Requirement, formulas: Iterable[Formula]
+) -> frozenset[str] | None:
+    """The names that some formulas of a requirement read, if their values are all that counts.
+
+    Returns:
+        `None` if updates that repeat a value, payloads or positions may make a difference.
+    """
+    stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
+    if spec.time is TimeModel.SAMPLED or requirement.for_each is not None:
+        return None
+    factory = Factory()
+    graph = graph_of(state_of(formula, requirement, factory, spec) for formula in formulas)
+    leaves = [node.leaf for node in graph.nodes if node.leaf is not None]
+    names = frozenset(graph.by_name)
+    return names if all(map(_is_of_values, leaves)) and not names & stale else None
+
+
+def _is_of_values(leaf: Leaf) -> bool:
+    match leaf:
+        case Compare(left=left, right=right):
+            parts = (part for side in (left, right) for part in operands(side))
+            return all(isinstance(part, SignalValue | Literal) for part in parts)
+        case ProbeAtom(probe=probe):
+            return probe is Probe.KNOWN
+        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed() | Unborn():
+            return True
+        case Missing(atom=atom):
+            return _is_of_values(atom)
+        case Lost():
+            return False
+        case _:
+            assert_never(leaf)

@@ -1,0 +1,136 @@
+"""Names that requirements read and that a recording in columns lacks."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from rvmon.diagnostics.nearest import MOST_NAMES, nearest
+from rvmon.errors import MissingNameError
+from rvmon.monitor.compiled import CompiledSpec
+from rvmon.readers.recording import FileRecording
+from rvmon.readers.values import shorten
+from rvmon.spec.asked import sources_asked
+
+if TYPE_CHECKING:
+    from rvmon.readers.columns import TableRecording
+
+_SHOWN = 8
+"""Columns that are listed where none is like a name."""
+
+
+def names_read(compiled: CompiledSpec, only: Sequence[str] | None) -> dict[str, tuple[str, ...]]:
+    """The signals and events that requirements read, each with the ids of those.
+
+    Args:
+        compiled: the specification.
+        only: ids of the requirements; default all.
+    """
+    found: dict[str, tuple[str, ...]] = {}
+    for name, requirement in compiled.requirements.items():
+        if only is None or name in only:
+            for read in sorted(requirement.reads):
+                found[read] = (*found.get(read, ()), name)
+    return found
+
+
+def expect_names(
+    compiled: CompiledSpec,
+    recording: FileRecording | TableRecording,
+    mapped: Mapping[str, str],
+    *,
+    only: Sequence[str] | None,
+    allowed: bool | Iterable[str],
+) -> tuple[str, ...]:
+    """Refuse a recording that lacks what is read.
+
+    Args:
+        compiled: the specification.
+        recording: of which nothing but the names is looked at.
+        mapped: by declared name the column that a person named.
+        only: ids of the requirements; default all.
+        allowed: the names that it may lack; whether all.
+
+    Returns:
+        The names that it lacks, all of which it may.
+
+    Raises:
+        MissingNameError: it lacks others, too; each is told with the column that is most like it.
+        UnknownNameError: a name that it may lack is not declared.
+    """
+    some = None if isinstance(allowed, bool) else sources_asked(compiled.checked, allowed)
+    names = recording.names
+    if names is None:
+        return ()
+    lacking = {name: ids for name, ids in names_read(compiled, only).items() if name not in names}
+    refused = [] if allowed is True else [name for name in lacking if name not in (some or ())]
+    if refused:
+        place = f"{recording.path}: " if isinstance(recording, FileRecording) else ""
+        free = list(recording.ignored)
+        close = {name: most_like(name, free) for name in refused}
+        paths = [column for column in free if "/" in column or "." in column]
+        if len(refused) == len(paths) == 1 and not close[refused[0]]:
+            close[refused[0]] = paths[0]  # the one topic for the one name
+        raise MissingNameError(place + "\n".join(_told(lacking, close, free, mapped)))
+    return tuple(lacking)
+
+
+def _told(
+    lacking: Mapping[str, tuple[str, ...]],
+    close: Mapping[str, str],
+    others: Sequence[str],
+    mapped: Mapping[str, str],
+) -> Iterable[str]:
+    yield "there is no column for what requirements read:"
+    for name, column in close.items():
+        meant = f": did you mean `{shorten(column)}`?" if column else ""
+        wanted = f" (as `{shorten(mapped[name])}`)" if name in mapped else ""
+        yield f"  `{name}`{wanted}, read by {', '.join(lacking[name])}{meant}"
+    if not all(close.values()):
+        shown = ", ".join(f"`{shorten(column)}`" for column in others[:_SHOWN]) or "none"
+        more = f" and {len(others) - _SHOWN} more" if len(others) > _SHOWN else ""
+        yield f"  columns that nothing is declared for: {shown}{more}"
+    maps = [shlex.quote(f"{name}={column or 'COLUMN'}") for name, column in close.items()]
+    which, them = ("which column it is", "it") if len(maps) == 1 else ("which they are", "them")
+    yield f"  say {which}: {' '.join(f'--map {one}' for one in maps)}, in Python columns=…"
+    yield (
+        f"  or leave what reads {them} inconclusive: --allow-missing={','.join(close)}, "
+        "in Python allow_missing=…"
+    )
+
+
+def most_like(name: str, columns: Sequence[str]) -> str:
+    """The column that was probably meant by a name; empty if none is like it.
+
+    Case, what stands in brackets or behind a path, and units at the end are passed over.
+
+    >>> most_like("speed", ["t2", "/base/Speed [m/s]"]), most_like("speed", ["speed_m_s"])
+    ('/base/Speed [m/s]', 'speed_m_s')
+    >>> most_like("obstacle", ["obstacel"]), most_like("speed", ["door"])
+    ('obstacel', '')
+    """
+    wanted = _forms(name)
+    ranks = []
+    by_form: dict[str, str] = {}
+    for column in islice(columns, MOST_NAMES):
+        for place, form in enumerate(_forms(column)):
+            by_form.setdefault(form, column)
+            if form in wanted:
+                ranks.append((wanted.index(form) + place, column))
+    if ranks:
+        return min(ranks)[1]
+    return by_form.get(nearest(wanted[0], by_form), "")
+
+
+def _forms(name: str) -> list[str]:
+    """A name without what people write differently, the most faithful form first."""
+    plain = re.sub(r"(?<=.)\s*[\[({<].*", "", name).strip().casefold()
+    segments = [part for part in re.split(r"[/.:\\]", plain) if part] or [plain]
+    forms = ["".join(segments[start:]) for start in range(len(segments))]
+    words = re.split(r"[_\-\s]+", segments[-1])
+    forms += ["".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
+    bare = (re.sub(r"[_\-\s]", "", form) for form in forms)
+    return list(dict.fromkeys(form for form in bare if form)) or [plain]

@@ -1,0 +1,103 @@
+"""By what names a recording calls its time and what the spec declares."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import Any
+
+from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.errors import RvmonError, TraceError, UnknownNameError
+from rvmon.readers.values import shorten
+from rvmon.trace.gaps import gaps_of
+from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.stamps import UNITS, stamps_of
+
+DEFAULT_COLUMNS = ("t", "t_ns")
+"""The columns of stamps where none was named."""
+
+
+def told_as(
+    schema: Schema,
+    *,
+    time: str | None,
+    columns: Mapping[str, str] | None,
+    nan: str | None,
+    no_update: Any,
+) -> Schema:
+    """A schema for recordings that tell things otherwise; see `rvmon.session.Spec.reading`.
+
+    Args:
+        schema: what is not given stays as it says.
+        time: the column of stamps and its unit.
+        columns: by declared name the column.
+        nan: what NaN says.
+        no_update: a further value that stands for no update.
+
+    Raises:
+        UnknownNameError: `columns` names what is not declared, or there is no such reading of NaN.
+        RvmonError: `columns` names a column twice.
+    """
+    fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
+    declared = [*schema.signals, *schema.events, *fields]
+    given = dict(columns or {})
+    for name, column in given.items():
+        if name not in declared:
+            meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
+            raise UnknownNameError(f"nothing named `{name}` to map `{column}` to: {meant}")
+        if list(given.values()).count(column) > 1:
+            raise RvmonError(f"column `{column}` is mapped to two names: one column, one name")
+    gaps = schema.gaps
+    return replace(
+        schema,
+        stamps=schema.stamps if time is None else stamps_of(time),
+        columns={**schema.columns, **given},
+        gaps=gaps_of(
+            gaps.reading_of_nan if nan is None else nan,
+            gaps.no_update if no_update is None else no_update,
+        ),
+    )
+
+
+def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> Stamps:
+    """The column of stamps of a recording that has these columns.
+
+    Args:
+        names: of its columns.
+        schema: says which one it is, if a person did.
+        remark: what else may be wrong if there is none.
+
+    Raises:
+        TraceError: there is none, or there are two.
+    """
+    stamps = schema.stamps
+    listed = ", ".join(f"`{shorten(name)}`" for name in list(names)[:8]) or "nothing"
+    if stamps is not None:
+        if stamps.column in names:
+            return stamps
+        units = "" if stamps.is_said else _units_told(stamps.column)
+        meant = did_you_mean(stamps.column, names, f"there are {listed}")
+        raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}{remark}")
+    times = [name for name in DEFAULT_COLUMNS if name in names]
+    if len(times) != 1:
+        raise TraceError(
+            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
+            f"in the header; found {'both' if times else listed}: name "
+            f"{'one of them' if times else 'it'} with --time COLUMN[:UNIT], in Python "
+            f"time=…{remark}"
+        )
+    return stamps_of(times[0])
+
+
+def _units_told(column: str) -> str:
+    return f" (the units are {', '.join(UNITS)})" if ":" in column else ""
+
+
+def aliases_of(schema: Schema) -> dict[str, str]:
+    """The declared name by column, where it has another one; what no longer counts has none.
+
+    >>> aliases_of(Schema({}, {}, columns={"speed": "Speed [m/s]"}))
+    {'speed': '', 'Speed [m/s]': 'speed'}
+    """
+    own = {column: name for name, column in schema.columns.items()}
+    return {**dict.fromkeys(schema.columns, ""), **own}

@@ -1,0 +1,129 @@
+"""Tables in memory as columns by name, whatever made them.
+
+Arrow tables, whatever gives itself out as one by `__arrow_c_stream__` or `__dataframe__` (with
+pyarrow, the extra `arrow`), data frames of pandas and polars, mappings of arrays or lists.
+"""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rvmon.errors import RvmonError, TraceError
+
+
+def columns_by_name(table: Any) -> dict[str, Any] | None:
+    """The columns of a table as they are; `None` if it is no table.
+
+    Raises:
+        TraceError: two columns have one name, or what gives itself out as a table is none.
+        RvmonError: pyarrow is needed to read it.
+
+    >>> columns_by_name({"t": [0, 1]}), columns_by_name([(0, {})])
+    ({'t': [0, 1]}, None)
+    """
+    if isinstance(table, Mapping):
+        return {str(name): column for name, column in table.items()}
+    if hasattr(table, "column_names"):
+        return _distinct(table.column_names, table.columns)
+    if not (hasattr(table, "__arrow_c_stream__") or hasattr(table, "__dataframe__")):
+        return None
+    # As Arrow, the NaN of a frame of pandas would be absent: its own columns tell them apart.
+    if hasattr(table, "columns") and hasattr(table, "shape"):
+        return _frame_columns(table)
+    imported = _imported(table)
+    return _distinct(imported.column_names, imported.columns)
+
+
+def _frame_columns(frame: Any) -> dict[str, Any]:
+    keys = list(frame.columns)
+    _expect_distinct([str(key) for key in keys])
+    found = {str(key): frame[key] for key in keys}
+    index: Any = getattr(frame, "index", None)  # of pandas
+    if getattr(index, "name", None) is not None:
+        found.setdefault(str(index.name), index)
+    return found
+
+
+def _imported(table: Any) -> Any:
+    """An Arrow table of what gives itself out as one."""
+    kind = type(table).__name__
+    try:
+        import pyarrow
+        from pyarrow.interchange import from_dataframe
+    except ImportError:
+        raise RvmonError(
+            f"{kind} needs pyarrow, which is not installed: pip install 'rvmon[arrow]'"
+        ) from None
+    try:
+        return (
+            pyarrow.table(table) if hasattr(table, "__arrow_c_stream__") else from_dataframe(table)
+        )
+    except (pyarrow.ArrowException, TypeError, ValueError, RuntimeError) as error:
+        told = str(error).partition("\n")[0]
+        raise TraceError(f"{kind} cannot be read as a table of columns ({told})") from None
+
+
+def _distinct(names: Sequence[str], columns: Sequence[Any]) -> dict[str, Any]:
+    _expect_distinct(names)
+    return dict(zip(names, columns, strict=True))
+
+
+def _expect_distinct(names: Sequence[str]) -> None:
+    seen = set()
+    for name in names:
+        if name in seen:
+            raise TraceError(f"column `{name}` stands twice in the table")
+        seen.add(name)
+
+
+def cells_of(name: str, column: Any) -> list[Any]:
+    """The cells of a column; dates and durations as text: they are no numbers of seconds.
+
+    Args:
+        name: of the column.
+        column: an array, NumPy's with a mask too, a list, a column of Arrow, pandas or polars.
+
+    Returns:
+        Values as Python has them; `None` where there is none: null, masked, missing in a column of
+        pandas that tells that from NaN by its type.
+
+    Raises:
+        TraceError: it is no column.
+
+    >>> cells_of("x", [1, None])
+    [1, None]
+    """
+    if hasattr(column, "combine_chunks") or hasattr(column, "to_pylist"):
+        return arrow_cells(column)
+    dtype = getattr(column, "dtype", None)
+    if getattr(column, "ndim", 1) > 0 and not isinstance(column, str | bytes):
+        if getattr(dtype, "kind", None) in ("m", "M"):
+            return [str(cell) for cell in column]
+        try:
+            listed = getattr(column, "tolist", None) or getattr(column, "to_list", None)
+            cells = list(listed() if listed else column)
+        except TypeError:
+            cells = None
+        if cells is not None:
+            return _without_missing(column, cells) if hasattr(column, "isna") else cells
+    found = reprlib.repr(column)
+    raise TraceError(f"column `{name}`: expected an array or a list of values, found {found}")
+
+
+def _without_missing(series: Any, cells: list[Any]) -> list[Any]:
+    """The cells of a column of pandas; only NumPy's types have NaN for a value of their own."""
+    if type(series.dtype).__module__.partition(".")[0] == "numpy":
+        return cells
+    return [None if gone else cell for gone, cell in zip(series.isna(), cells, strict=True)]
+
+
+def arrow_cells(column: Any) -> list[Any]:
+    """The cells of an Arrow array; dates and durations as text: they are no numbers of seconds."""
+    from pyarrow import types
+
+    if types.is_temporal(column.type):
+        return [str(cell) for cell in column.to_numpy(zero_copy_only=False)]
+    cells: list[Any] = column.to_pylist()
+    return cells

@@ -1,0 +1,34 @@
+"""What the rest of a recording adds to the reason of a failure."""
+
+from __future__ import annotations
+
+from rvmon.spec.printer import format_duration
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+
+def full_reason(attempt: Attempt, report: Report) -> str:
+    """The reason of an attempt with its afterword, if the report knows one."""
+    return with_afterword(attempt, report.late.get(attempt.requirement, {}).get(attempt.number))
+
+
+def with_afterword(attempt: Attempt, came: int | None) -> str:
+    """The reason of an attempt; if what it awaited came after the deadline, also how late.
+
+    Args:
+        attempt: any.
+        came: the instant at which it came, ticks; `None`: it did not, or nobody looked.
+
+    >>> from rvmon.verdict.attempt import Blame
+    >>> from rvmon.verdict.verdict import Verdict
+    >>> second = 10**9
+    >>> blame = Blame("within 3 s a", 0, 12, (0, 3 * second))
+    >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)
+    >>> with_afterword(failed, 3 * second + 20_000_000)
+    'no `a`; it came at 3.02 s, 20 ms after the deadline'
+    """
+    if came is None or attempt.blame is None or attempt.blame.window[1] is None:
+        return attempt.reason
+    late = format_duration(came - attempt.blame.window[1])
+    return f"{attempt.reason}; it came at {format_ticks(came)}, {late} after the deadline"

@@ -1,0 +1,179 @@
+"""Stamps of recordings in their units as ticks, exactly."""
+
+from __future__ import annotations
+
+import math
+import re
+import reprlib
+from contextlib import suppress
+from datetime import UTC, datetime
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+from rvmon.errors import TraceError
+from rvmon.trace.schema import Stamps
+from rvmon.trace.time import (
+    TICKS_PER_SECOND,
+    TICKS_PER_UNIT,
+    TIME_LIMIT,
+    UNIT_WORDS,
+    ticks_of_seconds,
+    ticks_of_text,
+    whole_ticks,
+)
+
+UNITS = (*UNIT_WORDS, "iso")
+"""What stamps may be told in."""
+
+_ISO = re.compile(
+    r"(?P<date>\d{4}-?\d\d-?\d\d)"
+    r"(?:[T ](?P<clock>\d\d:?\d\d(?::?\d\d(?:[.,](?P<part>\d{1,9})0*)?)?)"
+    r" ?(?P<zone>Z|[+-]\d\d(?::?\d\d)?)?)?",
+    re.ASCII | re.IGNORECASE,
+)
+
+_SHOWN = reprlib.Repr()
+_SHOWN.maxstring = 60
+
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+_EPOCHS = {"ms": (1e11, 1e14), "us": (1e14, 1e17), "ns": (1e17, 1e20)}
+"""From where to where numbers are instants since 1970 in a unit, if they are no seconds."""
+
+
+def stamps_of(text: str) -> Stamps:
+    """Read `COLUMN` or `COLUMN:UNIT`; without a unit, a column `…_ns` holds nanoseconds.
+
+    >>> stamps_of("stamp:ms")
+    Stamps(column='stamp', unit='ms', is_said=True)
+    >>> stamps_of("t_ns")
+    Stamps(column='t_ns', unit='ns', is_said=False)
+    """
+    column, colon, unit = text.rpartition(":")
+    if colon and unit in UNITS:
+        return Stamps(column, unit, is_said=True)
+    return Stamps(text, "ns" if text.endswith("_ns") else "s")
+
+
+def ticks_of_cell(text: str, stamps: Stamps) -> int:
+    """Read a stamp of a text file exactly.
+
+    Raises:
+        TraceError: it is none in that unit, or out of range.
+
+    >>> ticks_of_cell("1.5", stamps_of("t:ms"))
+    1500000
+    """
+    if stamps.unit == "iso":
+        return ticks_of_iso(text)
+    if stamps.unit != "ns":
+        try:
+            return ticks_of_text(text, stamps.unit)
+        except TraceError as error:
+            raise TraceError(f"{error}{_other_unit(text, stamps)}") from None
+    with suppress(ValueError):
+        # Python reads 1_000 as a number; no recording means it.
+        t = int(text.replace("_", "?"))
+        if abs(t) < TIME_LIMIT:
+            return t
+    shown = _SHOWN.repr(text)[1:-1]
+    # Python reads no more than some thousand digits, which are a whole number as well.
+    if is_whole(text):
+        raise TraceError(f"time `{shown}` is out of range: at most 2**62 ns (146 years)")
+    raise TraceError(f"time `{shown}` is not a whole number of nanoseconds")
+
+
+def is_whole(text: str) -> bool:
+    """Whether the text is a whole number, however many digits it has."""
+    return re.fullmatch(r"\s*[+-]?\d+\s*", text) is not None
+
+
+def ticks_of_stamp(stamp: Any, stamps: Stamps) -> int:
+    """A stamp that is held as a number, or as text or a date for `iso`, as ticks.
+
+    Args:
+        stamp: of `s`, `ms` and `us` any number; of `ns` a whole one.
+        stamps: says the unit.
+
+    Raises:
+        TraceError: it is none in that unit, or out of range.
+
+    >>> ticks_of_stamp(1_500, stamps_of("t:us")), ticks_of_stamp(0.25, stamps_of("t:ms"))
+    (1500000, 250000)
+    """
+    if stamps.unit == "iso":
+        return ticks_of_iso(str(stamp))
+    plain = stamp.item() if hasattr(stamp, "item") else stamp
+    if not isinstance(plain, bool):
+        try:
+            if isinstance(plain, int):
+                return _whole(plain, stamps.unit)
+            if isinstance(plain, float | Fraction | Decimal) and stamps.unit != "ns":
+                return _rounded(plain, stamps.unit)
+        except TraceError as error:
+            raise TraceError(f"{error}{_other_unit(plain, stamps)}") from None
+    wanted = "a whole number" if stamps.unit == "ns" else "a number"
+    shown = _SHOWN.repr(str(plain))[1:-1]
+    raise TraceError(
+        f"time `{shown}` is not {wanted} of {UNIT_WORDS[stamps.unit]}{_other_unit(shown, stamps)}"
+    )
+
+
+def _whole(stamp: int, unit: str) -> int:
+    ticks = stamp * TICKS_PER_UNIT[unit]
+    if abs(ticks) < TIME_LIMIT:
+        return ticks
+    return whole_ticks(stamp) if unit == "ns" else ticks_of_seconds(_seconds(stamp, unit))
+
+
+def _rounded(stamp: float | Fraction | Decimal, unit: str) -> int:
+    if unit == "s" or not math.isfinite(stamp):
+        return ticks_of_seconds(stamp)
+    return ticks_of_seconds(_seconds(stamp, unit))
+
+
+def _seconds(stamp: float | Fraction | Decimal, unit: str) -> Fraction:
+    return Fraction(stamp) * TICKS_PER_UNIT[unit] / TICKS_PER_SECOND
+
+
+def ticks_of_iso(text: str) -> int:
+    """Read a date and time of ISO 8601 as ticks since 1970, exactly; without an offset it is UTC.
+
+    Raises:
+        TraceError: it is none, has more than nine digits of a second, or is out of range.
+
+    >>> ticks_of_iso("1970-01-01T02:00:00.000000001+02:00")
+    1
+    """
+    shown = _SHOWN.repr(text)[1:-1]
+    found = _ISO.fullmatch(text.strip())
+    if found is None:
+        raise TraceError(
+            f"time `{shown}` is no date and time of ISO 8601 such as "
+            "2024-05-01T12:00:00.123456789+02:00, of at most nine digits behind the point"
+        )
+    clock = (found["clock"] or "00:00").replace(",", ".").partition(".")[0]
+    try:
+        whole = datetime.fromisoformat(f"{found['date']}T{clock}{(found['zone'] or 'Z').upper()}")
+        since = whole - _EPOCH
+    except (ValueError, OverflowError) as error:
+        raise TraceError(f"time `{shown}` does not exist: {error}") from None
+    seconds = since.days * 86_400 + since.seconds
+    return whole_ticks(seconds * TICKS_PER_SECOND + int((found["part"] or "0").ljust(9, "0")))
+
+
+def _other_unit(stamp: object, stamps: Stamps) -> str:
+    """A question after the unit that was probably meant, where it went without saying."""
+    if stamps.is_said:
+        return ""
+    if _ISO.fullmatch(str(stamp).strip()) and not str(stamp).isdigit():
+        return f": is this ISO 8601? `--time {stamps.column}:iso`"
+    with suppress(ValueError):
+        number = abs(float(str(stamp)))
+        if stamps.unit == "ns" and math.isfinite(number) and not number.is_integer():
+            return f". Are these seconds? `--time {stamps.column}:s`"
+        for unit, (least, most) in _EPOCHS.items():
+            if stamps.unit == "s" and least <= number < most:
+                return f". Are these {UNIT_WORDS[unit]}? `--time {stamps.column}:{unit}`"
+    return ""

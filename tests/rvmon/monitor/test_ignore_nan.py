@@ -1,0 +1,149 @@
+"""Signals that ignore NaN: by each way in, what is ignored is as if it were not there."""
+
+import math
+import shutil
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.errors import TraceError
+from rvmon.trace.health import HealthKind
+
+SPEC = """spec lidar
+time {time}
+signal range : real [m] input ignore NaN stale after 500 ms
+signal free  : real [m] input ignore NaN
+event  look
+
+requirement Near
+  always (range < 1 m -> free < 2 m)
+requirement Fresh
+  upon look
+  then immediately known(range)
+requirement Heard
+  upon updated(range)
+  then within 1 s look
+requirement Steady
+  always abs(rate(free)) <= 5 m/s
+requirement Young
+  upon age(range) > 300 ms
+  then within 1 s look
+"""
+NAN = math.nan
+ROWS = [
+    (0.0, {"range": 2.0, "free": 3.0}),
+    (0.1, {"range": NAN, "free": NAN}),
+    (0.2, {"range": 0.5, "free": 1.0, "look": True}),
+    (0.4, {"range": NAN}),
+    (0.6, {"range": NAN, "free": 1.5, "look": True}),
+    (0.7, {"range": NAN, "free": NAN}),
+    (0.9, {"range": NAN, "free": 2.5, "look": True}),
+    (1.5, {"range": 3.0, "free": NAN}),
+]
+C = pytest.param("c", marks=pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler"))
+
+
+@pytest.fixture(params=["held", "sampled", "sampled every 100 ms"])
+def spec(request, tmp_path, monkeypatch):
+    """The specification in each model of time."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return rvmon.loads(SPEC.format(time=request.param))
+
+
+def without(rows):
+    """The rows, without what is ignored; each is a sample all the same."""
+    return [(t, {n: v for n, v in row.items() if v is not None and v == v}) for t, row in rows]
+
+
+def records(report):
+    """What was judged, without its reasons."""
+    return report.verdicts, [
+        (a.requirement, a.number, a.triggered, a.decided, a.verdict) for a in report.attempts
+    ]
+
+
+def test_it_is_unknown_a_while_after_its_last_good_value(spec):
+    """Not at the first NaN, and not counted from one; until then the value stays."""
+    report = spec.evaluate(ROWS)
+    assert [a.verdict for a in report.attempts if a.requirement == "Fresh"] == ["P", "P", "F"]
+    assert [a.verdict for a in report.attempts if a.requirement == "Heard"] == ["P", "P", "I"]
+    assert report.verdicts["Near"] in ("P", "I")
+
+
+@pytest.mark.parametrize("value", [NAN, None, np.float32("nan")])
+@pytest.mark.parametrize("engine", ["auto", "network", "python", C])
+def test_samples_are_judged_as_without_what_they_ignore(spec, value, engine):
+    """Whichever way it is said that there is no value."""
+    rows = [(t, {n: value if v != v else v for n, v in row.items()}) for t, row in ROWS]
+    only = None if engine != "python" else ["Near", "Fresh", "Young"]
+    told, expected = (
+        spec.monitor(engine=engine, only=only, sources=["range", "free", "look"]) for _ in "12"
+    )
+    for (t, row), (_, bare) in zip(rows, without(rows), strict=True):
+        assert [str(a) for a in told.step(t, row)] == [str(a) for a in expected.step(t, bare)]
+    assert told.finish() == expected.finish()
+
+
+def test_it_is_no_finding_on_the_inputs(spec):
+    """The author said that NaN is to be expected; that the signal becomes stale is told."""
+    kinds = {one.kind for one in spec.evaluate(ROWS).health}
+    assert HealthKind.NAN not in kinds
+    assert HealthKind.NONE not in kinds
+    assert HealthKind.STALE in kinds
+
+
+@pytest.mark.parametrize("engine", ["auto", C])
+def test_columns_are_judged_as_samples(spec, engine):
+    """In arrays of any length each row holds a value, or NaN."""
+    for times in (1, 400):
+        rows = [(t + 2 * k, row) for k in range(times) for t, row in ROWS]
+        table = {
+            "t": np.array([t for t, _ in rows]),
+            "range": np.array([row["range"] for _, row in rows]),
+            "free": np.array([row.get("free", NAN) for _, row in rows]),
+            "look": np.array(["look" in row for _, row in rows]),
+        }
+        looks = [(t, {"look": False, **row}) for t, row in rows]
+        assert records(spec.evaluate(table, engine=engine)) == records(spec.evaluate(looks))
+
+
+@pytest.mark.parametrize("engine", ["auto", C])
+def test_files_are_judged_as_samples(spec, tmp_path, engine):
+    """Also where NaN has the stamp of a value: that is no conflict, and the value stays."""
+    lines = ["t,range,free,look"]
+    for t, row in ROWS:
+        lines.append(f"{t},{row['range']},{row.get('free', '')},{int('look' in row)}")
+        lines.append(f"{t},nan,nan,0")
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    looks = [(t, {"look": False, **row}) for t, row in ROWS]
+    report = spec.evaluate(tmp_path / "a.csv", engine=engine)
+    assert records(report) == records(spec.evaluate(looks))
+    assert HealthKind.CONFLICT not in {one.kind for one in report.health}
+
+
+def test_samples_that_are_merged_keep_the_value(spec):
+    """With equal stamps, NaN behind a value is no other value."""
+    monitor = spec.monitor(settle="next")
+    for t, row in ROWS:
+        monitor.step(t, row)
+        monitor.step(t, {"range": NAN, "free": None})
+    report = monitor.finish()
+    assert records(report) == records(spec.evaluate(ROWS))
+    assert HealthKind.CONFLICT not in {one.kind for one in report.health}
+
+
+def test_a_run_that_is_put_away_goes_on_alike(spec):
+    """A snapshot remembers the good values."""
+    monitor = spec.monitor()
+    for t, row in ROWS:
+        monitor.step(t, row)
+        monitor = spec.restore(monitor.snapshot())
+    assert records(monitor.finish()) == records(spec.evaluate(ROWS))
+
+
+def test_what_is_wrong_is_still_refused(spec):
+    """Only NaN and null are ignored."""
+    monitor = spec.monitor()
+    with pytest.raises(TraceError, match="expected a number"):
+        monitor.step(0.0, {"range": "far"})

@@ -1,0 +1,195 @@
+"""What cannot be judged is not green: recordings in columns that lack what is read."""
+
+import json
+
+import numpy as np
+import pyarrow
+import pytest
+from pyarrow import parquet
+
+import rvmon
+from rvmon.cli import main
+
+SPEC = """
+spec base "A base"
+signal speed : real [m/s] input
+signal gap : real [m] input
+event pick(id : int) input
+requirement R1 "It is slow"
+  always speed <= 1 m/s
+requirement R2 "It keeps away"
+  always gap > 1 m
+requirement R3 "What is picked is known"
+  whenever pick and pick.id > 7
+  then speed <= 1 m/s
+"""
+COLUMNS = {"t": [0.0, 1.0], "speed": [0.0, 2.0], "gap": [2.0, 2.0], "pick": [True, False]}
+
+
+@pytest.fixture
+def spec():
+    return rvmon.loads(SPEC)
+
+
+def doors(folder, columns):
+    """The same recording through all doors that have columns."""
+    lines = [
+        ",".join(columns),
+        *(",".join(map(str, row)) for row in zip(*columns.values(), strict=True)),
+    ]
+    (folder / "a.csv").write_text("\n".join(lines) + "\n")
+    parquet.write_table(pyarrow.table(columns), folder / "a.parquet")
+    arrays = {name: np.array(column) for name, column in columns.items()}
+    return [folder / "a.csv", folder / "a.parquet", columns, arrays, pyarrow.table(columns)]
+
+
+def without(name):
+    return {own: column for own, column in COLUMNS.items() if own != name}
+
+
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "network"])
+def test_a_name_that_is_read_has_a_column(spec, tmp_path, engine):
+    """All doors refuse a recording without it, unless it may lack it: what reads it is I."""
+    for trace in doors(tmp_path, without("speed")):
+        with pytest.raises(rvmon.MissingNameError, match="`speed`, read by R1"):
+            spec.evaluate(trace, engine=engine)
+        for allowed in (True, ["speed"], {"speed": 1}):
+            report = spec.evaluate(trace, engine=engine, allow_missing=allowed)
+            assert (report.verdicts["R1"], report.verdicts["R2"]) == ("I", "P")
+        with pytest.raises(rvmon.MissingNameError):
+            spec.evaluate(trace, engine=engine, allow_missing=["gap"])
+
+
+def test_only_what_is_judged_counts(spec, tmp_path):
+    """A requirement that nobody asked for may read what is not there."""
+    for trace in doors(tmp_path, without("gap")):
+        assert spec.evaluate(trace, only=["R1"]).verdicts == {"R1": "F"}
+
+
+def test_recordings_in_lines_declare_nothing(spec, tmp_path):
+    """An event that never occurs is false there, and a signal that never comes leaves it open."""
+    path = tmp_path / "a.jsonl"
+    path.write_text('{"t": 0, "gap": 2}\n{"t": 1, "gap": 2}\n')
+    for trace in (path, [(0, {"gap": 2.0}), (1, {"gap": 2.0})]):
+        assert spec.evaluate(trace).verdicts == {"R1": "I", "R2": "P", "R3": "NT"}
+
+
+def test_an_event_is_there_by_a_column_of_its_payload(spec, tmp_path):
+    """`pick.id` alone says that there is the event."""
+    path = tmp_path / "a.csv"
+    path.write_text("t,speed,gap,pick.id\n0,0,2,\n1,2,2,8\n")
+    assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P", "R3": "F"}
+
+
+def test_the_file_is_named(spec, tmp_path):
+    """Of many recordings, the one that lacks something."""
+    first, *_ = doors(tmp_path, without("gap"))
+    with pytest.raises(rvmon.TraceError, match=r"a\.csv: there is no column"):
+        spec.evaluate(first)
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        "Speed",
+        "SPEED",
+        "speed [m/s]",
+        "speed(m/s)",
+        "speed_mps",
+        "speed_m_s",
+        "/base/speed",
+        "sped",
+        "/base/Speed [m/s]",
+        "base.speed",
+        "/odom/twist/x",
+    ],
+)
+def test_the_column_that_was_meant_is_told(spec, column):
+    """Whatever people change about a name: the message says the column, and how to map it."""
+    table = {column if name == "speed" else name: cells for name, cells in COLUMNS.items()}
+    table["other"] = [1, 2]
+    with pytest.raises(rvmon.MissingNameError) as error:
+        spec.evaluate(table)
+    assert f"did you mean `{column}`?" in str(error.value)
+    mapped = spec.evaluate(table, columns={"speed": column})
+    assert mapped.verdicts == spec.evaluate(COLUMNS).verdicts
+
+
+def test_unknown_names_are_refused(spec):
+    """Of what may be lacking, and of what is mapped."""
+    with pytest.raises(rvmon.RvmonError, match="did you mean `speed`"):
+        spec.evaluate(COLUMNS, allow_missing=["sped"])
+    with pytest.raises(rvmon.RvmonError, match="did you mean `speed`"):
+        spec.evaluate(COLUMNS, columns={"sped": "v"})
+    with pytest.raises(rvmon.RvmonError, match="one column, one name"):
+        spec.evaluate(COLUMNS, columns={"speed": "v", "gap": "v"})
+
+
+def test_many_traces_are_read_alike(spec):
+    """Also in other processes."""
+    renamed = {"at": [0, 1000], "v": [0.0, 2.0], "gap": [2.0, 2.0]}
+    options = {"time": "at:ms", "columns": {"speed": "v"}, "allow_missing": ["pick"]}
+    for jobs in (1, 2):
+        [report] = spec.evaluate_many([renamed], jobs=jobs, **options)
+        assert (report.verdicts["R1"], report.end) == ("F", 1_000_000_000)
+
+
+def test_a_column_is_mapped_through_every_door(spec, tmp_path):
+    """What it is called before does not matter, and a column of the old name is passed over."""
+    columns = {**COLUMNS, "v": COLUMNS["speed"], "speed": [0.0, 0.0]}
+    for trace in doors(tmp_path, columns):
+        assert spec.evaluate(trace).verdicts["R1"] == "P"
+        assert spec.evaluate(trace, columns={"speed": "v"}).verdicts["R1"] == "F"
+    path = tmp_path / "a.jsonl"
+    path.write_text('{"t": 0, "odom": {"v": 0}}\n{"t": 1, "odom": {"v": 2}, "speed": 0}\n')
+    assert spec.evaluate(path, columns={"speed": "odom.v"}).verdicts["R1"] == "F"
+
+
+def test_a_mapped_column_that_is_not_there_is_told(spec):
+    """With the name that was given for it."""
+    with pytest.raises(rvmon.MissingNameError, match=r"`speed` \(as `v_mean`\), read by R1"):
+        spec.evaluate(COLUMNS, columns={"speed": "v_mean"})
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "base.rv").write_text(SPEC)
+    doors(tmp_path, COLUMNS)
+    (tmp_path / "less.csv").write_text("t,Speed,gap,pick\n0,0,2,1\n1,0,2,0\n")
+    return tmp_path
+
+
+def test_the_command_line_refuses_and_maps(folder, capsys):
+    """Exit code 2 with the file, 1 where it may be lacking, 0 where it is mapped."""
+    assert main(["run", "base.rv", "less.csv"]) == 2
+    told = capsys.readouterr().err
+    assert "error: less.csv: there is no column" in told
+    assert "--map speed=Speed" in told
+    assert "--allow-missing=speed" in told
+    assert main(["run", "base.rv", "less.csv", "--only", "R2"]) == 0
+    assert main(["run", "base.rv", "less.csv", "--map", "speed=Speed", "--only", "R1,R2"]) == 0
+    assert main(["run", "--allow-missing", "base.rv", "less.csv", "--format", "json"]) == 1
+    capsys.readouterr()
+    assert main(["run", "base.rv", "less.csv", "--allow-missing=speed", "--format", "json"]) == 1
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["requirements"]["R1"]["verdict"] == "I"
+    assert main(["run", "base.rv", "less.csv", "--allow-missing=gap"]) == 2
+    assert main(["why", "base.rv", "less.csv", "R1"]) == 2
+    assert main(["why", "base.rv", "less.csv", "R1", "--map", "speed=Speed"]) == 0
+
+
+def test_the_others_of_several_recordings_are_judged(folder, capsys):
+    """As with any broken recording; in other processes, too."""
+    for jobs in ("1", "2"):
+        assert main(["run", "base.rv", "less.csv", "a.csv", "--jobs", jobs]) == 2
+        shown = capsys.readouterr()
+        assert "a.csv  to 1 s" in shown.out
+        assert "less.csv: there is no column" in shown.err
+
+
+@pytest.mark.parametrize("words", [["--map", "speed"], ["--map", "=x"], ["--map", "speed="]])
+def test_a_map_has_two_sides(folder, words, capsys):
+    """What it lacks is told."""
+    assert main(["run", "base.rv", "a.csv", *words]) == 2
+    assert "expected NAME=COLUMN" in capsys.readouterr().err

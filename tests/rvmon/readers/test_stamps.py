@@ -1,0 +1,165 @@
+"""Stamps in the units that recordings have them in."""
+
+import numpy as np
+import pyarrow
+import pytest
+from pyarrow import parquet
+
+import rvmon
+from rvmon.cli import main
+
+SPEC = "spec s\nsignal x : real\nrequirement R1\n  always x < 5\n"
+EPOCH = 1_714_557_600_123_456_789
+ISO = "2024-05-01T12:00:00.123456789+02:00"
+
+
+@pytest.fixture
+def spec():
+    return rvmon.loads(SPEC)
+
+
+def ends(spec, folder, stamps, time):
+    """The last instant as every door reads it."""
+    table = {"at": stamps, "x": [1.0] * len(stamps)}
+    rows = "".join(f"{stamp},1\n" for stamp in stamps)
+    (folder / "a.csv").write_text(f"at,x\n{rows}")
+    parquet.write_table(pyarrow.table(table), folder / "a.parquet")
+    lines = (f'{{"at": {stamp!r}, "x": 1}}\n'.replace("'", '"') for stamp in stamps)
+    (folder / "a.jsonl").write_text("".join(lines))
+    arrays = {"at": np.array(stamps), "x": np.array(table["x"])}
+    files = [folder / f"a.{ending}" for ending in ("csv", "parquet", "jsonl")]
+    traces = [*files, table, arrays, pyarrow.table(table)]
+    return {spec.evaluate(trace, time=time).end for trace in traces}
+
+
+@pytest.mark.parametrize(
+    ("stamps", "unit", "end"),
+    [
+        ([1, 2], "s", 2_000_000_000),
+        ([0, 1_714_557_600_123], "ms", 1_714_557_600_123_000_000),
+        ([0, 1_714_557_600_123_457], "us", 1_714_557_600_123_457_000),
+        ([0, EPOCH], "ns", EPOCH),
+        ([0.5, 12.000001], "ms", 12_000_001),
+        ([0.5, 12.25], "us", 12_250),
+        (["2024-05-01", ISO], "iso", EPOCH),
+        (["1969-12-31T23:59:59.999999999Z", "1970-01-01 00:00:01"], "iso", 1_000_000_000),
+    ],
+)
+def test_every_door_reads_every_unit_exactly(spec, tmp_path, stamps, unit, end):
+    """To the nanosecond, as integers."""
+    assert ends(spec, tmp_path, stamps, f"at:{unit}") == {end}
+
+
+def test_dates_of_tables_are_read(spec):
+    """NumPy's and Arrow's, by name of the unit."""
+    stamps = np.array([0, EPOCH], "datetime64[ns]")
+    table = {"at": stamps, "x": np.array([1.0, 1.0])}
+    for trace in (table, pyarrow.table(table)):
+        assert spec.evaluate(trace, time="at:iso").end == EPOCH
+
+
+@pytest.mark.parametrize(
+    ("stamp", "unit", "told"),
+    [
+        ("1.5", "ns", "not a whole number of nanoseconds"),
+        ("x", "ms", "not a number of milliseconds"),
+        ("2024-13-01", "iso", "does not exist"),
+        ("2024-05-01T12:00:00.1234567891", "iso", "at most nine digits"),
+        ("12", "iso", "no date and time of ISO 8601"),
+        ("9999-01-01", "iso", "out of range"),
+        ("9" * 20, "ms", "out of range"),
+    ],
+)
+def test_what_is_no_stamp_is_named_with_its_line(spec, tmp_path, stamp, unit, told):
+    """A wrong stamp is an error with file and line."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"at,x\n{stamp},1\n")
+    with pytest.raises(rvmon.TraceError, match=f"line 2: time .*{told}"):
+        spec.evaluate(path, time=f"at:{unit}")
+
+
+@pytest.mark.parametrize(
+    ("stamp", "told"),
+    [
+        ("1714557600123", "Are these milliseconds. `--time t:ms`"),
+        ("1714557600123456", "Are these microseconds. `--time t:us`"),
+        ("1714557600123456789", "Are these nanoseconds. `--time t:ns`"),
+        (ISO, "is this ISO 8601. `--time t:iso`"),
+    ],
+)
+def test_the_unit_that_was_meant_is_told(spec, tmp_path, stamp, told):
+    """Where a stamp can be no seconds, the message says what it looks like."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"t,x\n{stamp},1\n")
+    with pytest.raises(rvmon.TraceError, match=told):
+        spec.evaluate(path)
+
+
+def doubts(spec, trace, time=None):
+    return [one.remark for one in spec.evaluate(trace, time=time).health if one.kind == "unit"]
+
+
+@pytest.mark.parametrize(
+    ("stamps", "doubtful"),
+    [
+        ([20 * k for k in range(50)], True),
+        ([20.5 * k for k in range(1200)], True),
+        ([20.5 * k for k in range(500)], False),
+        (list(range(50)), False),
+        ([0.02 * k for k in range(2000)], False),
+        ([60 * k for k in range(9)], False),
+    ],
+)
+def test_steps_that_look_like_milliseconds_are_doubted(spec, tmp_path, stamps, doubtful):
+    """Whole steps of 5 s or more, or a thousand rows of 10,000 s: through every door."""
+    table = {"t": stamps, "x": [1.0] * len(stamps)}
+    arrays = {name: np.array(column) for name, column in table.items()}
+    (tmp_path / "a.csv").write_text("t,x\n" + "".join(f"{t},1\n" for t in stamps))
+    (tmp_path / "a.jsonl").write_text("".join(f'{{"t": {t}, "x": 1}}\n' for t in stamps))
+    for trace in (table, arrays, tmp_path / "a.csv", tmp_path / "a.jsonl"):
+        found = doubts(spec, trace)
+        assert len(found) == doubtful
+        assert all("are these milliseconds? `--time t:ms`" in remark for remark in found)
+        assert not doubts(spec, trace, "t:s")
+        assert not doubts(spec, trace, "t:ms")
+
+
+def test_nanoseconds_of_lines_are_not_doubted(spec, tmp_path):
+    """What `t_ns` holds needs no word."""
+    path = tmp_path / "a.jsonl"
+    path.write_text("".join(f'{{"t_ns": {20_000_000_000 * k}, "x": 1}}\n' for k in range(20)))
+    assert not doubts(spec, path)
+
+
+def test_a_wrong_name_or_unit_is_told(spec, tmp_path):
+    """With the column that is most like it, and the units that there are."""
+    path = tmp_path / "a.csv"
+    path.write_text("stamp,x\n0,1\n")
+    with pytest.raises(rvmon.TraceError, match="did you mean `stamp`"):
+        spec.evaluate(path, time="stmp:ms")
+    with pytest.raises(rvmon.TraceError, match="the units are s, ms, us, ns, iso"):
+        spec.evaluate(path, time="stamp:msec")
+    with pytest.raises(rvmon.TraceError, match="name it with --time"):
+        spec.evaluate(path)
+
+
+def test_nested_stamps_of_lines_are_found(spec, tmp_path):
+    """`header.stamp` is the field of an object."""
+    path = tmp_path / "a.jsonl"
+    path.write_text('{"header": {"stamp": 5, "x": 9}, "x": 1}\n')
+    assert spec.evaluate(path, time="header.stamp:ns").end == 5
+
+
+def test_the_command_line_warns(tmp_path, monkeypatch, capsys):
+    """On standard error beside data, in the list of health for people."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.rv").write_text(SPEC)
+    (tmp_path / "a.csv").write_text("t,x\n" + "".join(f"{20 * k},1\n" for k in range(50)))
+    assert main(["run", "s.rv", "a.csv", "--format", "json"]) == 0
+    assert "warning: a.csv: `t`: from stamp to stamp it is 20 s" in capsys.readouterr().err
+    assert main(["run", "s.rv", "a.csv"]) == 0
+    assert "t  warning: from stamp to stamp" in capsys.readouterr().out
+    assert main(["run", "s.rv", "a.csv", "--time", "t:ms"]) == 0
+    shown = capsys.readouterr()
+    assert "warning" not in shown.out + shown.err
+    assert "to 0.98 s" in shown.out
