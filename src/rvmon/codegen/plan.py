@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
@@ -89,3 +89,12 @@ class Plan:
     signals: tuple[str, ...]
     events: tuple[str, ...]
     uses: Mapping[str, Uses]
+
+    @property
+    def judges(self) -> Sequence[tuple[int, PlannedRule]]:
+        """All that has an automaton of its own, with the number of the rule that it belongs to.
+
+        The rules themselves come first, then what judges their attempts in doubt.
+        """
+        rules = [*enumerate(self.rules)]
+        return rules + [(owner, one.hidden) for owner, one in rules if one.hidden is not None]

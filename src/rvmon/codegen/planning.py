@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rvmon.codegen.plan import Plan, PlannedRule, Uses
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import Leaf
+from rvmon.formula.state import Leaf, Missing, Unborn
 from rvmon.spec.checked import CheckedSpec, Compare, Probe, ProbeAtom, TimeModel, UpdateValue
 
 
@@ -37,6 +37,10 @@ def _uses(graph: Graph, name: str) -> Uses:
 def _asks_history(leaf: Leaf, name: str) -> bool:
     if isinstance(leaf, ProbeAtom):
         return leaf.probe is Probe.CHANGED
+    if isinstance(leaf, Unborn):
+        return dict(leaf.signals).get(name, False)
+    if isinstance(leaf, Missing):
+        return _asks_history(leaf.atom, name)
     return isinstance(leaf, Compare) and any(
         isinstance(part, UpdateValue) and part.name == name
         for side in (leaf.left, leaf.right)

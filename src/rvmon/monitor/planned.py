@@ -22,6 +22,23 @@ def can_generate(requirement: CompiledRequirement) -> bool:
     return not _beyond(requirement)
 
 
+def can_stand_alone(requirement: CompiledRequirement) -> bool:
+    """Whether generated code can judge it without a monitor in this process."""
+    return not _beyond_alone(requirement)
+
+
+def _beyond_alone(requirement: CompiledRequirement) -> str:
+    """Why generated code cannot do that; empty if it can.
+
+    Attempts in doubt need an automaton, too: in this process anything judges them.
+    """
+    reason = _beyond(requirement)
+    if not reason and requirement.hidden is not None:
+        reason = _beyond(requirement.hidden)
+        reason = reason and f"where its trigger may be unknown, {reason}"
+    return reason
+
+
 def _beyond(requirement: CompiledRequirement) -> str:
     """Why generated code cannot judge a requirement; empty if it can."""
     if requirement.requirement.for_each:
@@ -60,11 +77,11 @@ def _rule(one: CompiledRequirement, explained: bool) -> PlannedRule:
         one.alphabet,
         automaton,
         one.in_runs(automaton),
-        tuple(leaf for leaf, _ in one.leaves) if explained else None,
-        obligation.again,
-        obligation.unborn,
-        obligation.told,
-        None if one.hidden is None else _rule(one.hidden, explained),
+        again=obligation.again,
+        unborn=obligation.unborn,
+        told=obligation.told,
+        hidden=None if one.hidden is None else _rule(one.hidden, explained),
+        noted=tuple(leaf for leaf, _ in one.leaves) if explained else None,
     )
 
 
@@ -102,7 +119,7 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
             "generated code cannot sort samples: leave out `max delay`, or use the engine `auto`"
         )
     for one in chosen:
-        if reason := _beyond(one):
+        if reason := _beyond_alone(one):
             raise RvmonError(
                 f"{one.requirement.id} {reason}; generated code cannot judge it: "
                 "leave it out (`only`, --only), or use the engine `auto`"
