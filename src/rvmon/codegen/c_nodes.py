@@ -67,16 +67,9 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
             lines = [*_node(plan, names, place, momentary[place], guards)]
             if place in stored:
                 lines.append(_storing(place, heard[group]))
-            guard = guards.get(place)
-            if guard is not None:
-                if guard == place:
-                    yield f"    {_beginning_of_doubt(plan, names, place)}"
-                lines = ["{", *(f"    {line}" for line in lines), "}"]
-                lines[0] = f"if ({'m->untold' if guard == UNTOLD else f'doubt{guard}'}) {{"
+            if place in guards:
+                lines = [*_guarded(plan, names, place, guards, lines)]
             yield from (f"    {line}" for line in lines)
-            if guard == place:
-                operand = plan.graph.operands[place][0]
-                yield f"    m->seen[{names.memory[place]}] = {_operand(plan, place, operand, guards)};"
         own = heard[group]
         for index, mask in own.letters.items():
             yield f"    {_listed('letters', index, mask)}"
@@ -180,17 +173,27 @@ def _asked(rule: PlannedRule) -> Iterator[State]:
     yield from rule.alphabet.propositions
 
 
-def _beginning_of_doubt(plan: Plan, names: Names, place: int) -> str:
-    """Whether a trigger is or was unknown, or may still be hidden."""
-    operand = _operand(plan, place, plan.graph.operands[place][0], guards_of(plan))
-    seen = f"m->seen[{names.memory[place]}]"
-    return (
-        f"const bool doubt{place} = ({operand} == IS_UNKNOWN) || ({seen} == IS_UNKNOWN)"
-        f" || (m->truth[{place}] != IS_FALSE);"
-    )
+def _guarded(
+    plan: Plan, names: Names, place: int, guards: dict[int, int], lines: list[str]
+) -> Iterator[str]:
+    """What works a node out, where that has to be.
+
+    A `DOUBT` has to be if its trigger is or was unknown, or may be hidden in this stretch.
+    """
+    guard = guards[place]
+    if guard == place:
+        now = _operand(place, plan.graph.operands[place][0], guards)
+        seen = f"m->seen[{names.memory[place]}]"
+        yield f"const bool doubt{place} = ({now} == IS_UNKNOWN) || ({seen} == IS_UNKNOWN)"
+        yield f"                          || (m->truth[{place}] != IS_FALSE);"
+    yield f"if ({'m->untold' if guard == UNTOLD else f'doubt{guard}'}) {{"
+    yield from (f"    {line}" for line in lines)
+    yield "}"
+    if guard == place:
+        yield f"{seen} = {now};"
 
 
-def _operand(plan: Plan, place: int, operand: int, guards: dict[int, int]) -> str:
+def _operand(place: int, operand: int, guards: dict[int, int]) -> str:
     """The truth of an operand; where it is worked out always, and before, as a local."""
     local = operand not in guards and group_of(operand) == group_of(place)
     return f"n{operand}" if local else f"m->truth[{operand}]"
@@ -204,7 +207,7 @@ def _node(
     if len(body) > 1:
         text = f"node{place}(m, t)"
     for operand in plan.graph.operands[place]:
-        local = _operand(plan, place, operand, guards)
+        local = _operand(place, operand, guards)
         text = re.sub(rf"m->truth\[{operand}\]", local, text)
     yield f"const uint8_t n{place} = {text};"
     if momentary:

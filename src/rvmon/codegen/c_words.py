@@ -129,7 +129,8 @@ def _birth(plan: Plan, names: Names) -> Iterator[str]:
     yield "{"
     yield "    bool found = false;"
     for number in map(names.signal, births_asked(plan)):
-        yield f"    found = found || ((m->births[{number}] == 0U) && (in->value[{number}] != NULL));"
+        came = f"(in->value[{number}] != NULL)"
+        yield f"    found = found || ((m->births[{number}] == 0U) && {came});"
     yield "    (void)m;"
     yield "    (void)in;"
     yield "    return found;"

@@ -35,7 +35,7 @@ def _beyond_alone(requirement: CompiledRequirement) -> str:
     reason = _beyond(requirement)
     if not reason and requirement.hidden is not None:
         reason = _beyond(requirement.hidden)
-        reason = reason and f"where its trigger may be unknown, {reason}"
+        reason = reason and f"{reason}, where its trigger may be unknown"
     return reason
 
 

@@ -124,7 +124,7 @@ _COUNTED = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 
 def _ordered(records: NDArray[Any]) -> NDArray[Any]:
-    """By decision instant, requirement, and number, those in doubt last; the undecided ones last."""
+    """By decision instant, requirement, whether in doubt, and number; the undecided ones last."""
     undecided = records["decision"] == _OPEN
     decided = np.where(undecided, np.iinfo(np.int64).max, records["decided"])
     keys = (records["number"], records["in_doubt"], records["requirement"], decided)
