@@ -34,6 +34,7 @@ RECORD = np.dtype(
         ("decided", np.int64),
         ("verdict", np.uint8),
         ("decision", np.uint8),
+        ("in_doubt", np.uint8),
     ],
     align=True,
 )
@@ -62,7 +63,8 @@ class Told:
     Attributes:
         records: array of `RECORD`, in the order in which they were made.
         ordered: whether that is the order of reports.
-        counts: int64[requirements, 3], how many attempts failed, passed, and stayed inconclusive.
+        counts: int64[requirements, 4], how many attempts failed, passed, and stayed inconclusive,
+            and 1 if the trigger was ever true or false.
         end: the last instant of the trace; `None` if it has none.
     """
 
@@ -210,7 +212,7 @@ class BatchRun:
         """
         end = self._library.close(self._batch, WHERE_IT_ENDS if until is None else until)
         self._take_records()
-        counts = np.zeros((len(self._library.plan.rules), 3), np.int64)
+        counts = np.zeros((len(self._library.plan.rules), 4), np.int64)
         ordered = True
         for index, own in enumerate(counts):
             ordered = self._library.counts(self._batch, index, own.ctypes.data)

@@ -10,6 +10,7 @@ from typing import assert_never
 from rvmon.codegen.plan import Plan
 from rvmon.errors import TraceError
 from rvmon.formula.numeric import operands
+from rvmon.formula.state import Missing
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
@@ -64,9 +65,10 @@ def several_payloads(event: str, count: int, t: int) -> TraceError:
 
 def _compared(plan: Plan) -> Iterator[Numeric]:
     for state in plan.graph.nodes:
-        if isinstance(state.leaf, Compare):
-            yield state.leaf.left
-            yield state.leaf.right
+        atom = state.leaf.atom if isinstance(state.leaf, Missing) else state.leaf
+        if isinstance(atom, Compare):
+            yield atom.left
+            yield atom.right
 
 
 def _input(part: Numeric) -> str | None:

@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import assert_never
 
 from rvmon.codegen.c_names import Memory, Names, memory_of
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import events_of
 from rvmon.errors import RvmonError
-from rvmon.formula.state import Elapsed, Leaf, State, StateOp
+from rvmon.formula.numeric import signals_of
+from rvmon.formula.state import (
+    FALSE,
+    TRUE,
+    UNKNOWN,
+    Elapsed,
+    Leaf,
+    Lost,
+    Missing,
+    State,
+    StateOp,
+    Unborn,
+)
 from rvmon.spec.checked import (
     Arithmetic,
     BoundAtom,
@@ -40,6 +52,9 @@ _COMPARISONS = {
     CompareOp.GE: "at_least",
     CompareOp.GT: "more",
 }
+TRUTHS = {FALSE: "(uint8_t)IS_FALSE", UNKNOWN: "(uint8_t)IS_UNKNOWN", TRUE: "(uint8_t)IS_TRUE"}
+"""Truth values in C."""
+
 _ROOTS = {NumericOp.SQRT: "sqrt", NumericOp.HYPOT: "length"}
 """Functions that `<math.h>` has, or that need it."""
 
@@ -58,7 +73,7 @@ def node_body(plan: Plan, names: Names, place: int) -> list[str]:
     """Statements of a function of `m` and `t` that returns the value of a node."""
     state = plan.graph.nodes[place]
     if isinstance(state.leaf, Compare) and (events := events_of(state.leaf.left, state.leaf.right)):
-        return list(_over_occurrences(names, state.leaf, events))
+        return list(_over_occurrences(names, state.leaf, events, state.unborn))
     if isinstance(state.leaf, Elapsed):
         return [
             f"const int64_t due = sum(m->origin, {_integer(state.leaf.duration)});",
@@ -71,7 +86,7 @@ def node_body(plan: Plan, names: Names, place: int) -> list[str]:
 def _value(plan: Plan, names: Names, place: int, state: State) -> str:
     operands = [f"m->truth[{operand}]" for operand in plan.graph.operands[place]]
     if state.leaf is not None:
-        return leaf_value(names, state.leaf)
+        return leaf_value(names, state.leaf, state.unborn)
     match state.op:
         case StateOp.NOT:
             return f"(uint8_t)(2U - {operands[0]})"
@@ -79,6 +94,12 @@ def _value(plan: Plan, names: Names, place: int, state: State) -> str:
             return _nested("both", operands)
         case StateOp.OR:
             return _nested("either", operands)
+        case StateOp.SURE:
+            return f"truth_of(true, {operands[0]} == IS_TRUE)"
+        case StateOp.DOUBT:
+            timer, slot = names.timers[place], names.memory[place]
+            pulse = str(state.pulse).lower()
+            return f"doubt(m, {timer}, {slot}, t, m->truth[{place}], {operands[0]}, {pulse})"
         case StateOp.PREVIOUS:
             return f"previous(m, {names.timers[place]}, {names.memory[place]}, t, {operands[0]})"
         case StateOp.SINCE:
@@ -100,11 +121,21 @@ def _since(names: Names, place: int, state: State, operands: str) -> str:
     return f"{function}(m, {timer}, {slot}, t, {operands}, {low}, {high})"
 
 
-def leaf_value(names: Names, leaf: Leaf) -> str:
-    """The truth of a leaf that reads no payload."""
+def leaf_value(names: Names, leaf: Leaf, unborn: int = UNKNOWN) -> str:
+    """The truth of a leaf that reads no payload; of an atom over signals, `unborn` before birth."""
+    if isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN and signals_of(leaf):
+        seen = _is_unborn(names, signals_of(leaf).items())
+        return f"before_birth({leaf_value(names, leaf)}, {seen}, {TRUTHS[unborn]})"
     match leaf:
         case Constant(value=value):
-            return "(uint8_t)IS_TRUE" if value else "(uint8_t)IS_FALSE"
+            return TRUTHS[TRUE if value else FALSE]
+        case Lost():
+            return TRUTHS[UNKNOWN]
+        case Unborn(signals=signals):
+            return f"truth_of(true, {_is_unborn(names, signals)})"
+        case Missing(atom=atom):
+            seen = _is_unborn(names, signals_of(atom).items())
+            return f"missing({leaf_value(names, atom)}, {seen})"
         case Elapsed():
             raise ValueError("elapsed time is looked up by place")
         case BoundAtom():
@@ -120,6 +151,13 @@ def leaf_value(names: Names, leaf: Leaf) -> str:
             return _comparison(names, leaf)
         case _:
             assert_never(leaf)
+
+
+def _is_unborn(names: Names, signals: Iterable[tuple[str, bool]]) -> str:
+    """Whether one of some signals is not born; see `rvmon.formula.state.Unborn`."""
+    return " || ".join(
+        f"(m->births[{names.signal(name)}] <= {int(moved)}U)" for name, moved in signals
+    )
 
 
 def _probe(names: Names, probe: Probe, name: str) -> str:
@@ -144,7 +182,9 @@ def _comparison(names: Names, leaf: Compare) -> str:
     return f"{_COMPARISONS[leaf.op]}({left}, {right})"
 
 
-def _over_occurrences(names: Names, leaf: Compare, events: Sequence[str]) -> Iterator[str]:
+def _over_occurrences(
+    names: Names, leaf: Compare, events: Sequence[str], unborn: int
+) -> Iterator[str]:
     numbers = [names.event(event) for event in events]
     yield "uint8_t found = IS_FALSE;"
     for number in numbers:
@@ -164,6 +204,13 @@ def _over_occurrences(names: Names, leaf: Compare, events: Sequence[str]) -> Ite
     for _ in numbers:
         yield "}"
     yield "(void)t;"
+    if unborn != UNKNOWN and signals_of(leaf):
+        # An occurrence that is unknown leaves it unknown, born or not.
+        known = " && ".join(f"all_known(m, {number})" for number in numbers)
+        seen = _is_unborn(names, signals_of(leaf).items())
+        yield f"if ((found == IS_UNKNOWN) && ({seen}) && {known}) {{"
+        yield f"    found = {TRUTHS[unborn]};"
+        yield "}"
     yield "return found;"
 
 

@@ -34,7 +34,7 @@ class Memory(Enum):
 
 def memory_of(state: State) -> Memory | None:
     """What a state formula has to remember; `None`: nothing."""
-    if state.op is StateOp.PREVIOUS:
+    if state.op in (StateOp.PREVIOUS, StateOp.DOUBT):
         return Memory.SEEN
     if state.op is not StateOp.SINCE:
         return None
@@ -123,7 +123,7 @@ class Names:
             place
             for place, state in enumerate(self.plan.graph.nodes)
             if isinstance(state.leaf, Elapsed)
-            or state.op is StateOp.PREVIOUS
+            or state.op in (StateOp.PREVIOUS, StateOp.DOUBT)
             or memory_of(state) in (Memory.EDGE, Memory.PAST)
         ]
         return {place: number for number, place in enumerate(timed)}

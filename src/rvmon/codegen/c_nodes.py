@@ -14,7 +14,8 @@ from itertools import chain
 
 from rvmon.codegen.c_leaves import node_body
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.plan import Plan, PlannedRule
+from rvmon.formula.state import State, StateOp
 from rvmon.spec.checked import ProbeAtom
 
 GROUP = 32
@@ -53,7 +54,8 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
     """The functions of groups, and `look`, which calls that of a number."""
     heard = _heard(plan)
     momentary = momentary_counts(plan)
-    stored = _stored(plan)
+    guards = guards_of(plan)
+    stored = _stored(plan) | set(guards)
     for place in range(len(plan.graph.nodes)):
         yield from _node_function(place, node_body(plan, names, place))
     for group in range(group_count(plan)):
@@ -62,9 +64,12 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
         yield "{"
         yield "    uint32_t changed = 0;"
         for place in range(GROUP * group, min(GROUP * (group + 1), len(plan.graph.nodes))):
-            yield from (f"    {line}" for line in _node(plan, names, place, momentary[place]))
+            lines = [*_node(plan, names, place, momentary[place], guards)]
             if place in stored:
-                yield f"    {_storing(place, heard[group])}"
+                lines.append(_storing(place, heard[group]))
+            if place in guards:
+                lines = [*_guarded(plan, names, place, guards, lines)]
+            yield from (f"    {line}" for line in lines)
         own = heard[group]
         for index, mask in own.letters.items():
             yield f"    {_listed('letters', index, mask)}"
@@ -111,7 +116,7 @@ def _heard(plan: Plan) -> list[_Heard]:
         for other in groups_of(parents):
             if other != group_of(place):
                 note(place, own.groups, other)
-    for index, rule in enumerate(plan.rules):
+    for index, (_, rule) in enumerate(plan.judges):
         for state in rule.alphabet.propositions:
             place = graph.index[state]
             note(place, heard[group_of(place)].letters, index)
@@ -130,14 +135,80 @@ def _node_function(place: int, body: list[str]) -> Iterator[str]:
         yield "}"
 
 
-def _node(plan: Plan, names: Names, place: int, momentary: int) -> Iterator[str]:
+UNTOLD = -1
+"""The guard of nodes that are asked only until it is told whether triggers are true or false."""
+
+
+def guards_of(plan: Plan) -> dict[int, int]:
+    """The nodes that need not be worked out always: where the value of which node says so.
+
+    What depends on a `DOUBT` alone, in its group, stays as it is where that does.
+    """
+    graph = plan.graph
+    asked = [state for _, rule in plan.judges for state in _asked(rule)]
+    needed = set()
+    stack = [graph.index[state] for state in asked]
+    while stack:
+        place = stack.pop()
+        if place not in needed:
+            needed.add(place)
+            stack += graph.operands[place]
+    found = {place: UNTOLD for place in range(len(graph.nodes)) if place not in needed}
+    for place, state in enumerate(graph.nodes):
+        operands = graph.operands[place]
+        if state.op is StateOp.DOUBT:
+            found[place] = place
+        elif place in needed and operands:
+            first = found.get(operands[0], UNTOLD)
+            alike = all(found.get(operand) == first for operand in operands)
+            if first != UNTOLD and alike and group_of(first) == group_of(place):
+                found[place] = first
+    return found
+
+
+def _asked(rule: PlannedRule) -> Iterator[State]:
+    """The state formulas of a rule that matter also when it is told."""
+    named = (rule.trigger, rule.again, rule.unborn)
+    yield from (state for state in named if state is not None)
+    yield from rule.alphabet.propositions
+
+
+def _guarded(
+    plan: Plan, names: Names, place: int, guards: dict[int, int], lines: list[str]
+) -> Iterator[str]:
+    """What works a node out, where that has to be.
+
+    A `DOUBT` has to be if its trigger is or was unknown, or may be hidden in this stretch.
+    """
+    guard = guards[place]
+    if guard == place:
+        now = _operand(place, plan.graph.operands[place][0], guards)
+        seen = f"m->seen[{names.memory[place]}]"
+        yield f"const bool doubt{place} = ({now} == IS_UNKNOWN) || ({seen} == IS_UNKNOWN)"
+        yield f"                          || (m->truth[{place}] != IS_FALSE);"
+    yield f"if ({'m->untold' if guard == UNTOLD else f'doubt{guard}'}) {{"
+    yield from (f"    {line}" for line in lines)
+    yield "}"
+    if guard == place:
+        yield f"{seen} = {now};"
+
+
+def _operand(place: int, operand: int, guards: dict[int, int]) -> str:
+    """The truth of an operand; where it is worked out always, and before, as a local."""
+    local = operand not in guards and group_of(operand) == group_of(place)
+    return f"n{operand}" if local else f"m->truth[{operand}]"
+
+
+def _node(
+    plan: Plan, names: Names, place: int, momentary: int, guards: dict[int, int]
+) -> Iterator[str]:
     body = node_body(plan, names, place)
     text = body[0].removeprefix("return ").removesuffix(";")
     if len(body) > 1:
         text = f"node{place}(m, t)"
     for operand in plan.graph.operands[place]:
-        if group_of(operand) == group_of(place):
-            text = re.sub(rf"m->truth\[{operand}\]", f"n{operand}", text)
+        local = _operand(place, operand, guards)
+        text = re.sub(rf"m->truth\[{operand}\]", local, text)
     yield f"const uint8_t n{place} = {text};"
     if momentary:
         yield f"if ((n{place} != IS_FALSE) && (m->momentary[{place}] != 0U)) {{"
@@ -155,9 +226,7 @@ def _storing(place: int, heard: _Heard) -> str:
 def _stored(plan: Plan) -> set[int]:
     """The nodes whose truth is read elsewhere than in their group."""
     graph = plan.graph
-    roots = [state for rule in plan.rules for state in rule.alphabet.propositions]
-    roots += [rule.trigger for rule in plan.rules if rule.trigger is not None]
-    found = {graph.index[state] for state in roots}
+    found = {graph.index[state] for rule in plan.rules for state in rule.states}
     found |= set(graph.reads)  # samples are compared with the leaves
     for place, parents in enumerate(graph.parents):
         if any(group_of(parent) != group_of(place) for parent in parents):

@@ -51,7 +51,7 @@ NOT_YET = -1 << 63
 
 _SLOTS = (
     *("requirement", "number", "triggered", "decided", "verdict", "decision"),
-    *("_details", "_noted"),
+    *("in_doubt", "_details", "_noted"),
 )
 """The fields of an attempt that are set in C, in the order of the template's `SLOT_…`."""
 
@@ -83,11 +83,14 @@ class Core(Protocol):
     def records(self) -> bytes:
         """All records, each as `rvmon.codegen.c_batch.RECORD` has it."""
 
-    def counts(self) -> list[tuple[int, int, int]]:
-        """How many attempts of each requirement failed, passed, and stayed open."""
+    def counts(self) -> list[tuple[int, int, int, int]]:
+        """How many attempts of each requirement failed, passed, and stayed open.
+
+        The last number is 1 if its trigger was ever true or false.
+        """
 
     def open(self) -> list[Attempt]:
-        """The attempts that are undecided now."""
+        """The attempts that are undecided now, and those that will stay so."""
 
     def times(self) -> tuple[bool, int, int, int]:
         """Whether there was a sample; when the first one was, the last, and the present."""

@@ -11,8 +11,9 @@ from rvmon.codegen.c_nodes import group_count, groups_of
 from rvmon.codegen.c_text import comment
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import inputs_of
-from rvmon.formula.state import Leaf
-from rvmon.spec.checked import Compare, SignalAtom
+from rvmon.formula.numeric import signals_of
+from rvmon.formula.state import UNKNOWN, Leaf, Missing, State, Unborn
+from rvmon.spec.checked import Arithmetic, Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
 
@@ -99,8 +100,46 @@ def read_events(plan: Plan) -> list[str]:
     return [name for name in plan.events if name in plan.graph.by_name]
 
 
+def births_asked(plan: Plan) -> dict[str, bool]:
+    """The signals of which it is asked whether they are born; of each, whether twice over.
+
+    See `rvmon.formula.state.Unborn`.
+    """
+    found: dict[str, bool] = {}
+    for state in plan.graph.nodes:
+        for name, moved in _born_with(state):
+            found[name] = found.get(name, False) or moved
+    return found
+
+
+def _born_with(state: State) -> Iterable[tuple[str, bool]]:
+    """The signals by whose birth the truth of a leaf changes."""
+    match state.leaf:
+        case Unborn(signals=signals):
+            return signals
+        case Missing(atom=atom):
+            return signals_of(atom).items()
+        case SignalAtom() | Compare() if state.unborn != UNKNOWN:
+            return signals_of(state.leaf).items()
+        case _:
+            return ()
+
+
+def _is_of_knowledge(leaf: Leaf | None) -> bool:
+    """Whether a leaf depends on which of its signals are known, and on no value."""
+    match leaf:
+        case Unborn() | Missing(atom=SignalAtom()):
+            return True
+        case Missing(atom=Compare(left=left, right=right)):
+            return not isinstance(left, Arithmetic) and not isinstance(right, Arithmetic)
+        case _:
+            return False
+
+
 def is_instant(plan: Plan, name: str, leaf: Leaf | None) -> bool:
     """Whether a leaf depends on the present value of this signal and nothing else."""
+    if isinstance(leaf, Missing):
+        return is_instant(plan, name, leaf.atom)
     if isinstance(leaf, SignalAtom):
         return True
     return (
@@ -127,6 +166,11 @@ def _take_signal(plan: Plan, names: Names, name: str, source: Source) -> Iterato
         yield f"        m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
         # The update may change no value: then nothing else has the timer seen to.
         yield f"        m->alarm = least(m->alarm, m->stale_at[{number}]);"
+    if births_asked(plan).get(name):
+        births = f"m->births[{number}]"
+        yield f"        if (({births} < 2U) && (known || ({births} > 0U))) {{"
+        yield f"            {births}++;"
+        yield "        }"
     if uses is not None and (uses.history or uses.marked):
         yield f"        m->updated[{number}] = 1;"
         if uses.history:
@@ -136,7 +180,7 @@ def _take_signal(plan: Plan, names: Names, name: str, source: Source) -> Iterato
         yield from (f"        {line}" for line in _soil(places))
     if source.chosen and group_count(plan) == 1:
         # All nodes are worked out anyway.
-        yield f"        m->value[{number}] = value;"
+        yield from (f"        {line}" for line in _value(plan, name, number))
         yield from (f"        {line}" for line in _soil(places))
     else:
         yield from (f"        {line}" for line in _change(plan, names, name))
@@ -147,22 +191,36 @@ def _take_signal(plan: Plan, names: Names, name: str, source: Source) -> Iterato
 def _change(plan: Plan, names: Names, name: str) -> Iterator[str]:
     """Take a value; only where it differs, and then those leaves only that may differ."""
     number = names.signal(name)
-    yield f"if (!same(value, m->value[{number}])) {{"
-    yield f"    m->value[{number}] = value;"
-    places = plan.graph.by_name.get(name, ())
-    for place in places:
-        leaf = plan.graph.nodes[place].leaf
-        if leaf is not None and is_instant(plan, name, leaf):
-            yield f"    if ({leaf_value(names, leaf)} != m->truth[{place}]) {{"
+    held = f"m->value[{number}]"
+    knowledge, others = [], []
+    yield f"if (!same(value, {held})) {{"
+    yield f"    const bool learnt = known != ({held} == {held});"
+    yield from (f"    {line}" for line in _value(plan, name, number))
+    for place in plan.graph.by_name.get(name, ()):
+        state = plan.graph.nodes[place]
+        if _is_of_knowledge(state.leaf):
+            knowledge.append(place)
+        elif state.leaf is not None and is_instant(plan, name, state.leaf):
+            value = leaf_value(names, state.leaf, state.unborn)
+            yield f"    if ({value} != m->truth[{place}]) {{"
             yield from (f"        {line}" for line in _soil([place]))
             yield "    }"
-    yield from (
-        f"    {line}"
-        for line in _soil(
-            place for place in places if not is_instant(plan, name, plan.graph.nodes[place].leaf)
-        )
-    )
+        else:
+            others.append(place)
+    if knowledge:
+        yield "    if (learnt) {"
+        yield from (f"        {line}" for line in _soil(knowledge))
+        yield "    }"
+    yield "    (void)learnt;"
+    yield from (f"    {line}" for line in _soil(others))
     yield "}"
+
+
+def _value(plan: Plan, name: str, number: int) -> Iterator[str]:
+    """Hold a value; the first that is known is its birth."""
+    yield f"m->value[{number}] = value;"
+    if births_asked(plan).get(name) is False:
+        yield f"m->births[{number}] |= known ? 1U : 0U;"
 
 
 def _take_event(plan: Plan, names: Names, name: str, source: Source) -> Iterator[str]:

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 from rvmon.codegen.c_leaves import uses_library
-from rvmon.codegen.c_names import Memory, Names
+from rvmon.codegen.c_names import Memory, Names, memory_of
 from rvmon.codegen.c_nodes import (
+    UNTOLD,
     group_count,
     group_of,
     groups_of,
+    guards_of,
     momentary_counts,
     needs,
     nodes_source,
@@ -23,6 +25,7 @@ from rvmon.codegen.c_tables import array, automata_source, lists, repeats
 from rvmon.codegen.c_text import called, comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
+from rvmon.formula.state import StateOp
 
 _LIBRARY = ("helpers.c.in", "monitor_past.c.in")
 """Functions of which a source has those that it calls."""
@@ -53,7 +56,7 @@ def c_files(plan: Plan) -> CFiles:
     """
     if not plan.rules:
         raise RvmonError("the specification has no requirements: there is nothing to compile")
-    for rule in plan.rules:
+    for _, rule in plan.judges:
         if rule.automaton is None:
             raise RvmonError(
                 f"{rule.requirement.id} has no automaton of bounded size, so no C can be made of "
@@ -81,6 +84,7 @@ class _Writer:
             "prefix": prefix,
             "GAP": str(self.plan.gap or 0),
             "REPEATING": str(int(any(map(repeats, self.plan.rules)))),
+            "EPISODES": str(int(any(rule.again is not None for rule in self.plan.rules))),
             "NAMES": "\n".join(self._constants()),
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan, self.names) else "",
         }
@@ -98,7 +102,7 @@ class _Writer:
     def _constants(self) -> Iterator[str]:
         plan, names = self.plan, self.names
         upper = names.prefix.upper()
-        clocks = max((r.automaton.clocks for r in plan.rules if r.automaton), default=0)
+        clocks = max((r.automaton.clocks for _, r in plan.judges if r.automaton), default=0)
         sizes = {
             "SIGNALS": len(plan.signals),
             "EVENTS": len(plan.events),
@@ -106,6 +110,7 @@ class _Writer:
             "FIELDS": len(names.fields),
             "NODES": len(plan.graph.nodes),
             "RULES": len(plan.rules),
+            "JUDGES": len(plan.judges),
             "CLOCKS": clocks,
             "GROUPS": group_count(plan),
             "TIMED": len(names.timers),
@@ -115,7 +120,7 @@ class _Writer:
             yield f"#define {upper}_{name} {size}"
             yield f"#define {upper}_{name}_MIN {max(size, 1)}"
         yield f"#define {upper}_PERISHABLE {len(self._perishable())}"
-        yield f"#define {upper}_STATEFUL {len(groups_of(plan.graph.stateful))}"
+        yield f"#define {upper}_STATEFUL {len(self._stateful())}"
         for what, listed in (
             ("SIGNAL", plan.signals),
             ("EVENT", plan.events),
@@ -136,6 +141,21 @@ class _Writer:
             for number, name in enumerate(self.plan.signals)
             if signals[name].stale_after is not None
         ]
+
+    def _stateful(self) -> list[int]:
+        """The groups that have to be worked out at each sample, if only these are positions."""
+        nodes = self.plan.graph.nodes
+        lasting = [
+            place
+            for place in self.plan.graph.stateful
+            if nodes[place].op is not StateOp.DOUBT
+            and not (nodes[place].op is StateOp.SINCE and memory_of(nodes[place]) is Memory.SEEN)
+        ]
+        return groups_of(lasting)
+
+    def _untold_timers(self) -> list[int]:
+        guards = guards_of(self.plan)
+        return [n for place, n in self.names.timers.items() if guards.get(place) == UNTOLD]
 
     def _helpers(self) -> Iterator[str]:
         """Functions of the library of helpers that the nodes call."""
@@ -169,14 +189,16 @@ class _Writer:
         ends = accumulate(counts[group] for group in range(group_count(plan)))
         yield array("int32_t", "timed_first", [0, *ends])
         yield array("int32_t", "perishable", self._perishable())
-        yield array("int32_t", "stateful", groups_of(graph.stateful))
+        yield array("int32_t", "stateful", self._stateful())
+        yield array("int32_t", "untold_timers", self._untold_timers())
+        yield f"#define UNTOLD_TIMERS {len(self._untold_timers())}"
         # Counted down for each name without a source; at 0 the leaf stays as it is.
         yield array("uint8_t", "momentary", momentary_counts(plan))
 
     def _letters(self) -> Iterator[str]:
         graph = self.plan.graph
         places, worse, better = [], [], []
-        for rule in self.plan.rules:
+        for _, rule in self.plan.judges:
             alphabet = rule.alphabet
             places.append([graph.index[state] for state in alphabet.propositions])
             worse.append([weight for weights in alphabet.pessimistic for weight in weights])

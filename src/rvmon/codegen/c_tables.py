@@ -17,17 +17,18 @@ DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OP
 
 def automata_source(plan: Plan) -> Iterator[str]:
     """The tables of all requirements, and the array `automata` of them."""
-    width = max((r.automaton.clocks for r in plan.rules if r.automaton), default=0) or 1
+    width = max((r.automaton.clocks for _, r in plan.judges if r.automaton), default=0) or 1
     entries = []
-    for index, rule in enumerate(plan.rules):
+    for index, (owner, rule) in enumerate(plan.judges):
         if rule.automaton is None:
             raise ValueError(f"{rule.requirement.id} has no automaton")
         data = tables_of(rule.automaton)
         yield ""
-        yield f"/* Requirement number {index}. */"
+        doubt = ", its attempts in doubt" if index >= len(plan.rules) else ""
+        yield f"/* Requirement number {owner}{doubt}. */"
         yield from _arrays(data, index, width)
         yield array("uint8_t", f"outcomes{index}", outcomes(rule.requirement.at_end))
-        entries.append(_entry(plan, rule, data, index))
+        entries.append(_entry(plan, owner, rule, data, index))
     yield ""
     yield "static const automaton automata[] = {"
     yield from entries
@@ -97,9 +98,12 @@ def _arrays(data: TableData, index: int, width: int) -> Iterator[str]:
     yield f"static const end_test tests{index}[] = {{{shown or '{0, 0, false}'}}};"
 
 
-def _entry(plan: Plan, rule: PlannedRule, data: TableData, index: int) -> str:
-    trigger = -1 if rule.trigger is None else plan.graph.index[rule.trigger]
+def _entry(plan: Plan, owner: int, rule: PlannedRule, data: TableData, index: int) -> str:
+    formulas = (rule.trigger, rule.again, rule.unborn, rule.told)
+    places = ", ".join(str(-1 if state is None else plan.graph.index[state]) for state in formulas)
     requirement = rule.requirement
+    hidden = index >= len(plan.rules)
+    episodic = hidden or requirement.mode is Mode.WHENEVER
     classes = len(data.rows[0]) if data.rows else 1
     tables = ", ".join(
         f"{name}{index}"
@@ -119,8 +123,10 @@ def _entry(plan: Plan, rule: PlannedRule, data: TableData, index: int) -> str:
             "tests",
         )
     )
-    flags = f"{str(requirement.pulse).lower()}, {str(requirement.mode is Mode.WHENEVER).lower()}"
-    return f"    {{{data.initial}, {classes}, {tables}, {trigger}, {flags}, outcomes{index}}},"
+    flags = ", ".join(str(flag).lower() for flag in (requirement.pulse, episodic, hidden))
+    return (
+        f"    {{{data.initial}, {classes}, {tables}, {places}, {owner}, {flags}, outcomes{index}}},"
+    )
 
 
 def array(kind: str, name: str, values: Sequence[int]) -> str:

@@ -9,11 +9,21 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from rvmon.codegen.c_leaves import leaf_value
+from rvmon.codegen.c_leaves import TRUTHS, leaf_value
 from rvmon.codegen.c_names import Memory, Names, memory_of
-from rvmon.codegen.c_samples import read_events, read_signals, value_type
+from rvmon.codegen.c_samples import births_asked, read_events, read_signals, value_type
 from rvmon.codegen.plan import Plan
-from rvmon.formula.state import Leaf, State, StateOp
+from rvmon.formula.state import (
+    FALSE,
+    TRUE,
+    UNKNOWN,
+    Leaf,
+    Lost,
+    Missing,
+    State,
+    StateOp,
+    Unborn,
+)
 from rvmon.spec.checked import Compare, Constant, Probe, ProbeAtom, SignalAtom
 
 
@@ -23,8 +33,9 @@ def words_source(plan: Plan, names: Names) -> Iterator[str]:
     watched = {place: number for number, place in enumerate(_watched(plan, words))}
     for place in words:
         leaf = plan.graph.nodes[place].leaf
-        if leaf is not None and not isinstance(leaf, Constant):
+        if leaf is not None and not isinstance(leaf, Constant | Lost):
             yield from _leaf(plan, names, place, leaf)
+    yield from _birth(plan, names)
     yield ""
     yield f"#define WATCHED_COUNT {len(watched)}"
     yield from _plain(plan, names)
@@ -40,7 +51,7 @@ def _in_words(plan: Plan, place: int) -> bool:
     whole = all(_in_words(plan, operand) for operand in plan.graph.operands[place])
     if state.op is StateOp.SINCE:
         return whole and memory_of(state) is Memory.SEEN and _unbroken(plan)
-    return whole and state.op in (StateOp.NOT, StateOp.AND, StateOp.OR)
+    return whole and state.op in (StateOp.NOT, StateOp.AND, StateOp.OR, StateOp.SURE)
 
 
 def _unbroken(plan: Plan) -> bool:
@@ -51,8 +62,10 @@ def _unbroken(plan: Plan) -> bool:
 
 def _leaf_in_words(plan: Plan, leaf: Leaf, place: int) -> bool:
     match leaf:
-        case Constant() | SignalAtom():
+        case Constant() | SignalAtom() | Lost() | Unborn():
             return True
+        case Missing(atom=atom):
+            return _leaf_in_words(plan, atom, place)
         case ProbeAtom(probe=probe, name=name):
             return probe is Probe.KNOWN and name in plan.signals
         case Compare():
@@ -65,9 +78,7 @@ def _leaf_in_words(plan: Plan, leaf: Leaf, place: int) -> bool:
 def _watched(plan: Plan, words: list[int]) -> list[int]:
     """The nodes in words of which each change matters elsewhere, or to themselves."""
     graph = plan.graph
-    roots = [state for rule in plan.rules for state in rule.alphabet.propositions]
-    roots += [rule.trigger for rule in plan.rules if rule.trigger is not None]
-    read = {graph.index[state] for state in roots}
+    read = {graph.index[state] for rule in plan.rules for state in rule.states}
     return [
         place
         for place in words
@@ -80,23 +91,49 @@ def _watched(plan: Plan, words: list[int]) -> list[int]:
 def _leaf(plan: Plan, names: Names, place: int, leaf: Leaf) -> Iterator[str]:
     """A leaf over the columns that it reads."""
     columns = sorted(map(names.signal, plan.graph.reads[place].names))
-    absent = "IS_FALSE" if isinstance(leaf, ProbeAtom) else "IS_UNKNOWN"
+    absent = {ProbeAtom: FALSE, Missing: TRUE, Unborn: TRUE}
+    without = absent.get(type(leaf), plan.graph.nodes[place].unborn)
     given = " && ".join(f"(in->value[{number}] != NULL)" for number in columns)
     yield ""
     yield f"static words leaf{place}(const batch_in *in, int64_t first, int64_t n)"
     yield "{"
-    yield f"    words made = all_rows({absent});"
+    yield f"    words made = all_rows({TRUTHS[without]});"
     yield f"    if ({given}) {{"
-    for number in columns:
-        kind = value_type(plan, plan.signals[number])
-        yield f"        const {kind} *x{number} = (const {kind} *)in->value[{number}] + first;"
-    if isinstance(leaf, SignalAtom):
+    atom = leaf.atom if isinstance(leaf, Missing) else leaf
+    if isinstance(atom, SignalAtom | Compare | ProbeAtom):
+        for number in columns:
+            kind = value_type(plan, plan.signals[number])
+            yield f"        const {kind} *x{number} = (const {kind} *)in->value[{number}] + first;"
+    if isinstance(leaf, Unborn):
+        yield "        made = all_rows(IS_FALSE); /* else all rows are taken */"
+    elif isinstance(leaf, Missing):
+        yield from (f"        {line}" for line in _rows(columns, leaf_value(names, leaf.atom)))
+        yield "        made.may &= ~made.is;"
+        yield "        made.is = 0U;"
+    elif isinstance(leaf, SignalAtom):
         yield f"        made.is = above(x{columns[0]}, n, 0);"
         yield "        made.may = made.is;"
     else:
         yield from (f"        {line}" for line in _rows(columns, leaf_value(names, leaf)))
     yield "    }"
+    yield "    (void)first;"
+    yield "    (void)n;"
     yield "    return made;"
+    yield "}"
+
+
+def _birth(plan: Plan, names: Names) -> Iterator[str]:
+    yield ""
+    yield "/* Whether a row may be the birth of a signal: till then what it is not counts, too. */"
+    yield "static bool some_unborn(const monitor *m, const batch_in *in)"
+    yield "{"
+    yield "    bool found = false;"
+    for number in map(names.signal, births_asked(plan)):
+        came = f"(in->value[{number}] != NULL)"
+        yield f"    found = found || ((m->births[{number}] == 0U) && {came});"
+    yield "    (void)m;"
+    yield "    (void)in;"
+    yield "    return found;"
     yield "}"
 
 
@@ -184,6 +221,8 @@ def _word(plan: Plan, place: int, watched: dict[int, int]) -> str:
     match state.op:
         case StateOp.NOT:
             return f"not_words({operands[0]})"
+        case StateOp.SURE:
+            return f"sure_words({operands[0]})"
         case StateOp.AND | StateOp.OR:
             function = "and_words" if state.op is StateOp.AND else "or_words"
             whole = operands[0]
@@ -193,6 +232,8 @@ def _word(plan: Plan, place: int, watched: dict[int, int]) -> str:
         case StateOp.SINCE:
             return f"since_words({operands[0]}, {operands[1]}, before[{watched[place]}])"
         case _ if isinstance(state.leaf, Constant):
-            return f"all_rows({'IS_TRUE' if state.leaf.value else 'IS_FALSE'})"
+            return f"all_rows({TRUTHS[TRUE if state.leaf.value else FALSE]})"
+        case _ if isinstance(state.leaf, Lost):
+            return f"all_rows({TRUTHS[UNKNOWN]})"
         case _:
             return f"leaf{place}(in, first, n)"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
@@ -91,14 +91,23 @@ class Plan:
     uses: Mapping[str, Uses]
 
     @property
+    def judges(self) -> Sequence[tuple[int, PlannedRule]]:
+        """All that has an automaton of its own, with the number of the rule that it belongs to.
+
+        The rules themselves come first, then what judges their attempts in doubt.
+        """
+        rules = [*enumerate(self.rules)]
+        return rules + [(owner, one.hidden) for owner, one in rules if one.hidden is not None]
+
+    @property
     def judged(self) -> tuple[PlannedRule, ...]:
         """The rules, then those that judge the attempts in doubt of some of them."""
-        return (*self.rules, *(rule.hidden for rule in self.rules if rule.hidden is not None))
+        return tuple(rule for _, rule in self.judges)
 
     @property
     def hidden_of(self) -> tuple[int, ...]:
         """For each of the latter, whose attempts in doubt it judges: the place of that rule."""
-        return tuple(n for n, rule in enumerate(self.rules) if rule.hidden is not None)
+        return tuple(owner for owner, _ in self.judges[len(self.rules) :])
 
     def readers(self, name: str) -> tuple[int, ...]:
         """The leaves that depend on the value of a signal or event."""
@@ -121,8 +130,7 @@ def asks_knowledge(leaf: Leaf | None) -> bool:
     """Whether a leaf depends on what is known of signals, and not on their values."""
     if isinstance(leaf, Missing):
         atom = leaf.atom
-        plain = isinstance(atom, SignalAtom) or (
+        return isinstance(atom, SignalAtom) or (
             isinstance(atom.left, SignalValue) and isinstance(atom.right, Literal)
         )
-        return plain
     return isinstance(leaf, Unborn)

@@ -41,6 +41,10 @@ def _asks_history(leaf: Leaf, name: str) -> bool:
         return (name, True) in leaf.signals
     if isinstance(leaf, ProbeAtom):
         return leaf.probe is Probe.CHANGED
+    if isinstance(leaf, Unborn):
+        return dict(leaf.signals).get(name, False)
+    if isinstance(leaf, Missing):
+        return _asks_history(leaf.atom, name)
     return isinstance(leaf, Compare) and any(
         isinstance(part, UpdateValue) and part.name == name
         for side in (leaf.left, leaf.right)

@@ -118,7 +118,8 @@ class ValueWriter:
         yield f"if s[{signal}] is None:"
         yield f"    self.found({signal}, t)"
         if self.tells_birth(name):
-            yield f"    if not self.births[{signal}]{'' if given else f' and {variable} is not None'}:"
+            known = "" if given else f" and {variable} is not None"
+            yield f"    if not self.births[{signal}]{known}:"
             yield f"        self.births[{signal}] = 1"
         yield from self._found(name)
         if not given:

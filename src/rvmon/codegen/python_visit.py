@@ -298,7 +298,8 @@ class VisitWriter:
             yield f"self.since[{place}] = t"
             yield f"letters {sign} {self.roles.letters[place]}"
         if self.roles.triggers[place]:
-            yield f"triggers {'=' if alone and not self.goes_on else '|='} {self.roles.triggers[place]}"
+            sign = "=" if alone and not self.goes_on else "|="
+            yield f"triggers {sign} {self.roles.triggers[place]}"
         yield from onward
         yield f"v[{place}] = {value}"
 

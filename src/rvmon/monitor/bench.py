@@ -116,7 +116,7 @@ class Bench(ABC):
         self.episode: Episode | None = None
 
     @abstractmethod
-    def new_attempt(self, t: int, triggered: int) -> Open:
+    def new_attempt(self, t: int, triggered: int, /) -> Open:
         """An attempt at the position `t`, which the flow is at; it is not driven yet."""
 
     @abstractmethod

@@ -29,10 +29,10 @@ class Instance:
 
 def values_in(source: FieldValue, values: Mapping[str, Value]) -> list[Scalar]:
     """The values of the field in a sample, in order; `None` is an unknown one."""
-    found: list[Scalar] = []
-    for payload in payloads_of(values.get(source.event, False)):
-        found.append(None if payload is None else _known(payload, source.field))
-    return found
+    return [
+        None if payload is None else _known(payload, source.field)
+        for payload in payloads_of(values.get(source.event, False))
+    ]
 
 
 def seen_by(instance: Instance | None, values: Mapping[str, Reported]) -> Mapping[str, Reported]:

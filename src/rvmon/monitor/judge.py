@@ -48,7 +48,7 @@ class Judge(Bench):
             sum([weights[values[place]] for place, weights in self._better]),
         )
 
-    def new_attempt(self, t: int, triggered: int) -> Open:
+    def new_attempt(self, _: int, triggered: int) -> Open:
         """See `Bench`."""
         return Open(triggered, self.machine.start, self.seen)
 

@@ -232,7 +232,7 @@ class Lanes:
         captured: Captured,
         instance: Instance | None,
     ) -> list[Starter]:
-        """Give a requirement its triggers in a lane, and its judges, unless attempts bring theirs."""
+        """Give a requirement triggers in a lane, and judges, unless attempts bring theirs."""
         doubted = instance is not None and instance.value is None
         lane.expect(compiled)
         if compiled.obligation.trigger is None:

@@ -124,7 +124,7 @@ class CompiledMonitor(Monitor):
         told = Told(
             np.frombuffer(self._core.records(), RECORD),
             ordered=False,
-            counts=np.array(self._core.counts(), np.int64).reshape(-1, 3),
+            counts=np.array(self._core.counts(), np.int64).reshape(-1, 4),
             end=None if end == NOT_YET else end,
         )
         return report_of_records(self._ids, told, origin=self._health.began or 0)

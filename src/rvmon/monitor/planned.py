@@ -23,6 +23,23 @@ def can_generate(requirement: CompiledRequirement) -> bool:
     return not _beyond(requirement)
 
 
+def can_stand_alone(requirement: CompiledRequirement) -> bool:
+    """Whether generated code can judge it without a monitor in this process."""
+    return not _beyond_alone(requirement)
+
+
+def _beyond_alone(requirement: CompiledRequirement) -> str:
+    """Why generated code cannot do that; empty if it can.
+
+    Attempts in doubt need an automaton, too: in this process anything judges them.
+    """
+    reason = _beyond(requirement)
+    if not reason and requirement.hidden is not None:
+        reason = _beyond(requirement.hidden)
+        reason = reason and f"{reason}, where its trigger may be unknown"
+    return reason
+
+
 def _beyond(requirement: CompiledRequirement) -> str:
     """Why generated code cannot judge a requirement; empty if it can."""
     if requirement.requirement.for_each:
@@ -34,15 +51,6 @@ def _beyond(requirement: CompiledRequirement) -> str:
     if isinstance(requirement.automaton.class_of, LetterDiagram):
         return f"tells {requirement.alphabet.size:,} combinations of its propositions apart"
     return ""
-
-
-def _beyond_alone(requirement: CompiledRequirement) -> str:
-    """Why code that runs without rvmon cannot judge a requirement; empty if it can."""
-    why, hidden = _beyond(requirement), requirement.hidden
-    if why or hidden is None:
-        return why
-    beside = _beyond(hidden)
-    return f"in doubt {beside}" if beside else ""
 
 
 def plan_requirements(

@@ -60,7 +60,7 @@ class RecordedAttempts(LazyAttempts):
         """See `LazyAttempts`."""
         records = self._records
         alike = records["requirement"].astype(np.int64)
-        for name in ("verdict", "decision"):
+        for name in ("verdict", "decision", "in_doubt"):
             alike = alike << 8 | records[name]
         texts = np.empty(len(records), object)
         for kind in set(alike.tolist()):  # these differ in numbers alone
@@ -81,6 +81,7 @@ class RecordedAttempts(LazyAttempts):
         decided: int,
         verdict: int,
         decision: int,
+        in_doubt: int,
     ) -> Attempt:
         return Attempt(
             self._ids[requirement],
@@ -89,6 +90,7 @@ class RecordedAttempts(LazyAttempts):
             None if decision == _OPEN else decided,
             VERDICTS[verdict],
             DECISIONS[decision],
+            in_doubt=bool(in_doubt),
         )
 
 
@@ -108,8 +110,8 @@ def report_of_records(ids: Sequence[str], told: Told, *, origin: int) -> Report:
     }
     return Report(
         verdicts={
-            name: fold([verdict for verdict, count in own.items() if count])
-            for name, own in counts.items()
+            name: fold([verdict for verdict, count in own.items() if count], told=bool(heard))
+            for (name, own), heard in zip(counts.items(), told.counts[:, 3], strict=True)
         },
         attempts=RecordedAttempts(ids, told.records if told.ordered else _ordered(told.records)),
         counts=counts,
@@ -122,8 +124,9 @@ _COUNTED = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 
 def _ordered(records: NDArray[Any]) -> NDArray[Any]:
-    """By decision instant, requirement and number; the undecided ones last."""
+    """By decision instant, requirement, whether in doubt, and number; the undecided ones last."""
     undecided = records["decision"] == _OPEN
     decided = np.where(undecided, np.iinfo(np.int64).max, records["decided"])
-    order = np.lexsort((records["number"], records["requirement"], decided))
+    keys = (records["number"], records["in_doubt"], records["requirement"], decided)
+    order = np.lexsort(keys)
     return records[order]

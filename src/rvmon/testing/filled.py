@@ -11,7 +11,7 @@ from rvmon.codegen.c_batch import BatchLibrary
 from rvmon.monitor import CompiledSpec
 from rvmon.monitor.batch import evaluate_blocks, evaluate_plain
 from rvmon.monitor.batch_c import evaluate_c_blocks
-from rvmon.monitor.planned import can_generate, plan_alone
+from rvmon.monitor.planned import can_stand_alone, plan_alone
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
@@ -88,7 +88,7 @@ def _judges(compiled: CompiledSpec, engine: str) -> bool:
         return compiled.checked.max_delay is None
     requirements = compiled.requirements.values()
     if compiled.checked.max_delay is not None or not all(
-        one.automaton is not None and can_generate(one) for one in requirements
+        one.automaton is not None and can_stand_alone(one) for one in requirements
     ):
         return False
     key = ("c", None)

@@ -15,7 +15,7 @@ from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.compiled import ENGINES
 from rvmon.monitor.online_c import CompiledMonitor
-from rvmon.monitor.planned import can_generate, plan_alone
+from rvmon.monitor.planned import can_stand_alone, plan_alone
 from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case
@@ -120,7 +120,7 @@ class Maker:
             return None
         if self.form == "automaton":
             return compiled
-        if not all(can_generate(one) for one in requirements):
+        if not all(can_stand_alone(one) for one in requirements):
             return None
         plan = plan_alone(compiled)
         match self.form:

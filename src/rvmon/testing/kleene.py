@@ -31,8 +31,10 @@ def negation(value: Truth) -> Truth:
 def conjunction(values: Iterable[Truth]) -> Truth:
     """FALSE if any is, else UNKNOWN if any is, else UNBORN if any is; of nothing TRUE.
 
-    >>> conjunction([Truth.UNBORN, Truth.TRUE]).name, conjunction([Truth.UNBORN, Truth.UNKNOWN]).name
-    ('UNBORN', 'UNKNOWN')
+    >>> conjunction([Truth.UNBORN, Truth.TRUE]).name
+    'UNBORN'
+    >>> conjunction([Truth.UNBORN, Truth.UNKNOWN]).name
+    'UNKNOWN'
     """
     return _first(values, (Truth.FALSE, Truth.UNKNOWN, Truth.UNBORN), Truth.TRUE)
 

@@ -31,7 +31,7 @@ event e(k: int)
 event f
 requirement R1 "a"
   upon e.k > 2 and once[1 s, 3 s] p
-  then within 3 s for 1 s (q or x > 1)
+  then within 3 s held(q or x > 1, 1 s)
 requirement R2 "b"
   whenever (p since[0 s, 5 s] q) or held(q, 2 s)
   then within 2 s mode == green

@@ -25,7 +25,7 @@ event e(k: int, where: {{left, right}})
 event f
 requirement R1 "a"
   upon e.k > 2 and e.where == left and once[1 s, 3 s] p
-  then within 3 s for 1 s (q or x > 1)
+  then within 3 s held(q or x > 1, 1 s)
 requirement R2 "b"
   always (f -> (p since[0 s, 5 s] (mode == green)) or n > 3)
 """

@@ -72,7 +72,7 @@ class Unit(Nodes):
     HIDDEN_OF: tuple[int, ...] = ()
     """For each of the latter, the requirement."""
     TOLD: tuple[int, ...] = ()
-    """Per requirement the node that is true once its trigger was true or false; −1: it always is."""
+    """Per requirement the node that is true once its trigger was true or false; −1: always."""
 
     step: Callable[[int, Mapping[str, Any]], Sequence[Any]]
     """Take one sample; returns what it decided."""
