@@ -60,11 +60,11 @@ def _rule(one: CompiledRequirement, explained: bool) -> PlannedRule:
         one.alphabet,
         automaton,
         one.in_runs(automaton),
-        tuple(leaf for leaf, _ in one.leaves) if explained else None,
         obligation.again,
         obligation.unborn,
         obligation.told,
         None if one.hidden is None else _rule(one.hidden, explained),
+        tuple(leaf for leaf, _ in one.leaves) if explained else None,
     )
 
 
