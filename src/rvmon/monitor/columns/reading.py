@@ -77,7 +77,7 @@ class Reading:
         self._raw.clear()
         for name, birth in self._births.items():
             if birth == FAR and name in self._names:
-                self._births[name] = self._row + _first_known(columns[name])
+                self._births[name] = min(self._row + _first_known(columns[name]), FAR)
 
     def of(self, leaf: Leaf, unborn: int) -> Flat:
         """The truth of a leaf.
@@ -153,8 +153,9 @@ class Reading:
 
     def _is_unborn(self, signals: Iterable[tuple[str, bool]]) -> Bits:
         """Per row whether some signal has had no value, or update after it, that is asked for."""
-        births = [self._births[name] + moved for name, moved in signals]
-        made: Bits = np.arange(self._rows) < max(births, default=0) - self._row
+        birth = max((self._births[name] + moved for name, moved in signals), default=0)
+        made = np.zeros(self._rows, bool)
+        made[: max(birth - self._row, 0)] = True
         return made
 
 
