@@ -35,6 +35,9 @@ Judged = tuple[Attempts, Outcome]
 _ROUNDS = 2
 """So many failures of an episode are followed one by one."""
 
+_MOST_GUESSES = 1 << 12
+"""So many attempts of an episode are tried together, if each begins as long after the last."""
+
 
 class Episodes:
     """Follows the episodes of a requirement from piece to piece.
@@ -79,12 +82,12 @@ class Episodes:
         running = (attempts.stop == FAR) & (attempts.start < axis.start)
         attempts.stop[running] = piece.stop_of_old
         parts = [piece.judged(attempts)]
-        places = piece.following(*parts[0])
+        behind = piece.following(*parts[0])
+        places = behind[behind >= 0]
         if self.failed_at is not None:
-            own = np.array([self.failed_at]), np.array([piece.stop_of_old])
-            waiting = piece.going_on(*own)
-            places = np.append(waiting, places)
-            if len(waiting) or piece.stop_of_old < FAR:
+            waiting = piece.going_on(np.array([self.failed_at]), np.array([piece.stop_of_old]))
+            places = np.append(waiting[waiting >= 0], places)
+            if waiting[0] >= 0 or piece.stop_of_old < FAR:
                 self.failed_at = None
         parts += piece.follow(places)
         if len(parts) == 1:
@@ -153,87 +156,99 @@ class _Piece:
 
     def starting(self, places: Numbers) -> Judged:
         """Attempts that start at places in episodes."""
-        episode = np.searchsorted(self._begins, places, "right") - 1
-        return self.judged(self._make(places, self._stops[episode]))
+        return self.judged(self._make(places, self._stops[self._episode(places)]))
+
+    def _episode(self, places: Numbers) -> Numbers:
+        found: Numbers = np.searchsorted(self._begins, places, "right") - 1
+        return found
 
     def going_on(self, failed_at: Numbers, stop: Numbers) -> Numbers:
-        """The places at which episodes that are over at `stop` go on after failures."""
-        places = self._next(failed_at)
-        return places[places < np.minimum(stop, self._axis.stop)]
-
-    def _next(self, failed_at: Numbers) -> Numbers:
-        return first_in(self._again, self._axis.first_from(failed_at + 1), self._axis.stop)
+        """Where episodes that are over at `stop` go on after failures; −1 where they do not."""
+        end = self._axis.stop
+        places = first_in(self._again, self._axis.first_from(failed_at + 1), end)
+        return np.where(places < np.minimum(stop, end), places, -1)
 
     def following(self, attempts: Attempts, outcome: Outcome) -> Numbers:
-        """The places at which episodes go on, of those attempts that have failed."""
-        failed = (outcome.decided < FAR) & ~outcome.passed
-        if not failed.any():
-            return np.empty(0, np.int64)
-        return self.going_on(outcome.decided[failed], attempts.stop[failed])
+        """For each attempt the place of the one that follows it; −1 if none does."""
+        behind = np.full(len(attempts), -1)
+        failed = np.flatnonzero((outcome.decided < FAR) & ~outcome.passed)
+        if len(failed):
+            behind[failed] = self.going_on(outcome.decided[failed], attempts.stop[failed])
+        return behind
 
     def follow(self, places: Numbers) -> list[Judged]:
         """The attempts that start at places in episodes, those that follow them, and so on."""
         parts: list[Judged] = []
+        steps = places
         while len(places) and len(parts) < _ROUNDS:
             parts.append(self.starting(places))
-            places = self.following(*parts[-1])
+            behind = self.following(*parts[-1])
+            own = behind >= 0
+            places, steps = behind[own], (behind - places)[own]
         if not len(places):
             return parts
-        chains = _Chains(self)
+        entries = _Chains(self, in_at_least(2, [self._may, self._again])[0::2])
+        count = 1
         while len(places):
-            linked = np.isin(places, chains.starts)
-            part, behind = chains.chained(places[linked])
-            parts.append(part)
+            linked = entries.has(places)
+            found = [entries.chained(places[linked])]
             if not linked.all():
-                parts.append(self.starting(places[~linked]))
-                behind = np.concatenate((behind, self.following(*parts[-1])))
-            places = behind
+                guesses = self._guesses(places[~linked], steps[~linked], count)
+                tried = _Chains(self, guesses).chained(places[~linked])
+                regular = np.array_equal(tried[2], steps[~linked])
+                all_right = regular and len(tried[0][0]) == len(guesses)
+                count = min(2 * count, _MOST_GUESSES) if all_right else 1
+                found.append(tried)
+            parts += [part for part, _, _ in found]
+            places = np.concatenate([behind for _, behind, _ in found])
+            steps = np.concatenate([own for _, _, own in found])
         return parts
 
-    @property
-    def entries(self) -> Numbers:
-        """The places at which an episode can go on again after it could not."""
-        made: Numbers = in_at_least(2, [self._may, self._again])[0::2]
-        return made
+    def _guesses(self, places: Numbers, steps: Numbers, count: int) -> Numbers:
+        """Where attempts begin if each follows as far behind another as that did."""
+        stops = np.minimum(self._stops[self._episode(places)], self._axis.stop)
+        grid = places[:, None] + steps[:, None] * np.arange(count)
+        return np.sort(grid[grid < stops[:, None]])
 
 
 class _Chains:
-    """What follows what, worked out for all places at which episodes can go on at once.
+    """What follows what, worked out for many places at once at which episodes may go on.
 
     Where an attempt begins decides what becomes of it, whatever was before.
 
-    Attributes:
+    Args:
+        piece: with the episodes.
         starts: the places, ascending.
     """
 
-    def __init__(self, piece: _Piece) -> None:
-        self.starts = piece.entries
-        self._judged = attempts, outcome = piece.starting(self.starts)
-        failed = np.flatnonzero((outcome.decided < FAR) & ~outcome.passed)
-        following = piece._next(outcome.decided[failed])
-        goes_on = following < np.minimum(attempts.stop[failed], piece._axis.stop)
-        failed, following = failed[goes_on], following[goes_on]
-        self._following = np.full(len(self.starts), -1)
-        self._following[failed] = following
-        link = np.searchsorted(self.starts, following)
-        linked = np.append(self.starts, -1)[link] == following
-        self._link = np.full(len(self.starts), -1)
-        self._link[failed[linked]] = link[linked]
+    def __init__(self, piece: _Piece, starts: Numbers) -> None:
+        self._starts = starts
+        self._judged = piece.starting(starts)
+        self._behind = piece.following(*self._judged)
+        link = np.searchsorted(starts, self._behind)
+        self._link = np.where(self.has(self._behind), link, -1).tolist()
 
-    def chained(self, places: Numbers) -> tuple[Judged, Numbers]:
+    def has(self, places: Numbers) -> NDArray[np.bool_]:
+        """Which places are among those."""
+        made: NDArray[np.bool_] = (
+            np.append(self._starts, -2)[np.searchsorted(self._starts, places)] == places
+        )
+        return made
+
+    def chained(self, places: Numbers) -> tuple[Judged, Numbers, Numbers]:
         """The attempts from some of the places on, as long as they follow each other.
 
         Returns:
-            They, and the places at which others follow the last ones.
+            They, the places at which others follow the last ones, and how far behind them.
         """
-        links = self._link.tolist()
         chain, ends = [], []
-        for index in np.searchsorted(self.starts, places).tolist():
+        for index in np.searchsorted(self._starts, places).tolist():
             while index >= 0:
                 chain.append(index)
-                index = links[index]
+                index = self._link[index]
             ends.append(chain[-1])
+        own, last = np.array(chain, np.int64), np.array(ends, np.int64)
+        last = last[self._behind[last] >= 0]
+        behind = self._behind[last]
         attempts, outcome = self._judged
-        own = np.array(chain, np.int64)
-        behind = self._following[np.array(ends, np.int64)]
-        return (attempts.pick(own), outcome.pick(own)), behind[behind >= 0]
+        return (attempts.pick(own), outcome.pick(own)), behind, behind - self._starts[last]

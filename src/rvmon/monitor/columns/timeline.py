@@ -54,7 +54,7 @@ class Piece:
             return code
         row = np.searchsorted(self.places, places, "right") - 1
         early = row < 0
-        exact = np.append(self.places, self.axis.start - 1)[row] == places
+        exact = self.places[row] == places if len(self.places) else early
         for leaf in leaves:
             flat = self.flats[leaf]
             value = _at_rows(flat.at, row)
