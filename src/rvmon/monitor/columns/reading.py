@@ -77,7 +77,7 @@ class Reading:
         self._raw.clear()
         for name, birth in self._births.items():
             if birth == FAR and name in self._names:
-                self._births[name] = min(self._row + _first_known(columns[name]), FAR)
+                self._births[name] = min(self._row + first_known(columns[name]), FAR)
 
     def of(self, leaf: Leaf, unborn: int) -> Flat:
         """The truth of a leaf.
@@ -171,7 +171,7 @@ def _signals(leaf: Leaf) -> Sequence[tuple[str, bool]]:
             return ()
 
 
-def _first_known(values: NDArray[Any]) -> int:
+def first_known(values: NDArray[Any]) -> int:
     """The first place at which a column is known; `FAR` if there is none."""
     if values.dtype.kind != "f" or values[0] == values[0]:
         return 0
