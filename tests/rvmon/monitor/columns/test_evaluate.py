@@ -192,7 +192,7 @@ def test_what_left_an_attempt_open_is_told_with_its_instant(case, size):
 
 @pytest.mark.parametrize("rows", [5, 5000])
 def test_each_stretch_of_excess_is_a_failure_in_any_blocks(rows):
-    """An episode goes on after a failure, however many there are, and over the borders of blocks."""
+    """An episode goes on after a failure, however many there are, and over borders of blocks."""
     spec = rvmon.loads("spec s\nsignal v : real\nrequirement R1\n  always v <= 1\n")
     values = np.tile([0.0, 0.0, 2.0, 2.0, 0.0], 1000)
     times = np.arange(5000) * 1_000_000
