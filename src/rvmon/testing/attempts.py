@@ -64,12 +64,9 @@ class Start:
 
     def restarted(self, position: int) -> Start:
         """What goes on of the episode as a new attempt."""
-        return replace(
-            self,
-            position=position,
-            owes=[k for k in self.owes if k >= position],
-            sure=self.view.first_true(k for k in self.owes if k >= position),
-        )
+        owes = [k for k in self.owes if k >= position]
+        known = (k for k in owes if self.blurred is None or k < self.blurred)
+        return replace(self, position=position, owes=owes, sure=self.view.first_true(known))
 
 
 class View:
@@ -142,7 +139,8 @@ class View:
         hidden = (k for k in owes if self.doubted or self.edge(k) is Truth.UNKNOWN)
         other = (k for k in hidden if not _same(captured, self._captures(k), lets))
         blurred = next(other, None) if lets else None
-        return Start(self, position, owes, captured, blurred, stop, self.first_true(owes))
+        known = (k for k in owes if blurred is None or k < max(blurred, position + 1))
+        return Start(self, position, owes, captured, blurred, stop, self.first_true(known))
 
     def first_true(self, positions: Iterable[int]) -> int | None:
         """The first of some positions at which the trigger is surely TRUE."""
