@@ -31,8 +31,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "attempt",
         metavar="ID#N",
-        help="an attempt such as R1#3, or R1?2 for one in doubt; R1 alone means its first failed one, else its first open "
-        "one, else its first",
+        help="an attempt such as R1#3, or R1?2 for one in doubt; R1 alone means its first failed "
+        "one, else its first open one, else its first",
     )
     parser.add_argument(
         "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"

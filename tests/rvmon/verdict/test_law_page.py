@@ -41,7 +41,8 @@ def test_what_is_judged_now(text, form, data, table, engine, tmp_path):
             rvmon.load(spec).evaluate(trace, engine=engine)
         return
     report = rvmon.load(spec).evaluate(trace, engine=engine)
-    assert listed(f"{name} {verdict}" for name, verdict in report.verdicts.items()) == now["verdicts"]
+    verdicts = [f"{name} {verdict}" for name, verdict in report.verdicts.items()]
+    assert listed(verdicts) == now["verdicts"]
     assert listed(f"{one.name} {one.verdict}" for one in report.attempts) == now["attempts"]
 
 
