@@ -65,7 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: without the program's name; default `sys.argv[1:]`.
 
     >>> main(["--version"])
-    rvmon 0.1.0
+    rvmon 0.1.0, law 2
     0
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
@@ -126,12 +126,14 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """The parser with the named subcommand only, or with all for help and for errors."""
     import argparse
 
+    from rvmon.verdict.verdict import LAW
+
     parser = argparse.ArgumentParser(
         prog="rvmon",
         description="Temporal requirements in, verdicts about robots out.",
         epilog="example: rvmon run specs/handover.rv recording.csv",
     )
-    parser.add_argument("--version", action="version", version=f"rvmon {__version__}")
+    parser.add_argument("--version", action="version", version=f"rvmon {__version__}, law {LAW}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
     named = [word for word in words[:1] if word in COMMANDS]
     for command in named or COMMANDS:

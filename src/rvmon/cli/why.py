@@ -31,8 +31,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "attempt",
         metavar="ID#N",
-        help="an attempt such as R1#3; R1 alone means its first failed one, else its first open "
-        "one, else its first",
+        help="an attempt such as R1#3, or R1?2 for one in doubt; R1 alone means its first failed "
+        "one, else its first open one, else its first",
     )
     parser.add_argument(
         "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
-    name, number = _named(arguments.attempt, spec)
+    name, exact = _named(arguments.attempt, spec)
     recording = opened(spec, arguments.trace)
     allowed = allowed_names(arguments.allow_missing)
     spec.expect_names(recording, only=[name], allow_missing=allowed)
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         requirement = spec.requirements[name]
         miss = nearest_miss(spec.checked, requirement, samples, report.end, recording.names)
         report = replace(report, misses={name: miss})
-    attempt = _chosen(report, name, number)
+    attempt = _chosen(report, name, exact)
     assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
     anatomy = dissect(spec.checked, samples, report.end, attempt, recording.names)
     if arguments.format == "json":
@@ -97,32 +97,34 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _named(text: str, spec: Spec) -> tuple[str, int | None]:
-    found = re.fullmatch(r"(?P<name>[^#]+)(#(?P<number>\d{1,9}))?", text)
+def _named(text: str, spec: Spec) -> tuple[str, str | None]:
+    """The requirement that is meant, and the name of the attempt if one is."""
+    found = re.fullmatch(r"(?P<name>[^#?]+)((?P<mark>[#?])(?P<number>\d{1,9}))?", text)
     if found is None:
         raise RvmonError(
-            f"error: `{text}` names no attempt: write R1#3, or R1 for the first failed"
+            f"error: `{text}` names no attempt: write R1#3, R1?2 for one in doubt, or R1 for the "
+            "first failed"
         )
-    name = found["name"]
+    name, mark, number = found["name"], found["mark"], found["number"]
     if name not in spec.requirements:
         known = ", ".join(spec.requirements) or "none"
         raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
-    return name, int(found["number"]) if found["number"] else None
+    return name, f"{name}{mark}{int(number)}" if number else None
 
 
-def _chosen(report: Report, name: str, number: int | None) -> Attempt:
-    attempts = sorted(report.attempts, key=lambda attempt: attempt.number)
+def _chosen(report: Report, name: str, exact: str | None) -> Attempt:
+    attempts = sorted(report.attempts, key=lambda attempt: (attempt.in_doubt, attempt.number))
     if not attempts:
         miss = f": {report.misses[name]}" if report.misses.get(name) else ""
         raise RvmonError(f"error: {name} was not triggered in this recording{miss}")
-    if number is None:
+    if exact is None:
         return _most_telling(attempts)
     for attempt in attempts:
-        if attempt.number == number:
+        if attempt.name == exact:
             return attempt
-    first, last = f"{name}#{attempts[0].number}", f"{name}#{attempts[-1].number}"
+    first, last = attempts[0].name, attempts[-1].name
     there = f"there are {first} to {last}" if last != first else f"there is {first} only"
-    raise UnknownNameError(f"error: no attempt {name}#{number}: {there}")
+    raise UnknownNameError(f"error: no attempt {exact}: {there}")
 
 
 def _most_telling(attempts: Sequence[Attempt]) -> Attempt:

@@ -13,6 +13,7 @@ from rvmon.codegen.c_text import comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind
+from rvmon.verdict.verdict import LAW
 
 _PARTS = (
     "program_head.c.in",
@@ -53,6 +54,7 @@ def program_source(plan: Plan) -> str:
     places = {
         "ENTRIES": "\n".join(_entries(plan, names)),
         "STEADY": str(int(_is_steady(plan))),
+        "LAW": str(LAW),
         "SPEC": comment(plan.spec.name),
         "HEADER": f"{names.prefix}.h",
         "PREFIX": names.prefix.upper(),

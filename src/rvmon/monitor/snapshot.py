@@ -21,6 +21,7 @@ from rvmon.monitor.build import build_monitor
 from rvmon.monitor.freeze import Freezer, Thawer
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.monitor import Monitor
+from rvmon.verdict.verdict import LAW
 
 if TYPE_CHECKING:
     from rvmon.dataflow.nodes import Plan
@@ -131,8 +132,8 @@ def _document(data: bytes) -> Mapping[str, Any]:
 
 @cache
 def _version() -> str:
-    """The version of this package: to look it up takes longer than all else of a snapshot."""
-    return version("rvmon")
+    """The version of this package and of the law; kept, as it takes longer than all else here."""
+    return f"{version('rvmon')}, law {LAW}"
 
 
 def _digest_of(compiled: CompiledSpec) -> str:

@@ -163,7 +163,7 @@ def _siblings(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET.Ele
                 "data-verdict": one.attempt.verdict.value,
                 "aria-current": "true" if one is panel else None,
             },
-            f"{one.attempt.number} {MARKS[one.attempt.verdict].sign}",
+            f"{one.attempt.numbered} {MARKS[one.attempt.verdict].sign}",
         )
         for one in own
         if one.attempt is not None

@@ -55,7 +55,7 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
     dissected = _Dissected(content, name)
     late = _late(content, name, attempts)
     for attempt in attempts:
-        came = late.get(attempt.number)
+        came = None if attempt.in_doubt else late.get(attempt.number)
         view = view_of(attempt, report, came)
         ghost = None
         if attempt.verdict is Verdict.FAIL:
@@ -119,4 +119,6 @@ def _late(content: RunPage, name: str, attempts: Sequence[Attempt]) -> Mapping[i
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:
     """The address of an attempt on the page, or of a requirement without any."""
-    return requirement if attempt is None else f"{requirement}-{attempt.number}"
+    if attempt is None:
+        return requirement
+    return f"{requirement}-{'in-doubt-' if attempt.in_doubt else ''}{attempt.number}"

@@ -56,7 +56,10 @@ def write_run_pages(
             spec=spec,
             command=command(report.trace),
             others=[other for other in others if other.report is not report],
-            facts=(("recording", _shown(report.trace)), ("judged by", spec.name)),
+            facts=(
+                ("recording", _shown(report.trace)),
+                ("judged by", f"{spec.name}, law {report.law}"),
+            ),
             back=INDEX if several else "",
         )
         path = folder / name

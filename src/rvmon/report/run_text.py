@@ -130,7 +130,7 @@ def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, wi
     from rvmon.diagnostics.snippet import snippet
     from rvmon.report.style import verdict_text
 
-    when = f"attempt {attempt.number}, triggered {format_ticks(attempt.triggered)}"
+    when = f"attempt {attempt.numbered}, triggered {format_ticks(attempt.triggered)}"
     if attempt.decided is not None:
         when += f", decided {format_ticks(attempt.decided)}"
     if attempt.robustness is not None:

@@ -31,8 +31,7 @@ def why_lines(anatomy: Anatomy, requirement: Requirement) -> Iterator[Text]:
     from rich.text import Text
 
     attempt = anatomy.attempt
-    title = f"{attempt.requirement}#{attempt.number}"
-    yield Text.assemble((f"{title}  ", "bold"), verdict_text(attempt.verdict))
+    yield Text.assemble((f"{attempt.name}  ", "bold"), verdict_text(attempt.verdict))
     for line in _sentences(anatomy, requirement):
         yield Text(wrapped(line, WIDTH))
     yield Text("")

@@ -120,6 +120,11 @@ class Attempt(_Later):
         """
         return f"{self.requirement}{'?' if self.in_doubt else '#'}{self.number}"
 
+    @property
+    def numbered(self) -> str:
+        """Its number, behind a question mark if it is in doubt."""
+        return f"?{self.number}" if self.in_doubt else str(self.number)
+
     def __str__(self) -> str:
         """One line for people.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.lazy import LazyAttempts
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.verdict import LAW, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,7 @@ class Report:
             deadline, ticks; where somebody looked.
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
+        law: version of the law that judged; a report that was kept may be of an older one.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -42,6 +43,7 @@ class Report:
     misses: Mapping[str, str] = field(default_factory=dict)
     late: Mapping[str, Mapping[int, int]] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
+    law: int = LAW
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.

@@ -15,7 +15,7 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.attempt_json import attempt_text, encoded, record
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.verdict import LAW, Verdict
 
 
 class _AttemptsJson(msgspec.Struct):
@@ -28,6 +28,7 @@ class _AttemptsJson(msgspec.Struct):
 class _ReportJson(msgspec.Struct):
     requirements: dict[str, _AttemptsJson]
     health: list[Health]
+    law: int = 1  # the first law's reports did not say
     trace: str = ""
     origin: int = 0
     end: int | None = None
@@ -45,7 +46,12 @@ def encode(report: Report) -> str:
 
 def _document(report: Report, attempts: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """The parts of a report's text, in order."""
-    head = {"trace": report.trace, "origin": report.origin, "end": report.end}
+    head = {
+        "law": report.law,
+        "trace": report.trace,
+        "origin": report.origin,
+        "end": report.end,
+    }
     yield f'{encoded(head)[:-1]},"requirements":{{'
     for number, (name, verdict) in enumerate(report.verdicts.items()):
         comma = "," if number else ""
@@ -86,7 +92,7 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
     attempts: dict[str, list[dict[str, object]]] = {}
     for attempt in before:
         attempts.setdefault(attempt.requirement, []).append(record(attempt))
-    return encoded({"trace": trace, "error": error, "judged_before": attempts})
+    return encoded({"law": LAW, "trace": trace, "error": error, "judged_before": attempts})
 
 
 def decode(text: str | bytes) -> Report:
@@ -122,4 +128,4 @@ def decode(text: str | bytes) -> Report:
     found = {name: entry.nearest_miss for name, entry in document.requirements.items()}
     misses = {name: miss for name, miss in found.items() if miss}
     late = {name: entry.late for name, entry in document.requirements.items() if entry.late}
-    return replace(report, misses=misses, late=late, goals=document.goals)
+    return replace(report, misses=misses, late=late, goals=document.goals, law=document.law)

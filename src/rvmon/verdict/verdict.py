@@ -5,6 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import StrEnum
 
+LAW = 2
+"""Version of the law by which verdicts are judged; raised when the same run may get another one.
+
+It stands in reports, and in what a page or a command says of itself; the changes are told in
+docs/reference/what-changed-in-the-law.md.
+"""
+
 
 class Verdict(StrEnum):
     """What can be said of a requirement, or of one attempt of it, on one run."""

@@ -41,6 +41,18 @@ def test_attempts_are_shown_with_their_verdict(door, capsys, named, verdict):
     assert any(line.strip() == "owed" for line in lines)
 
 
+def test_an_attempt_in_doubt_has_a_name_of_its_own(door, capsys):
+    """`D1?1` is not `D1#1`; both can be asked for, and only what there is."""
+    (door / "a.jsonl").write_text(
+        '{"t": 0, "closed": true, "knock": true}\n{"t": 1, "knock": null}\n{"t": 9}\n'
+    )
+    for name, verdict in (("D1#1", "F"), ("D1?1", "I")):
+        assert main(["why", "door.rv", "a.jsonl", name]) == 0
+        assert capsys.readouterr().out.split()[:2] == [name, verdict]
+    assert main(["why", "door.rv", "a.jsonl", "D1?2"]) == 2
+    assert "no attempt D1?2: there are D1#1 to D1?1" in capsys.readouterr().err
+
+
 def test_rows_show_truth_over_the_window(door, capsys):
     """The row of the trigger has its moment, that of the failed part is false to the deadline."""
     assert main(["why", "door.rv", "a.csv", "D1#2"]) == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -11,7 +12,7 @@ from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Blame, Decision
 from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.verdict import LAW, Verdict
 
 
 def attempts() -> list[Attempt]:
@@ -60,6 +61,7 @@ def test_json_shape() -> None:
     """The JSON has the keys that other programs rely on."""
     document = json.loads(report().to_json())
     entry = document["requirements"]["R2"]
+    assert next(iter(document.items())) == ("law", LAW)
     assert document["trace"] == "run.csv"
     assert entry["verdict"] == "F"
     assert entry["counts"] == {"P": 0, "F": 1, "I": 1}
@@ -73,6 +75,15 @@ def test_json_shape() -> None:
     assert failed["reason"] == "window closed"
     assert entry["attempts"][1]["decided"] is None
     assert document["health"][0]["kind"] == "stale"
+
+
+def test_a_report_of_the_first_law_is_read() -> None:
+    """Those did not name their law; read and written again, the report is still of that law."""
+    document = json.loads(report().to_json())
+    del document["law"]
+    old = Report.from_json(json.dumps(document))
+    assert old == replace(report(), law=1)
+    assert json.loads(old.to_json())["law"] == 1
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,67 @@
+"""The page on what changed in the law says what is judged now."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import rvmon
+from rvmon.cli import main
+from rvmon.errors import MissingNameError
+
+ROOT = Path(__file__).parents[3]
+PAGE = (ROOT / "docs" / "reference" / "what-changed-in-the-law.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(
+    r"```rv\n(.*?)```\n\n```(csv|jsonl)\n(.*?)```\n\n\| \| before \| now \|\n\|---\|---\|---\|\n"
+    r"((?:\|[^\n]*\n)+)",
+    PAGE,
+    re.DOTALL,
+)
+
+
+def test_every_specification_of_the_page_is_an_example():
+    """None of them stands there without a recording and verdicts."""
+    assert len(EXAMPLES) == PAGE.count("```rv\n") > 0
+
+
+@pytest.mark.parametrize("engine", ["auto", "network"])
+@pytest.mark.parametrize(("text", "form", "data", "table"), EXAMPLES)
+def test_what_is_judged_now(text, form, data, table, engine, tmp_path):
+    """The last column holds verdicts, attempts and exit code as they are."""
+    spec, trace = tmp_path / "base.rv", tmp_path / f"base.{form}"
+    spec.write_text(text, encoding="utf-8")
+    trace.write_text(data, encoding="utf-8")
+    cells = [[cell.strip() for cell in row.split("|")[1:-1]] for row in table.splitlines()]
+    now = {what: said for what, _, said in cells}
+    if "exit code" in now:
+        words = ["run", str(spec), str(trace), "--engine", engine]
+        assert main(words) == int(now["exit code"])
+    if now["verdicts"] == "refused":
+        with pytest.raises(MissingNameError):
+            rvmon.load(spec).evaluate(trace, engine=engine)
+        return
+    report = rvmon.load(spec).evaluate(trace, engine=engine)
+    verdicts = [f"{name} {verdict}" for name, verdict in report.verdicts.items()]
+    assert listed(verdicts) == now["verdicts"]
+    assert listed(f"{one.name} {one.verdict}" for one in report.attempts) == now["attempts"]
+
+
+def listed(names):
+    """As the tables have it."""
+    return ", ".join(names) or "none"
+
+
+def test_the_programs_of_the_page_print_what_their_comments_say(capsys):
+    """Each `print` is followed by what it prints, before what the first law said."""
+    names: dict[str, object] = {}
+    program = "".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL))
+    exec(program, names)  # noqa: S102 - our own page
+    assert capsys.readouterr().out.split() == re.findall(r"print\(.*\)  # (\w+), before", program)
+
+
+def test_the_law_that_the_page_names_is_the_present_one(capsys):
+    """A new law needs a new page."""
+    main(["--version"])
+    version = capsys.readouterr().out
+    assert PAGE.startswith("# What changed in the law\n")
+    assert re.findall(r'`"law": (\d+)`', PAGE) == re.findall(r"law (\d+)", version)
