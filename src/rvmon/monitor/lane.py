@@ -79,6 +79,7 @@ class Lane:
         self.judges.append(judge)
         for place in judge.places:
             self._judges_at[place].append(judge)
+        self._note(judge)
 
     def add_starter(self, starter: Starter) -> None:
         """Have a requirement's attempts started."""
