@@ -173,14 +173,10 @@ class _Ranges:
                 return either(i)
             case BinaryOp.IMPLIES:
                 return most([not_left(i), right(i)])
-            case BinaryOp.IFF if positive:
-                return most([both(i), least([not_left(i), not_right(i)])])
-            case BinaryOp.XOR if positive:
-                return most([least([left(i), not_right(i)]), least([not_left(i), right(i)])])
             case BinaryOp.IFF:
-                return least([most([not_left(i), right(i)]), most([left(i), not_right(i)])])
+                return most([both(i), least([not_left(i), not_right(i)])])
             case BinaryOp.XOR:
-                return least([either(i), most([not_left(i), not_right(i)])])
+                return most([least([left(i), not_right(i)]), least([not_left(i), right(i)])])
             case BinaryOp.UNTIL:
                 return self._until(left, right, i, window, positive)
             case BinaryOp.RELEASE:
