@@ -36,6 +36,7 @@ class Flow:
         position: the position that `values` were evaluated at last.
         since: per node, the position from which on it has had its value.
         memory: what the nodes that look back remember.
+        cut: the instant from which on the node of `cut_off` is FALSE.
     """
 
     def __init__(
@@ -55,6 +56,8 @@ class Flow:
         self._fading: list[int] = []
         self._wakes: dict[int, int] = {}
         self._left = True
+        self.cut = NEVER
+        self._cut_place = -1
         self.memory: dict[int, Since | Previous | Hidden] = {}
         self._momentary = frozenset(
             place
@@ -91,16 +94,37 @@ class Flow:
         if self.origin is not None:
             made.origin = self.origin
             made._dirty.update(range(len(graph.nodes)))
-            for place in graph.stateful:
-                made._take_memory(place, self)
+            for place, state in enumerate(graph.nodes) if occurring else ():
+                if state in self.graph.index:
+                    made._take_over(place, self)
             made._left = not occurring
             made.evaluate(self.position)
         return made
 
-    def _take_memory(self, place: int, other: Flow) -> None:
-        """Remember by a node what another flow does."""
-        state = self.graph.nodes[place]
-        theirs = other.graph.index[state]
+    def cut_off(self, place: int) -> None:
+        """Have a node be FALSE from the instant `cut` on."""
+        read = self._evaluate[place]
+        self._cut_place = place
+
+        def evaluate(t: int) -> int:
+            if t < self.cut:
+                return read(t)
+            self._set_wake(place, NEVER)
+            return FALSE
+
+        self._evaluate[place] = evaluate
+
+    def cut_at(self, t: int) -> None:
+        """Set that instant, which has not come yet."""
+        self.cut = t
+        self._wakes[self._cut_place] = t
+
+    def _take_over(self, place: int, other: Flow) -> None:
+        """Have a node be, and remember, what it is in another flow."""
+        theirs = other.graph.index[self.graph.nodes[place]]
+        self.values[place], self.since[place] = other.values[theirs], other.since[theirs]
+        if place not in self._momentary:  # those are seen to be over at the next position
+            self._dirty.discard(place)
         if theirs in other.memory:
             for name in type(self.memory[place]).__slots__:
                 setattr(self.memory[place], name, deepcopy(getattr(other.memory[theirs], name)))

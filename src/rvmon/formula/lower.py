@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import assert_never
 
 from rvmon.errors import RvmonError
@@ -71,6 +71,8 @@ class Obligation:
         hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN where one may
             start; `None` if the trigger is never unknown.
         doubted: the same where it is not known whether there is such an instance at all.
+        doubt: of an episode with captured values, UNKNOWN where another may have begun; also where
+            it is not known whether there is such an instance.
     """
 
     trigger: State | None
@@ -81,6 +83,7 @@ class Obligation:
     told: State | None = None
     hidden: Obligation | None = None
     doubted: Obligation | None = None
+    doubt: Mapping[bool, State] = field(default_factory=dict)
 
 
 def has_future(formula: Formula) -> bool:
@@ -122,7 +125,13 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
         ahead = lowering.core(requirement.consequent, True)
         again = None if _looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
-        return Obligation(trigger, owed, lowering.origins, again, unborn, told)
+        doubted = requirement.for_each is not None
+        doubt = {
+            every: factory.doubt(trigger, pulse=requirement.pulse, every=every)
+            for every in (False, True)
+            if requirement.captures and (doubted or not every)
+        }
+        return Obligation(trigger, owed, lowering.origins, again, unborn, told, doubt=doubt)
     owed = lowering.core(requirement.consequent, True)
 
     def hidden(every: bool) -> Obligation:

@@ -257,6 +257,7 @@ class CompiledRequirement:
     def _shared(self) -> Iterator[State]:
         obligation = self.obligation
         yield from (one for one in (obligation.trigger, obligation.told) if one is not None)
+        yield from obligation.doubt.values()
         if not self.requirement.captures:
             yield from self._own
         for beside in (self.hidden, self.doubted):

@@ -90,7 +90,7 @@ class Episode:
             return
         value = self._flow.values[self.place]
         if value == FALSE:
-            attempt.void = self.is_unborn
+            attempt.void = attempt.void or self.is_unborn
             self.current = self.failed_at = None
         elif self.failed_at is None:
             self._see(attempt, value, t)

@@ -79,7 +79,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Episode: ("current", "failed_at"),
     Lane: (
         *("flow", "judges", "starters", "episodes", "waiting", "_restless", "_repeating"),
-        "_failed",
+        *("_failed", "blurs"),
         *("_soonest", "_awaited"),
     ),
     Starter: ("trigger", "since"),
@@ -91,7 +91,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     ),
     Flow: (
         *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
-        *("_dirty", "_fading", "_wakes", "_left"),
+        *("_dirty", "_fading", "_wakes", "_left", "cut"),
     ),
     Inputs: ("slots", "occurrences", "updated", "expired", "changed", "outages"),
     Slot: (

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
@@ -39,6 +40,13 @@ class Starter:
     since: int = -TIME_LIMIT
 
 
+class Captive(Protocol):
+    """A captured attempt as the lane sees it in which it was triggered."""
+
+    def keeps(self, t: int) -> bool:
+        """Look at the position `t`: whether to look at the next as well."""
+
+
 class Lane:
     """One flow and the requirements that read it; a sample costs what it concerns.
 
@@ -49,6 +57,8 @@ class Lane:
         episodes: of those that start again after a failure.
         waiting: samples whose position has not come yet.
         made_for: the requirement of an instance or of a captured attempt, with its values.
+        captured: the lanes of captured attempts that were triggered in this one.
+        blurs: of such a lane, whether its values may turn out not to be known.
     """
 
     def __init__(
@@ -59,6 +69,8 @@ class Lane:
         self.judges: list[Bench] = []
         self.starters: list[Starter] = []
         self.episodes: list[Episode] = []
+        self.captured: list[Captive] = []
+        self.blurs = True
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
         nodes = flow.graph.nodes
         self._judges_at: list[list[Bench]] = [[] for _ in nodes]
@@ -206,6 +218,7 @@ class Lane:
             failed.update(dict.fromkeys(self._going_on[place]))
         for episode in failed:
             self._go_on(episode, t)
+        self.captured = [one for one in self.captured if one.keeps(t)]
 
     def _go_on(self, episode: Episode, t: int) -> None:
         """Follow a failure by another attempt at the position `t`, if it is time for that."""

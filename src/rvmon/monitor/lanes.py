@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
-from rvmon.dataflow.inputs import Inputs, payloads_of
-from rvmon.dataflow.numbers import reader
+from rvmon.dataflow.inputs import Inputs
 from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
 from rvmon.monitor.instances import Instance, seen_by, values_in
@@ -18,8 +17,8 @@ from rvmon.monitor.lane import Lane, Starter
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.trigger import Trigger
-from rvmon.spec.checked import CheckedSpec, ForEach, Mode, Numeric, TimeModel
-from rvmon.trace.sample import Payload, Scalar, Value
+from rvmon.spec.checked import CheckedSpec, ForEach, Mode, TimeModel
+from rvmon.trace.sample import Scalar, Value
 
 Captured = Mapping[str, Scalar]
 
@@ -193,6 +192,8 @@ class Lanes:
                 self._seat(lane, compiled, captured, instance)
             else:
                 self._judge(compiled, lane, captured, instance)
+                parents = (one for one, its in self._lanes if one.starters and its is instance)
+                self._compare(next(parents, self.main), lane, compiled, instance)
             self._lanes.append((lane, instance))
 
     # Making lanes.
@@ -264,6 +265,7 @@ class Lanes:
                 new, own = self._captured_lane(lane, compiled, captured, instance, t)
                 self._begin(new, own, instance, t, triggered, hidden=hidden)
                 self._lanes.append((new, instance))
+                self._compare(lane, new, compiled, instance)
         else:
             judge = self._judge(compiled, lane, captured, instance)
 
@@ -278,6 +280,23 @@ class Lanes:
             starter = Starter(trigger, lane.flow.graph.index[formula], start)
         lane.add_starter(starter)
         return starter
+
+    def _compare(
+        self, parent: Lane, lane: Lane, compiled: CompiledRequirement, instance: Instance | None
+    ) -> None:
+        """Have it seen in the parent whether the values of a captured attempt stay known."""
+        doubted = instance is not None and instance.value is None
+        obligation = compiled.obligation
+        doubt = obligation.doubt.get(doubted, obligation.trigger)
+        main = self._by_id[compiled.requirement.id].obligation
+        if main.trigger is None or doubt is None or doubt is main.trigger:
+            return  # what it owes, it owes at one position
+        index = parent.flow.graph.index
+        lane.flow.cut_off(lane.flow.graph.index[obligation.trigger or doubt])
+        captures = compiled.requirement.captures
+        one = CapturedAttempt(parent, lane, captures, index[main.trigger], index[doubt])
+        parent.captured.append(one)
+        one.keeps(parent.flow.position)
 
     def _begin(
         self,
@@ -334,7 +353,7 @@ class Lanes:
         """A lane for one attempt, triggered at `t`, in which its captured values are constants."""
         own = dict(captured)
         for capture in compiled.requirement.captures:
-            own[capture.name] = _capture(capture.value, parent.flow, own)
+            own[capture.name] = captured_value(capture.value, parent.flow, own)
         graph = compiled.consequent_graph
         if _looks_back(compiled, parent.flow.graph):
             lane = Lane(self._flow(graph, own), (compiled, own))
@@ -408,15 +427,6 @@ class Lanes:
 
 def _value(instance: Instance | None) -> Scalar:
     return None if instance is None else instance.value
-
-
-def _capture(value: Numeric, flow: Flow, captured: Captured) -> Scalar:
-    """The value of an expression at the position of a flow; of several payloads, of the last."""
-    payloads: dict[str, Payload] = {}
-    for event, reports in flow.inputs.occurrences.items():
-        found = [payload for report in reports for payload in payloads_of(report)]
-        payloads[event] = (found[-1] if found else None) or {}
-    return reader(value, flow.inputs, captured)(defaultdict(dict, payloads))
 
 
 def _needs_history(compiled: CompiledRequirement) -> bool:

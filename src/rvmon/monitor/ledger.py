@@ -201,10 +201,12 @@ def _record(
 def _why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> Explanation:
     """What an undecided attempt waits for; one in doubt waits for nothing but to be met."""
     if attempt.sure:
-        return why_open(judge, attempt, now, end)
+        why = why_open(judge, attempt, now, end)
+        return replace(why, deadline=None) if attempt.void else why
     if attempt.token[0] == FAILED:
-        return Explanation(f"it is not known whether there was a trigger; {attempt.doubt}")
-    return why_open(judge, attempt.unsplit(), now, end)
+        cause = f"; {attempt.doubt}" if attempt.doubt else ""
+        return Explanation(f"it is not known whether there was a trigger{cause}")
+    return replace(why_open(judge, attempt.unsplit(), now, end), deadline=None)
 
 
 def _outlook(judge: Bench, attempt: Open, now: int) -> Verdict | None:

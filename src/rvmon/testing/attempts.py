@@ -32,7 +32,7 @@ class Start:
         position: of the trigger; of an attempt in doubt, the first at which there may be one.
         owes: the positions at which something is owed; of a `whenever`, of its episode.
         captured: values of `let` and `for each`.
-        blurred: by name of a `let`, the position from which on its value is taken for unknown.
+        blurred: the position from which on it is not known which values of `let` are owed.
         stop: the first position that is none of its own, where it is over; `None` if none is known.
         sure: the first of its positions at which the trigger is TRUE; `None`: it is in doubt.
     """
@@ -41,7 +41,7 @@ class Start:
     position: int
     owes: Sequence[int]
     captured: Mapping[str, Scalar]
-    blurred: Mapping[str, int]
+    blurred: int | None
     stop: int | None = None
     sure: int | None = None
 
@@ -62,22 +62,12 @@ class Start:
             return False
         return any(self.view.trigger[k] is Truth.UNKNOWN for k in self.owes)
 
-    def captured_at(self, position: int) -> Mapping[str, Scalar]:
-        """The captured values by which it is judged what is owed at a position."""
-        if not self.blurred:
-            return self.captured
-        return {
-            name: None if self.blurred.get(name, position + 1) <= position else value
-            for name, value in self.captured.items()
-        }
-
     def restarted(self, position: int) -> Start:
         """What goes on of the episode as a new attempt."""
         return replace(
             self,
             position=position,
             owes=[k for k in self.owes if k >= position],
-            captured=self.captured_at(position),
             sure=self.view.first_true(k for k in self.owes if k >= position),
         )
 
@@ -148,14 +138,10 @@ class View:
     def begin(self, position: int, owes: Sequence[int], stop: int | None) -> Start:
         """An attempt that captures its values at a position."""
         captured = self._captures(position)
+        lets = [capture.name for capture in self.requirement.captures]
         hidden = (k for k in owes if self.doubted or self.edge(k) is Truth.UNKNOWN)
-        blurred: dict[str, int] = {}
-        for k in hidden if self.requirement.captures else ():
-            here = self._captures(k)
-            for capture in self.requirement.captures:
-                value = here[capture.name]
-                if value is None or value != captured[capture.name]:
-                    blurred.setdefault(capture.name, k)
+        other = (k for k in hidden if not _same(captured, self._captures(k), lets))
+        blurred = next(other, None) if lets else None
         return Start(self, position, owes, captured, blurred, stop, self.first_true(owes))
 
     def first_true(self, positions: Iterable[int]) -> int | None:
@@ -185,6 +171,10 @@ class View:
             if isinstance(part, Compare) and not is_born(part, letter):
                 return True
         return False
+
+
+def _same(one: Mapping[str, Scalar], other: Mapping[str, Scalar], names: Iterable[str]) -> bool:
+    return all(one[name] is not None and one[name] == other[name] for name in names)
 
 
 class Readings:
@@ -243,7 +233,9 @@ def obligation(start: Start, readings: Readings) -> Truth:
 
 def _owed(start: Start, readings: Readings, k: int) -> Truth:
     requirement = start.view.requirement
-    truths = readings.of(start.captured_at(k), favour=counts_in_favour(requirement))
+    if start.blurred is not None and k >= start.blurred:
+        return Truth.UNKNOWN
+    truths = readings.of(start.captured, favour=counts_in_favour(requirement))
     consequent = truths.truth(requirement.consequent, k)
     if requirement.mode is Mode.UPON:
         return consequent

@@ -123,8 +123,9 @@ def _episodes(view: View) -> list[Followed]:
                 episode = view.begin(k, owes, stop)
                 found.append(Followed(episode))
             elif episode is not None and goes_on and _has_failed(found[-1]):
-                truths = readings.of(episode.captured_at(k), favour=favour)
-                if truths.truth(at_once, k) is not Truth.FALSE:
+                truths = readings.of(episode.captured, favour=favour)
+                blurred = episode.blurred is not None and k >= episode.blurred
+                if not blurred and truths.truth(at_once, k) is not Truth.FALSE:
                     found.append(Followed(episode.restarted(k)))
         _decide(found, view, reached)
     return found

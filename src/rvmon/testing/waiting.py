@@ -45,6 +45,15 @@ class Waiting:
         word = replace(start.word, letters=letters, end=moment.end, reached=moment.reached)
         self.triggered = start.triggered
         self._requirement = requirement
+        sure = start.sure
+        stop = start.stop
+        self._void = (
+            counts_in_favour(requirement)
+            and stop is not None
+            and start.word.letters[stop].instant <= moment.end
+            and start.view.is_unborn(stop)
+        )
+        self._in_doubt = sure is None or start.word.letters[sure].instant > moment.end
         self._simplified = simplified
         self._start = start
         self._letters = letters
@@ -67,8 +76,11 @@ class Waiting:
     def deadline(self) -> int | None:
         """The last instant before time alone decides, if nothing more comes; to be asked last.
 
-        Only at the end of a window can time alone decide something: all of these are tried.
+        Only at the end of a window can time alone decide something: all of these are tried. What
+        is in doubt, or was over before all was born, is told to have none.
         """
+        if self._in_doubt or self._void:
+            return None
         highs = {window.high for window in intervals(self._requirement.consequent)}
         ends = {
             self._letters[position].instant + high
@@ -98,9 +110,12 @@ class Waiting:
         """Parts whose truth at a position since the trigger is open, as a record names them."""
         for part in self._parts:
             for position in self._concerned:
-                if self._truths.truth(part, position) is Truth.UNKNOWN:
+                signs = (
+                    self._truths.truth(part, position, positive=sign) for sign in (True, False)
+                )
+                if Truth.UNKNOWN in signs:
                     yield from _named(part, self._letters[position].instant)
-        if self._requirement.mode is Mode.WHENEVER:
+        if self._requirement.mode is Mode.WHENEVER or self._in_doubt:
             # It is owed at every position to come, which goes by its name.
             yield f"`{format_formula(self._requirement.consequent)}`"
         held = any(isinstance(part, Unary) and part.op is UnaryOp.HELD for part in self._parts)

@@ -165,7 +165,9 @@ def test_silence_is_found() -> None:
     assert any("returned []" in text for text in run(Silent))
     case = Case(spec_of(requirement(p)), timeline(p="1"))
     assert disagreements(case, Silent) == []
-    assert disagreements(case, Silent, online=True) == ["action 1 decides [('R', 1)], returned []"]
+    assert disagreements(case, Silent, online=True) == [
+        "action 1 decides [('R', False, 1)], returned []"
+    ]
 
 
 def test_late_samples_have_to_be_refused() -> None:
@@ -179,7 +181,7 @@ def test_open_attempts_and_their_dues_are_looked_at() -> None:
     """What is open is compared, and what time alone decided had to be due."""
     case = Case(spec_of(requirement(eventually(p, 0, 3))), (*timeline(p="0"), 4), 4)
     [found] = online_differences(Judgement(case), Forgetful(case))
-    assert found == "action 1 leaves open [('R', 1, 0)], shown are []"
+    assert found == "action 1 leaves open [('R', False, 1, 0)], shown are []"
 
     class Unexpecting(Echo):
         next_due = None

@@ -90,7 +90,12 @@ def test_a_moment_of_a_run_is_the_run_up_to_there(time: TimeModel) -> None:
             decided, waiting = ({}, {}) if moment is None else judgement.at(moment)
             wanted = {k: o for k, o in told.items() if o.decision is Decision.PREFIX}
             assert decided == wanted
-            assert {key: one.triggered for key, one in waiting.items()} == {
+            # What is in doubt may be met by the end: then a trace says nothing of it.
+            assert {
+                key: one.triggered
+                for key, one in waiting.items()
+                if not (key[1] and key not in told)
+            } == {
                 key: outcome.triggered for key, outcome in told.items() if key not in wanted
             }
             seen.update(decided=len(decided), waiting=len(waiting))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from rvmon.spec.checked import TimeModel
-from rvmon.testing.attempts import obligation, starts
+from rvmon.testing.attempts import Readings, obligation
 from rvmon.testing.differential import case_of
+from rvmon.testing.follow import follow
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.kleene import Truth
-from rvmon.testing.oracle import follow
-from rvmon.testing.truths import Truths
+from rvmon.testing.truths import Rest
 from rvmon.testing.wording import word_of
 
 
@@ -24,19 +24,14 @@ def test_memory_changes_nothing(time: TimeModel) -> None:
         word = word_of(
             case.spec, case.samples, end=case.end, advances=case.advances, names=case.names
         )
-        for name, followed in follow(case.spec, word, case.samples).items():
-            requirement = case.spec.requirements[name]
-            assert [one.start.position for one in followed] == [
-                start.position for start in starts(requirement, word)
-            ]
-            for one in followed:
+        for requirement in case.spec.requirements.values():
+            for one in follow(requirement, word).attempts:
                 start = one.start
-                first = word.letters[start.position].instant
                 decided = None
-                for reached in range(first, word.reached + 1):
-                    fresh = Truths(start.word, start.captured)
+                for reached in range(start.triggered, word.reached + 1):
+                    fresh = Readings(start.word, Rest.UNKNOWN)
                     fresh.reach(reached)
-                    if obligation(requirement, start, fresh) is not Truth.UNKNOWN:
+                    if obligation(start, fresh) is not Truth.UNKNOWN:
                         decided = reached
                         break
                 assert decided == (None if one.decided is None else one.decided[0])

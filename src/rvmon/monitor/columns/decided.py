@@ -10,6 +10,7 @@ import numpy as np
 
 from rvmon.automaton.machine import Token
 from rvmon.formula.state import UNKNOWN
+from rvmon.monitor.columns.tables import Table
 from rvmon.monitor.columns.track import UNSEEN
 from rvmon.monitor.reasons import Finding
 from rvmon.monitor.witness import Witness
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Decisions:
+class Decisions(Table):
     """What was noted of decided attempts of one requirement; all arrays have an entry for each.
 
     Attributes:

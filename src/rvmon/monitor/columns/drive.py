@@ -6,16 +6,18 @@ lead it on, or its clock enters another region, to the next.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rvmon.automaton.location import PASSED
 from rvmon.formula.state import TRUE, UNKNOWN
+from rvmon.monitor.columns.attempts import Tokens
 from rvmon.monitor.columns.axis import FAR, Axis
 from rvmon.monitor.columns.letters import Letters
 from rvmon.monitor.columns.moves import Moves
+from rvmon.monitor.columns.tables import Table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,65 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True, eq=False)
-class Tokens:
-    """Where attempts are; all arrays have an entry per attempt.
-
-    Attributes:
-        location: of the automaton.
-        anchor: the instant at which the clock was started.
-        region: of the clock, as far as time has come.
-        place: the position up to which it was driven.
-    """
-
-    location: Numbers
-    anchor: Numbers
-    region: Numbers
-    place: Numbers
-
-    def __len__(self) -> int:
-        return len(self.place)
-
-    def copy(self) -> Tokens:
-        """The same, independent from now on."""
-        return self.pick(np.arange(len(self)))
-
-    def pick(self, which: Any) -> Tokens:
-        """Some of them."""
-        return Tokens(
-            self.location[which], self.anchor[which], self.region[which], self.place[which]
-        )
-
-    def differ(self, other: Tokens) -> NDArray[np.bool_]:
-        """Which attempts are not where those of the other are."""
-        found = np.zeros(len(self), bool)
-        for one in fields(self):
-            found |= getattr(self, one.name) != getattr(other, one.name)
-        return found
-
-    def put(self, which: Any, others: Tokens) -> None:
-        """Replace some of them."""
-        for one in fields(self):
-            getattr(self, one.name)[which] = getattr(others, one.name)
-
-
-def joined_tokens(first: Tokens, second: Tokens) -> Tokens:
-    """The attempts of both."""
-    return Tokens(
-        *[
-            np.concatenate((getattr(first, one.name), getattr(second, one.name)))
-            for one in fields(Tokens)
-        ]
-    )
-
-
-def starting(moves: Moves, places: Numbers) -> Tokens:
-    """Attempts that start at these places."""
-    none = np.zeros(len(places), np.int64)
-    return Tokens(none + moves.initial, none.copy(), none.copy(), places - 1)
-
-
-@dataclass(slots=True, eq=False)
-class Outcome:
+class Outcome(Table):
     """What became of attempts in a piece; all arrays have an entry per attempt.
 
     Attributes:
@@ -91,6 +35,7 @@ class Outcome:
         location: before the decision.
         anchor: before the decision.
         place: the position, of which the letter was, at or before the decision.
+        reading: of the letters, by which it was decided: 0 for the worse, 1 for the better.
     """
 
     decided: Numbers
@@ -98,6 +43,7 @@ class Outcome:
     location: Numbers
     anchor: Numbers
     place: Numbers
+    reading: Numbers
 
 
 _FEW = 12
@@ -132,6 +78,7 @@ class Driver:
             tokens.location.copy(),
             tokens.anchor.copy(),
             tokens.place.copy(),
+            np.zeros(count, np.int64),
         )
         active = np.flatnonzero(tokens.location > PASSED)
         now = tokens.pick(active)
@@ -157,7 +104,7 @@ class Driver:
             if not parts:
                 return self._outcome
             active = np.concatenate([numbers for numbers, _ in parts])
-            now = parts[0][1] if len(parts) == 1 else joined_tokens(parts[0][1], parts[1][1])
+            now = parts[0][1] if len(parts) == 1 else Tokens.joined([parts[0][1], parts[1][1]])
         for index, number in enumerate(active.tolist()):
             self._drive_one(number, now, index, tokens)
         return self._outcome

@@ -14,7 +14,7 @@ from rvmon.formula.state import Leaf
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
-from rvmon.monitor.columns.moves import Moves, moves_of
+from rvmon.monitor.columns.moves import moves_of
 from rvmon.monitor.columns.outages import ColumnOutages
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
@@ -53,7 +53,7 @@ class ColumnJudge:
     Args:
         compiled: the specification.
         chosen: ids of the requirements that are judged, by this or otherwise.
-        moves: of the automata of those that this judges.
+        ids: of those that this judges.
         names: of the columns.
 
     Attributes:
@@ -64,19 +64,22 @@ class ColumnJudge:
         self,
         compiled: CompiledSpec,
         chosen: Sequence[str],
-        moves: Mapping[str, Moves],
+        ids: frozenset[str],
         names: frozenset[str],
     ) -> None:
-        self.ids = frozenset(moves)
+        self.ids = ids
         requirements = compiled.requirements
         self._chosen = [one for name, one in requirements.items() if name in chosen]
-        own = [one for one in self._chosen if one.requirement.id in moves]
+        own = [one for one in self._chosen if one.requirement.id in ids]
         plan = plan_requirements(compiled, own)
         self._ledger = Ledger()
-        self._rules = [
-            ColumnRule(one, plan, moves[one.requirement.id], self._ledger) for one in own
+        self._rules = [ColumnRule(one, plan, self._ledger) for one in own]
+        self._hidden = [
+            ColumnRule(one.hidden, plan, self._ledger, hidden=True)
+            for one in own
+            if one.hidden is not None
         ]
-        asked = frozenset[int]().union(*(rule.nodes for rule in self._rules))
+        asked = frozenset[int]().union(*(rule.nodes for rule in self._all_rules))
         self._stale: dict[str, int] = {}
         """Signals with the time after which they become stale, where that shows by itself."""
         if plan.gap is not None:
@@ -110,13 +113,17 @@ class ColumnJudge:
             self._health.count_columns(own, piece)
             self._outages.take(own, piece)
             made = self._timeline.take(own, piece)
-            for rule in self._rules:
+            for rule in self._all_rules:
                 rule.take(made, int(own[-1]))
             self._last = int(own[-1])
         if self._health.began is None and len(times):
             self._health.began = int(times[0])
             for slot in self._inputs.slots.values():
                 slot.first_at = self._health.began
+
+    @property
+    def _all_rules(self) -> Sequence[ColumnRule]:
+        return [*self._rules, *self._hidden]
 
     @property
     def began(self) -> bool:
@@ -142,18 +149,21 @@ class ColumnJudge:
         end = last if until is None else max(last, until)
         piece = self._timeline.last_piece(end)
         self._outages.pass_to(end)
-        for rule in self._rules:
+        for rule in self._all_rules:
             rule.take(piece, end)
             stands_at = last if piece.axis.start == piece.axis.stop else piece.axis.stop - 1
             rule.finish(self._timeline, end, stands_at, self._outages.at)
-        kept = [*self._ledger.flush(), *(() if others is None else others.attempts)]
+        kept = [*self._ledger.close(), *(() if others is None else others.attempts)]
         self._note_stale(np.array([last, end + 1]))
         health = self._health.report(self._chosen, self._inputs, None)
         ids = [one.requirement.id for one in self._chosen]
         attempts, found = _assembled(ids, self._rules, kept)
+        told = {rule.id: rule.is_told for rule in self._rules}
+        verdicts = {} if others is None else dict(others.verdicts)
         return Report(
             verdicts={
-                name: fold(verdict for verdict, count in counts.items() if count)
+                name: verdicts.get(name)
+                or fold((one for one, count in counts.items() if count), told=told[name])
                 for name, counts in found.items()
             },
             attempts=attempts,
@@ -185,25 +195,31 @@ def columns_judge(
     if spec.max_delay is not None or gap not in (None, 1):
         return None
     stale = {name for name in names & spec.signals.keys() if spec.signals[name].stale_after}
-    found = {}
-    for name, one in compiled.requirements.items():
-        if name in only and not stale & one.reads and _looks_at_present(one):
-            moves = None if one.automaton is None else moves_of(one.automaton, gap)
-            if moves is not None:
-                found[name] = moves
-    if not found:
-        return None
-    return ColumnJudge(compiled, only, found, names)
+    found = frozenset(
+        name
+        for name, one in compiled.requirements.items()
+        if name in only
+        and not stale & one.reads
+        and _looks_at_present(one)
+        # What judges attempts in doubt is only looked at where there are some.
+        and one.automaton is not None
+        and moves_of(one.automaton, gap) is not None
+    )
+    return ColumnJudge(compiled, only, found, names) if found else None
 
 
 def _looks_at_present(requirement: CompiledRequirement) -> bool:
     """Whether a requirement is started by, and asks for, what rows say of the present."""
+    judged = [requirement, *(() if requirement.hidden is None else (requirement.hidden,))]
     return (
         can_generate(requirement)
         and requirement.obligation.trigger is not None
-        and len(requirement.leaves) <= _MOST_LEAVES
+        and all(len(one.leaves) <= _MOST_LEAVES for one in judged)
         and all(
-            _is_present(state.leaf) for state, _ in requirement.leaves if state.leaf is not None
+            _is_present(state.leaf)
+            for one in judged
+            for state, _ in one.leaves
+            if state.leaf is not None
         )
     )
 
@@ -245,23 +261,24 @@ def _assembled(
     for one in kept:
         counts[one.requirement][one.verdict] += 1
         decided = FAR if one.decided is None else one.decided
-        others.append((decided, rank[one.requirement], one.number))
+        others.append((decided, rank[one.requirement], one.in_doubt, one.number))
     return JudgedAttempts([own for _, own in parts], kept, _order(parts, others)), counts
 
 
 def _order(
-    parts: Sequence[tuple[int, DecidedAttempts]], others: Sequence[tuple[int, int, int]]
+    parts: Sequence[tuple[int, DecidedAttempts]], others: Sequence[tuple[int, int, bool, int]]
 ) -> NDArray[np.int64]:
     """The numbers of attempts by instant of decision, requirement and number.
 
     Args:
         parts: attempts that were decided, with the rank of their requirement.
-        others: of the other attempts the instant, the rank and the number.
+        others: of the other attempts the instant, the rank, whether in doubt, and the number.
     """
-    keys = np.array(others, np.int64).reshape(-1, 3)
+    keys = np.array(others, np.int64).reshape(-1, 4)
     decided = np.concatenate([*(part.decisions.decided for _, part in parts), keys[:, 0]])
     if bool((decided[1:] > decided[:-1]).all()):
         return np.arange(len(decided))
-    number = np.concatenate([*(part.decisions.number for _, part in parts), keys[:, 2]])
+    number = np.concatenate([*(part.decisions.number for _, part in parts), keys[:, 3]])
+    in_doubt = np.concatenate([np.zeros(len(decided) - len(keys), np.int64), keys[:, 2]])
     ranks = np.concatenate([*(np.full(len(part), rank) for rank, part in parts), keys[:, 1]])
-    return np.lexsort((number, ranks, decided))
+    return np.lexsort((number, in_doubt, ranks, decided))

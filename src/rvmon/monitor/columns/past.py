@@ -11,6 +11,7 @@ from rvmon.monitor.columns.axis import FAR, Axis
 from rvmon.monitor.columns.stretches import (
     between,
     clipped,
+    holds_at_last,
     in_at_least,
     joined,
     nowhere,
@@ -39,12 +40,23 @@ class Previous:
     def take(self, operands: Sequence[Toggles], axis: Axis) -> Toggles:
         """Where it holds in a piece, from where the operand does."""
         (operand,) = operands
-        moved = clipped(operand + 1, axis.start, axis.stop)
-        if self._held and axis.start < axis.stop:
-            moved = in_at_least(1, [between(axis.start, axis.start + 1), moved])
-        if axis.start < axis.stop:
-            self._held = len(operand) > 0 and bool(operand[-1] == axis.stop)
+        moved = moved_on(operand, self._held, axis)
+        self._held = holds_at_last(operand, axis.stop) if axis.start < axis.stop else self._held
         return moved
+
+
+def moved_on(toggles: Toggles, before: bool, axis: Axis) -> Toggles:
+    """The places of a piece of which the one before is in a set.
+
+    Args:
+        toggles: the set.
+        before: whether the place before the piece is in it.
+        axis: of the piece.
+    """
+    moved = clipped(toggles + 1, axis.start, axis.stop)
+    if before and axis.start < axis.stop:
+        moved = in_at_least(1, [between(axis.start, axis.start + 1), moved])
+    return moved
 
 
 class Since:

@@ -11,9 +11,10 @@ import numpy as np
 
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.leaves import reads
-from rvmon.formula.state import Leaf
+from rvmon.formula.state import Leaf, Missing, Unborn
 from rvmon.monitor.build import build_monitor
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
+from rvmon.monitor.columns.reading import first_known
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.health import HealthLog, by_name, holds_nan
 from rvmon.monitor.planned import can_feed, plan_requirements
@@ -109,6 +110,11 @@ def _rows_that_matter(
     if any(holds_nan(own[name]) for name in plan.spec.ignoring & own.keys()):
         # What such a row leaves as it was, the row alone does not say.
         matters[:] = True
+    for name in own.keys() & set(plan.signals):
+        # A birth may change what is made of a value that stays unknown.
+        birth = first_known(own[name])
+        if birth < len(matters):
+            matters[birth] = True
     for place, own_reads in plan.graph.reads.items():
         leaf = plan.graph.nodes[place].leaf
         if leaf is None or not own_reads.names & own.keys():
@@ -170,6 +176,10 @@ def _truth(leaf: Leaf, columns: Columns) -> NDArray[np.int8] | None:
             values = columns[name]
             known: NDArray[np.int8] = (values == values).astype(np.int8)
             return known
+        case Missing(atom=atom):
+            return _truth(atom, columns)
+        case Unborn(signals=signals) if not any(moved for _, moved in signals):
+            return np.zeros(len(next(iter(columns.values()))), np.int8)
         case Compare():
             try:
                 truth = compared(leaf, columns, len(next(iter(columns.values()))))

@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.outages import Outage
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.monitor.bench import Open
+from rvmon.monitor.columns.attempts import Attempts, Tokens, joined_attempts, starting_attempts
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
-from rvmon.monitor.columns.drive import (
-    Driver,
-    Outcome,
-    Tokens,
-    joined_tokens,
-    starting,
-)
-from rvmon.monitor.columns.letters import Letters, letters_along
-from rvmon.monitor.columns.moves import Moves, joint_moves
+from rvmon.monitor.columns.drive import Outcome
+from rvmon.monitor.columns.episodes import Episodes
+from rvmon.monitor.columns.judging import Judging
+from rvmon.monitor.columns.leaves import NotByColumnsError
+from rvmon.monitor.columns.letters import letters_along
+from rvmon.monitor.columns.moves import Moves, moves_of
 from rvmon.monitor.columns.starts import Starts
+from rvmon.monitor.columns.stretches import first_in
 from rvmon.monitor.columns.timeline import Piece, Timeline
 from rvmon.monitor.columns.track import UNSEEN, Track
 from rvmon.monitor.compiled import CompiledRequirement
@@ -46,41 +44,57 @@ class ColumnRule:
     """Starts the attempts of a requirement and drives them, a piece of the trace at a time.
 
     Args:
-        compiled: the requirement.
+        compiled: the requirement, or what judges its attempts in doubt.
         plan: that it is part of.
-        moves: its automaton.
         ledger: takes the records of what the end settles.
+        hidden: whether these are its attempts in doubt.
+
+    Attributes:
+        id: of the requirement.
+        is_told: whether its trigger was ever true or false.
     """
 
     def __init__(
-        self, compiled: CompiledRequirement, plan: Plan, moves: Moves, ledger: Ledger
+        self, compiled: CompiledRequirement, plan: Plan, ledger: Ledger, *, hidden: bool = False
     ) -> None:
         self.id = compiled.requirement.id
         self._compiled = compiled
         self._plan = plan
-        self._moves = moves
         self._ledger = ledger
+        self._is_hidden = hidden
         self._witness = Witness(compiled, plan, ledger)
-        trigger = compiled.obligation.trigger
-        self._trigger = -1 if trigger is None else plan.graph.index[trigger]
-        requirement = compiled.requirement
-        self._starts = Starts(requirement.pulse, requirement.mode is Mode.WHENEVER)
-        self._count = 0
-        none = np.empty(0, np.int64)
-        self._number, self._triggered, self._seen = none, none, none
-        self._doubted, self._doubt_seen = none, none
-        """Since when unknown input makes a difference, `FAR` if it does not, and what was seen."""
-        self._worse = starting(moves, none)
-        self._better: Tokens | None = None
+        obligation, requirement = compiled.obligation, compiled.requirement
+        self._trigger = self._node(obligation.trigger)
+        self._again = self._node(obligation.again)
+        self._unborn = self._node(obligation.unborn)
+        self._told = self._node(obligation.told)
+        self.is_told = self._told < 0
+        self._episodes = Episodes() if requirement.mode is Mode.WHENEVER else None
+        self._starts = Starts(requirement.pulse, hidden or self._episodes is not None)
+        self._count, self._doubts = 0, 0
+        self._open = _none()
+        self._void: list[Attempts] = []
         self._tracks = [Track() for _ in self._witness.places]
         self._letters = (0, 0)
-        """Of the last place."""
+        """Of the last place, if there are open attempts."""
         self._decided: list[Decisions] = []
+
+    def _node(self, state: State | None) -> int:
+        return -1 if state is None else self._plan.graph.index[state]
+
+    @cached_property
+    def _moves(self) -> Moves:
+        automaton = self._compiled.automaton
+        moves = None if automaton is None else moves_of(automaton, self._plan.gap)
+        if moves is None:
+            raise NotByColumnsError
+        return moves
 
     @property
     def nodes(self) -> frozenset[int]:
         """The nodes of which it needs stretches."""
-        return frozenset((self._trigger, *self._witness.places))
+        asked = (self._trigger, self._again, self._unborn, self._told, *self._witness.places)
+        return frozenset(place for place in asked if place >= 0)
 
     def take(self, piece: Piece, limit: int) -> None:
         """Judge a piece.
@@ -88,180 +102,119 @@ class ColumnRule:
         Args:
             piece: of the trace.
             limit: the instant that time comes to.
+
+        Raises:
+            NotByColumnsError: there are attempts in doubt that have to be judged one by one.
         """
         axis = piece.axis
+        self.is_told = self.is_told or len(piece.truths[self._told].must) > 0
         begun = self._starts.take(piece.truths[self._trigger], axis)
-        self._add(begun, axis.instants(begun), piece.seen(self._witness.leaves, begun))
         truths = [piece.truths[place] for place in self._witness.places]
-        starts, letters = letters_along(self._compiled.alphabet, truths, axis)
         for track, truth in zip(self._tracks, truths, strict=True):
             track.take(truth, axis)
-        known = letters[0] is letters[1]
-        if not known:
-            self._doubt(piece, starts, letters)
-        before = None if known else self._one_run()
-        outcome, reading = self._driven(piece, starts, letters, limit)
-        if before is not None:
-            together, tokens = before
-            still = outcome.decided[together] == FAR
-            self._note_parted(piece, together[still], tokens.pick(still), starts, letters, limit)
-        self._note(piece, outcome, starts, letters, reading)
+        waits = self._episodes is not None and self._episodes.failed_at is not None
+        if not len(begun) and not len(self._open) and not waits:
+            return
+        starts, letters = letters_along(self._compiled.alphabet, truths, axis)
+        judging = Judging(self._moves, self._witness.leaves, piece, (starts, letters), limit)
+        attempts, outcome = self._judged(piece, begun, judging)
+        self._number(piece, attempts)
+        self._note(piece, attempts, outcome, starts, letters)
         if axis.start < axis.stop:
             self._letters = (letters[0].item(-1), letters[1].item(-1))
 
-    def _add(self, begun: Numbers, triggered: Numbers, seen: Numbers) -> None:
-        if not len(begun):
-            return
-        fresh = starting(self._moves, begun)
-        numbers = np.arange(self._count + 1, self._count + 1 + len(begun))
-        self._count += len(begun)
-        self._number = np.concatenate((self._number, numbers))
-        self._triggered = np.concatenate((self._triggered, triggered))
-        self._seen = np.concatenate((self._seen, seen))
-        self._doubted = np.concatenate((self._doubted, np.full(len(begun), FAR)))
-        self._doubt_seen = np.concatenate((self._doubt_seen, seen))
-        self._worse = joined_tokens(self._worse, fresh)
-        if self._better is not None:
-            self._better = joined_tokens(self._better, fresh)
+    def _judged(self, piece: Piece, begun: Numbers, judging: Judging) -> tuple[Attempts, Outcome]:
+        """The attempts that are open or start in a piece, and what becomes of them."""
+        axis, truths = piece.axis, piece.truths
 
-    def _doubt(self, piece: Piece, starts: Numbers, letters: tuple[Numbers, Numbers]) -> None:
-        """Note where both readings of the letters part for the first time in an attempt."""
-        classes = self._moves.class_of
-        apart = np.flatnonzero(classes[letters[0]] != classes[letters[1]])
-        none = np.flatnonzero(self._doubted == FAR)
-        if not len(apart) or not len(none):
-            return
-        stops = np.append(starts, piece.axis.stop)[apart + 1]
-        following = self._worse.place[none] + 1
-        found = np.searchsorted(stops, following, "right")
-        none, following, found = (one[found < len(apart)] for one in (none, following, found))
-        places = np.maximum(starts[apart[found]], following)
-        self._doubted[none] = piece.axis.instants(places)
-        self._doubt_seen[none] = piece.seen(self._witness.leaves, places)
+        def make(places: Numbers, stop: Numbers) -> Attempts:
+            seen = piece.seen(self._witness.leaves, places)
+            return starting_attempts(self._moves.initial, places, stop, axis.instants(places), seen)
 
-    def _one_run(self) -> tuple[Numbers, Tokens]:
-        """The attempts of which both runs are at one place, and where."""
-        worse, better = self._worse, self._better
-        together = (
-            np.arange(len(worse)) if better is None else np.flatnonzero(~worse.differ(better))
-        )
-        return together, worse.pick(together)
+        if self._episodes is None:
+            stop = np.full(len(begun), FAR)
+        else:
+            stop = _stops(truths[self._trigger].may, begun, axis.stop)
+        attempts = make(begun, stop)
+        if len(self._open):
+            attempts = joined_attempts([self._open, attempts])
+        if self._episodes is None:
+            return attempts, judging.judge(attempts)
+        own = truths[self._trigger], truths[self._again], truths.get(self._unborn)
+        return self._episodes.take(attempts, make, judging, axis, own)
 
-    def _note_parted(
-        self,
-        piece: Piece,
-        together: Numbers,
-        tokens: Tokens,
-        starts: Numbers,
-        letters: tuple[Numbers, Numbers],
-        limit: int,
-    ) -> None:
-        """Note of open attempts of which the runs parted in the piece where they first did.
-
-        Args:
-            piece: of the trace.
-            together: the attempts whose runs were at one place before it.
-            tokens: their place.
-            starts: of the stretches of one letter.
-            letters: of the stretches, in both readings.
-            limit: the instant that time has come to.
-        """
-        if self._better is None:
-            return
-        parted = self._worse.differ(self._better)[together]
-        if not parted.any():
-            return
-        together, tokens = together[parted], tokens.pick(parted)
-        following = tokens.place + 1
-        classes, count = self._moves.class_of, self._moves.targets.shape[1]
-        pairs, joint = np.unique(
-            classes[letters[0]] * count + classes[letters[1]], return_inverse=True
-        )
-        moves = joint_moves(self._moves, *np.divmod(pairs, count))
-        made = Letters(moves, starts, joint, piece.axis.stop)
-        came = Driver(moves, made, piece.axis, limit).drive(tokens)
-        stretch = np.searchsorted(starts, came.place, "right") - 1
-        places = np.maximum(starts[stretch], following)
-        self._doubted[together] = piece.axis.instants(places)
-        self._doubt_seen[together] = piece.seen(self._witness.leaves, places)
-
-    def _driven(
-        self, piece: Piece, starts: Numbers, letters: tuple[Numbers, Numbers], limit: int
-    ) -> tuple[Outcome, Numbers]:
-        """The outcome of all open attempts, and by which reading each one was decided."""
-        axis, moves = piece.axis, self._moves
-
-        def driven(reading: int, tokens: Tokens) -> Outcome:
-            made = Letters(moves, starts, letters[reading], axis.stop)
-            return Driver(moves, made, axis, limit).drive(tokens)
-
-        if self._better is None and letters[0] is letters[1]:
-            worse = driven(0, self._worse)
-            return worse, np.zeros(len(worse.decided), np.int64)
-        if self._better is None:
-            self._better = self._worse.copy()
-        worse, better = driven(0, self._worse), driven(1, self._better)
-        passed = (worse.decided < FAR) & worse.passed
-        failed = (better.decided < FAR) & ~better.passed
-        # What one reading alone has decided waits for the other.
-        self._worse.location[(worse.decided < FAR) & ~passed] = FAILED
-        self._better.location[(better.decided < FAR) & ~failed] = PASSED
-        made = Outcome(
-            np.where(passed, worse.decided, np.where(failed, better.decided, FAR)),
-            passed,
-            np.where(failed, better.location, worse.location),
-            np.where(failed, better.anchor, worse.anchor),
-            np.where(failed, better.place, worse.place),
-        )
-        return made, failed.astype(np.int64)
+    def _number(self, piece: Piece, attempts: Attempts) -> None:
+        """Number those that are new, and those of which it is known now that they are sure."""
+        start = attempts.start
+        if self._is_hidden:
+            true_at = np.full(len(start), FAR)
+        elif self._episodes is None:
+            true_at = start
+        else:
+            must = piece.truths[self._trigger].must
+            true_at = first_in(must, np.maximum(start, piece.axis.start), FAR)
+        unsure = attempts.number == 0
+        doubtful = np.flatnonzero(unsure & (attempts.doubtful == 0) & (true_at != start))
+        attempts.doubtful[doubtful] = self._doubts + 1 + np.arange(len(doubtful))
+        self._doubts += len(doubtful)
+        sure = np.flatnonzero(unsure & (true_at < attempts.stop))
+        attempts.number[sure] = self._count + 1 + np.arange(len(sure))
+        self._count += len(sure)
 
     def _note(
         self,
         piece: Piece,
+        attempts: Attempts,
         outcome: Outcome,
         starts: Numbers,
         letters: tuple[Numbers, Numbers],
-        reading: Numbers,
     ) -> None:
         """Note what was decided, and keep the rest."""
-        done = np.flatnonzero(outcome.decided < FAR)
-        if not len(done):
-            return
-        places, passed = outcome.place[done], outcome.passed[done]
+        is_open = outcome.decided == FAR
+        told = ~is_open & (attempts.number > 0) & ~(attempts.void & outcome.passed)
+        void = ~is_open & attempts.void & outcome.passed
+        if void.any():
+            self._void.append(attempts.pick(void))
+        if told.any():
+            done = attempts.pick(told), outcome.pick(told)
+            self._decided.append(self._decisions(piece, *done, starts, letters))
+        if not is_open.all():
+            attempts = attempts.pick(is_open)
+        better = attempts.better
+        if better is not None and not better.differ(attempts.worse).any():
+            attempts.better = None
+        self._open = attempts
+
+    def _decisions(
+        self,
+        piece: Piece,
+        attempts: Attempts,
+        outcome: Outcome,
+        starts: Numbers,
+        letters: tuple[Numbers, Numbers],
+    ) -> Decisions:
+        places = outcome.place
         stretch = np.searchsorted(starts, places, "right")
         letter = np.append(self._letters[0], letters[0])[stretch]
         if letters[1] is not letters[0] or self._letters[0] != self._letters[1]:
             other = np.append(self._letters[1], letters[1])[stretch]
-            letter = np.where(reading[done] == 0, letter, other)
-        failed = places[~passed]
+            letter = np.where(outcome.reading == 0, letter, other)
+        failed = places[~outcome.passed]
         history = np.empty((len(failed), len(self._tracks), 4), np.int64)
         for index, track in enumerate(self._tracks):
             history[:, index] = track.at(failed)
-        self._decided.append(
-            Decisions(
-                self._number[done],
-                self._triggered[done],
-                outcome.decided[done],
-                passed,
-                outcome.location[done],
-                outcome.anchor[done],
-                letter,
-                self._seen[done],
-                piece.seen(self._witness.leaves, places),
-                history,
-            )
+        return Decisions(
+            attempts.number,
+            attempts.triggered,
+            outcome.decided,
+            outcome.passed,
+            outcome.location,
+            outcome.anchor,
+            letter,
+            attempts.seen,
+            piece.seen(self._witness.leaves, places),
+            history,
         )
-        self._keep(outcome.decided == FAR)
-
-    def _keep(self, which: NDArray[np.bool_]) -> None:
-        self._number, self._triggered = self._number[which], self._triggered[which]
-        self._seen = self._seen[which]
-        self._doubted, self._doubt_seen = self._doubted[which], self._doubt_seen[which]
-        self._worse = self._worse.pick(which)
-        if self._better is not None:
-            self._better = self._better.pick(which)
-            if not self._better.differ(self._worse).any():
-                self._better = None
 
     def finish(self, timeline: Timeline, end: int, last: int, outages_at: OutagesAt) -> None:
         """Settle what is undecided.
@@ -279,25 +232,39 @@ class ColumnRule:
             for truth, instant in zip((FALSE, TRUE), ends, strict=True):
                 until[3 * place + truth] = None if instant == UNSEEN else instant
             until[3 * place + UNKNOWN] = None
+        if self._episodes is not None and self._unborn >= 0:
+            values[self._unborn] = TRUE if self._episodes.is_unborn else FALSE
         flow = Stood(self._plan, values, since, until, {})
         flow.origin, flow.position = timeline.origin, last
-        opened = [self._opened(index, outages_at) for index in range(len(self._number))]
+        opened = self._opened(self._open, outages_at)
         judge = self._witness.judge(flow, self._letters, last, opened)
+        if opened and self._episodes is not None and self._open.stop[-1] == FAR:
+            opened[-1].clouded = self._episodes.is_clouded
+            opened[-1].void |= self._unborn >= 0 and self._episodes.is_unborn
         for attempt in opened:
             self._ledger.ended(judge, attempt, end, end)
+        for attempts in self._void:
+            for attempt in self._opened(attempts, outages_at):
+                self._ledger.say_nothing(judge, attempt)
 
-    def _opened(self, index: int, outages_at: OutagesAt) -> Open:
+    def _opened(self, attempts: Attempts, outages_at: OutagesAt) -> list[Open]:
+        return [self._opened_one(attempts, index, outages_at) for index in range(len(attempts))]
+
+    def _opened_one(self, attempts: Attempts, index: int, outages_at: OutagesAt) -> Open:
         leaves = self._witness.leaves
-        seen = self._witness.unpacked(self._seen.item(index))
-        made = Open(self._triggered.item(index), self._token(self._worse, index), seen)
-        made.number = self._number.item(index)
-        if self._better is not None:
-            better = self._token(self._better, index)
+        seen = self._witness.unpacked(attempts.seen.item(index))
+        made = Open(attempts.triggered.item(index), self._token(attempts.worse, index), seen)
+        made.number = attempts.number.item(index)
+        made.doubtful_number = attempts.doubtful.item(index)
+        made.sure = made.number > 0
+        made.void = attempts.void.item(index)
+        if attempts.better is not None:
+            better = self._token(attempts.better, index)
             made.better = None if better == made.token else better
-        instant = self._doubted.item(index)
+        instant = attempts.doubted.item(index)
         if instant < FAR:
             values = dict(
-                zip(leaves, self._witness.unpacked(self._doubt_seen.item(index)), strict=True)
+                zip(leaves, self._witness.unpacked(attempts.doubt_seen.item(index)), strict=True)
             )
             flow = Stood(self._plan, values, {}, {}, outages_at(instant))
             made.doubt = self._witness.judge(flow, (0, 0), instant, [])._doubt()
@@ -309,15 +276,18 @@ class ColumnRule:
 
     def decided(self) -> DecidedAttempts:
         """What was decided before the end, by number."""
-        parts = self._decided
-        if not parts:
-            none = np.empty(0, np.int64)
-            made = Decisions(none, none, none, none > 0, none, none, none, none, none, none)
-        else:
-            made = Decisions(
-                *[
-                    np.concatenate([getattr(part, one.name) for part in parts])
-                    for one in fields(Decisions)
-                ]
-            )
+        none = np.empty(0, np.int64)
+        empty = Decisions(none, none, none, none > 0, none, none, none, none, none, none)
+        made = Decisions.joined(self._decided or [empty])
         return DecidedAttempts(self._witness, self._moves.clocked, made)
+
+
+def _none() -> Attempts:
+    none = np.empty(0, np.int64)
+    return starting_attempts(0, none, none, none, none)
+
+
+def _stops(may: Numbers, begun: Numbers, stop: int) -> Numbers:
+    """Where the episodes that begin at places are over; `FAR` if that is behind the piece."""
+    ends = may[1::2][np.searchsorted(may[0::2], begun)]
+    return np.where(ends == stop, FAR, ends)

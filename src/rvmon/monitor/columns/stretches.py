@@ -101,3 +101,27 @@ def clipped(toggles: Toggles, start: int, stop: int) -> Toggles:
 def holds_at(toggles: Toggles, places: Toggles) -> NDArray[np.int8]:
     """For each place 1 if it is in the set, else 0."""
     return (np.searchsorted(toggles, places, "right") & 1).astype(np.int8)
+
+
+def holds_at_last(toggles: Toggles, stop: int) -> bool:
+    """Whether the place before `stop`, where all ends, is in the set."""
+    return len(toggles) > 0 and bool(toggles[-1] == stop)
+
+
+def first_in(toggles: Toggles, places: Toggles, none: int) -> Toggles:
+    """For each place the first from it on that is in the set; `none` if there is none.
+
+    >>> first_in(np.array([2, 4]), np.array([0, 3, 5]), 9).tolist()
+    [2, 3, 9]
+    """
+    following = np.searchsorted(toggles, places, "right")
+    return np.where(following & 1, places, np.append(toggles, none)[following])
+
+
+def unknown_in(must: Toggles, may: Toggles, start: int, stop: int) -> Toggles:
+    """The places at which a truth is unknown.
+
+    >>> unknown_in(np.array([2, 4]), np.array([1, 6]), 0, 9).tolist()
+    [1, 2, 4, 6]
+    """
+    return nowhere() if must is may else in_at_least(2, [may, complement(must, start, stop)])

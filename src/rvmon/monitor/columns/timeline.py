@@ -10,47 +10,18 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import numpy as np
 
 from rvmon.codegen.plan import Plan
-from rvmon.formula.state import Elapsed, Leaf, State, StateOp
+from rvmon.formula.state import Elapsed, State, StateOp
 from rvmon.monitor.columns.axis import Axis, RowAxis, TickAxis
-from rvmon.monitor.columns.leaves import (
-    Columns,
-    NotByColumnsError,
-    Truth,
-    combined,
-    compared,
-    known_truth,
-    negated,
-)
+from rvmon.monitor.columns.doubt import Doubt
+from rvmon.monitor.columns.leaves import Columns, Truth, combined, known_truth, negated
 from rvmon.monitor.columns.past import Previous, Since
+from rvmon.monitor.columns.reading import Flat, Reading, steady
 from rvmon.monitor.columns.stretches import complement, in_at_least, nowhere
-from rvmon.spec.checked import (
-    Bound,
-    BoundAtom,
-    Compare,
-    Constant,
-    EventAtom,
-    Probe,
-    ProbeAtom,
-    SignalAtom,
-)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rvmon.monitor.columns.stretches import Toggles
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Flat:
-    """A formula that looks at one position: its truth per row.
-
-    Attributes:
-        at: at the rows.
-        between: at the positions behind each row, before the next; the same object if it is so.
-    """
-
-    at: Truth
-    between: Truth
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +54,7 @@ class Piece:
             return code
         row = np.searchsorted(self.places, places, "right") - 1
         early = row < 0
-        exact = np.append(self.places, self.axis.start - 1)[row] == places
+        exact = self.places[row] == places if len(self.places) else early
         for leaf in leaves:
             flat = self.flats[leaf]
             value = _at_rows(flat.at, row)
@@ -107,12 +78,12 @@ class Timeline:
 
     def __init__(self, plan: Plan, names: frozenset[str], asked: frozenset[int]) -> None:
         self._plan = plan
-        self._names = names
+        self._reading = Reading(plan.graph.nodes, names)
         nodes = plan.graph.nodes
         self._flat = [False] * len(nodes)
         for place, state in enumerate(nodes):
             operands = plan.graph.operands[place]
-            combines = state.op in (StateOp.NOT, StateOp.AND, StateOp.OR)
+            combines = state.op in (StateOp.NOT, StateOp.AND, StateOp.OR, StateOp.SURE)
             is_leaf = state.leaf is not None and not isinstance(state.leaf, Elapsed)
             self._flat[place] = is_leaf or (combines and all(self._flat[o] for o in operands))
         below = {
@@ -122,12 +93,14 @@ class Timeline:
             for operand in operands
         }
         self._asked = sorted(place for place in asked | below if self._flat[place])
-        self._memory: dict[int, _Memory[Previous] | _Memory[Since]] = {}
+        self._memory: dict[int, _Memory[Previous] | _Memory[Since] | Doubt] = {}
         for place, state in enumerate(nodes):
             if state.op is StateOp.PREVIOUS:
                 self._memory[place] = _Memory(Previous())
             elif state.op is StateOp.SINCE:
                 self._memory[place] = _Memory(Since(state.low, state.high))
+            elif state.op is StateOp.DOUBT:
+                self._memory[place] = Doubt(state.pulse)
         self._origin: int | None = None
         self._last = 0
         self._row = 0
@@ -143,7 +116,6 @@ class Timeline:
             times: int64[n] ticks, n > 0.
             columns: by name, of the same length.
         """
-        first = self._origin is None
         if self._origin is None:
             self._origin = self._last = int(times[0])
             self._last -= 1
@@ -153,7 +125,7 @@ class Timeline:
             places = np.arange(self._row, self._row + len(times))
         else:
             axis, places = TickAxis(self._last + 1, int(times[-1]) + 1), times
-        flats = self._flats(columns, len(times), first=first)
+        flats = self._flats(columns, len(times))
         truths = {place: self._laid_out(place, flats[place], axis, places) for place in self._asked}
         self._row += len(times)
         self._last = int(times[-1])
@@ -177,7 +149,7 @@ class Timeline:
         flats = {}
         truths = {}
         for place, now in self._now.items():
-            flats[place] = _steady(known_truth(np.zeros(1, bool)))
+            flats[place] = steady(known_truth(np.zeros(1, bool)))
             whole = [_all(axis) if held else nowhere() for held in (now.must, now.may)]
             truths[place] = known_truth(whole[0]) if now.known else Truth(*whole)
         return self._piece(axis, none, flats, self._now, truths)
@@ -207,14 +179,15 @@ class Timeline:
 
     # Formulas that look at one position.
 
-    def _flats(self, columns: Columns, rows: int, *, first: bool) -> dict[int, Flat]:
+    def _flats(self, columns: Columns, rows: int) -> dict[int, Flat]:
         made: dict[int, Flat] = {}
         graph = self._plan.graph
+        self._reading.take(columns, rows)
         for place, state in enumerate(graph.nodes):
             if not self._flat[place]:
                 continue
             if state.leaf is not None:
-                made[place] = self._leaf(state.leaf, columns, rows, first=first)
+                made[place] = self._reading.of(state.leaf, state.unborn)
                 continue
             operands = [made[operand] for operand in graph.operands[place]]
             at = _flat_value(state.op, [flat.at for flat in operands])
@@ -223,34 +196,6 @@ class Timeline:
                 between = _flat_value(state.op, [flat.between for flat in operands])
             made[place] = Flat(at, between)
         return made
-
-    def _leaf(self, leaf: Leaf, columns: Columns, rows: int, *, first: bool) -> Flat:
-        no, yes = np.zeros(rows, bool), np.ones(rows, bool)
-        unknown = Truth(no, yes)
-        match leaf:
-            case Constant(value=value):
-                return _steady(known_truth(yes if value else no))
-            case SignalAtom(name=name):
-                return _steady(known_truth(columns[name]) if name in columns else unknown)
-            case EventAtom(name=name):
-                if name not in columns:
-                    return _steady(unknown)
-                return Flat(known_truth(columns[name]), known_truth(no))
-            case Compare():
-                return _steady(compared(leaf, columns, rows))
-            case ProbeAtom(probe=Probe.KNOWN, name=name):
-                if name not in columns:
-                    return _steady(known_truth(no))
-                values = columns[name]
-                return _steady(known_truth(values == values if values.dtype.kind == "f" else yes))
-            case ProbeAtom(probe=Probe.UPDATED, name=name):
-                return Flat(known_truth(yes if name in columns else no), known_truth(no))
-            case BoundAtom(bound=Bound.START):
-                here = no.copy()
-                here[0] = first
-                return Flat(known_truth(here), known_truth(no))
-            case _:
-                raise NotByColumnsError
 
     def _laid_out(self, place: int, flat: Flat, axis: Axis, places: NDArray[np.int64]) -> Truth:
         """The stretches of a flat formula."""
@@ -278,6 +223,8 @@ class Timeline:
                 return combined(operands, partial(in_at_least, len(operands)))
             case StateOp.OR:
                 return combined(operands, partial(in_at_least, 1))
+            case StateOp.SURE:
+                return known_truth(operands[0].must)
             case _:
                 return self._memory[place].take(operands, axis)
 
@@ -316,13 +263,11 @@ def _at_rows(truth: Truth, rows: NDArray[np.int64]) -> NDArray[np.int64]:
     return 2 * must if truth.known else must + truth.may[rows]
 
 
-def _steady(truth: Truth) -> Flat:
-    return Flat(truth, truth)
-
-
 def _flat_value(op: StateOp, operands: list[Truth]) -> Truth:
     if op is StateOp.NOT:
         return negated(operands[0], np.logical_not)
+    if op is StateOp.SURE:
+        return known_truth(operands[0].must)
     sign = np.logical_and if op is StateOp.AND else np.logical_or
     return combined(operands, partial(reduce, sign))
 

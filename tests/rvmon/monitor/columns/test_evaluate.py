@@ -1,6 +1,7 @@
 """Requirements judged by arrays: the report of a monitor, in any blocks, without an object each."""
 
 import pickle
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -137,7 +138,7 @@ def test_no_row_is_no_trace(end):
     """Empty columns trigger nothing."""
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
     report = spec.evaluate({"t": np.empty(0), "p": np.empty(0, bool)}, until=end)
-    assert report.verdicts == {"R1": "NT"}
+    assert report.verdicts == {"R1": "I"}
 
 
 def test_many_attempts_are_shown_in_short():
@@ -195,3 +196,47 @@ def test_what_left_an_attempt_open_is_told_with_its_stretch(case, size):
     assert isinstance(report.attempts, JudgedAttempts)
     assert report.attempts[0].reason == f"left open by the input: `x` {told}"
     assert report == of_a_monitor(spec, columns, int(t[-1]))
+
+
+@pytest.mark.parametrize("rows", [5, 5000])
+def test_each_stretch_of_excess_is_a_failure_in_any_blocks(rows):
+    """An episode goes on after a failure, however many there are, and over borders of blocks."""
+    spec = rvmon.loads("spec s\nsignal v : real\nrequirement R1\n  always v <= 1\n")
+    values = np.tile([0.0, 0.0, 2.0, 2.0, 0.0], 1000)
+    times = np.arange(5000) * 1_000_000
+    blocks = [(times[at : at + rows], {"v": values[at : at + rows]}) for at in range(0, 5000, rows)]
+    report = evaluate_plain(
+        spec._compiled, ["v"], lambda: blocks, only=None, engine="auto", until=None
+    )
+    assert isinstance(report.attempts, JudgedAttempts)
+    assert report.counts["R1"] == {"P": 1, "F": 1000, "I": 0}
+    failed = [attempt for attempt in report.attempts if attempt.verdict == "F"]
+    assert [attempt.number for attempt in failed] == [*range(1, 1001)]
+    assert [attempt.decided for attempt in failed] == times[values > 1][::2].tolist()
+
+
+def test_a_missing_heartbeat_fails_once_per_deadline():
+    """Failures at regular distances, where no row is, are those of the law."""
+    spec = rvmon.loads("spec s\ntime held\nevent beat\nrequirement R1\n  always within 3 ms beat\n")
+    columns = {"t_ns": np.arange(2000) * 1_000_000, "beat": np.zeros(2000, bool)}
+    report = spec.evaluate(columns, time="t_ns")
+    failed = [attempt for attempt in report.attempts if attempt.verdict == "F"]
+    assert isinstance(report.attempts, JudgedAttempts)
+    assert {b.triggered - a.triggered for a, b in pairwise(failed)} == {3_000_002}
+    assert len(failed) == 666
+
+
+def test_what_was_lost_hides_triggers_and_what_was_not_born_hides_none():
+    """Attempts in doubt have their own numbers; nothing passes before all was born."""
+    spec = rvmon.loads(
+        "spec s\nsignal v : real\nsignal w : real\nrequirement R1\n  upon v > 1\n  then w > 0\n"
+        "requirement R2\n  always w > 0\nrequirement R3\n  upon w > 5\n  then v > 0\n"
+    )
+    v = np.zeros(2000)
+    v[:100], v[300:320], v[500:600] = np.nan, np.nan, 2
+    columns = {"t_ns": np.arange(2000) * 1_000_000, "v": v, "w": np.full(2000, np.nan)}
+    report = spec.evaluate(columns, time="t_ns")
+    assert isinstance(report.attempts, JudgedAttempts)
+    assert report.verdicts == {"R1": "I", "R2": "I", "R3": "I"}
+    names = {attempt.name for attempt in report.attempts}
+    assert names == {"R1#1", "R1?1", "R2#1"}

@@ -1,0 +1,72 @@
+"""Captured values that may be others: an attempt may have begun later than was seen."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+
+from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.inputs import payloads_of
+from rvmon.dataflow.numbers import reader
+from rvmon.formula.state import FALSE, UNKNOWN
+from rvmon.monitor.lane import Lane
+from rvmon.spec.checked import Capture, Numeric
+from rvmon.trace.sample import Payload, Scalar
+
+Captured = Mapping[str, Scalar]
+
+
+class CapturedAttempt:
+    """Compares what an attempt has captured with what it may have captured.
+
+    Args:
+        parent: the lane in which it was triggered.
+        lane: its own.
+        captures: of its requirement.
+        trigger: place of the trigger in the parent's flow: where that is FALSE, it is over.
+        doubt: place there of what is UNKNOWN where it may have begun.
+
+    Source: SEMANTICS, section 3 (Doubt, `let`); decision record 4.
+    """
+
+    def __init__(
+        self, parent: Lane, lane: Lane, captures: tuple[Capture, ...], trigger: int, doubt: int
+    ) -> None:
+        self._parent = parent
+        self._lane = lane
+        self._captures = captures
+        self._trigger = trigger
+        self._doubt = doubt
+
+    def keeps(self, t: int) -> bool:
+        """See `rvmon.monitor.lane.Captive`."""
+        flow, lane = self._parent.flow, self._lane
+        if not lane.blurs or lane.is_idle or flow.values[self._trigger] == FALSE:
+            lane.blurs = False
+        elif flow.values[self._doubt] == UNKNOWN and not self._is_same(flow):
+            lane.flow.cut_at(t)
+            for judge in lane.judges:
+                for attempt in judge.attempts:
+                    attempt.void = True
+            lane.blurs = False
+        return lane.blurs
+
+    def _is_same(self, flow: Flow) -> bool:
+        made_for = self._lane.made_for
+        own = dict(made_for[1]) if made_for else {}
+        known = dict(own)
+        for capture in self._captures:
+            known[capture.name] = captured_value(capture.value, flow, known)
+        return all(
+            known[one.name] is not None and known[one.name] == own[one.name]
+            for one in self._captures
+        )
+
+
+def captured_value(value: Numeric, flow: Flow, captured: Captured) -> Scalar:
+    """The value of an expression at the position of a flow; of several payloads, of the last."""
+    payloads: dict[str, Payload] = {}
+    for event, reports in flow.inputs.occurrences.items():
+        found = [payload for report in reports for payload in payloads_of(report)]
+        payloads[event] = (found[-1] if found else None) or {}
+    return reader(value, flow.inputs, captured)(defaultdict(dict, payloads))
