@@ -8,12 +8,13 @@ from typing import Protocol
 from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.cells import Rest
 from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.inputs import NEVER
 from rvmon.dataflow.leaves import reads
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.pieces import FAR
 from rvmon.dataflow.robust import Gauge
-from rvmon.dataflow.steps import Step, add
+from rvmon.dataflow.steps import INFINITE, Step, add
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.bench import Bench, Clerk, Open
@@ -188,7 +189,7 @@ class MarginJudge(Bench):
         self._known = now
         for position in sorted(self._lows.keys() & self._highs.keys()):
             low, high = self._lows.pop(position), self._highs.pop(position)
-            self._tell(position * self._gap, Robustness(low, high, low))
+            self._tell(position * self._gap, self._figure(low, high, low))
         if not (self.attempts or self.every or self._plan.looks_back):
             self._least = self._greatest = None
 
@@ -227,11 +228,17 @@ class MarginJudge(Bench):
             values = gauge.copy().finish(self._steps(FAR, side), end, reached, rest)
             found[rest] = {**told, **dict(values)}
         return {
-            position * self._gap: Robustness(low, found[Rest.GREATEST][position], kept)
+            position * self._gap: self._figure(low, found[Rest.GREATEST][position], kept)
             for (position, low), kept in zip(
                 sorted(found[Rest.LEAST].items()), _in_order(found[Rest.END]), strict=True
             )
         }
+
+    def _figure(self, low: float, high: float, kept: float) -> Robustness:
+        # Behind the cut it is owed with values that nobody knows.
+        if self.flow.cut < NEVER:
+            return Robustness(-INFINITE, high, -INFINITE)
+        return Robustness(low, high, kept)
 
     def pass_to(self, t: int) -> None:
         """Nothing is decided by time here."""

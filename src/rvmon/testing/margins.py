@@ -58,26 +58,24 @@ def _owed(start: Start, *, kept: bool) -> Range:
     requirement = start.view.requirement
     favour = counts_in_favour(requirement)
 
-    made: dict[tuple[object, ...], _Ranges] = {}
+    ranges = _Ranges(start.word, start.captured, favour=favour, kept=kept)
 
     def consequent(k: int) -> Range:
-        captured = start.captured_at(k)
-        key = tuple(captured.values())
-        if key not in made:
-            made[key] = _Ranges(start.word, captured, favour=favour, kept=kept)
-        return made[key].range(requirement.consequent, k)
+        return ranges.range(requirement.consequent, k)
 
     if is_upon_end(requirement) or (requirement.mode is Mode.UPON and start.sure is not None):
         return consequent(start.position)
     trigger = Past(start.word, start.captured)
 
-    def excused(k: int) -> Range:
-        if requirement.mode is Mode.UPON:
+    def owed(k: int) -> Range:
+        if start.blurred is not None and k >= start.blurred:
             return ANY
-        return negated(trigger.range(requirement.trigger, k, Truth.FALSE))
+        if requirement.mode is Mode.UPON:
+            return most([ANY, consequent(k)])
+        excused = negated(trigger.range(requirement.trigger, k, Truth.FALSE))
+        return most([excused, consequent(k)])
 
-    owed = [most([excused(k), consequent(k)]) for k in start.owes]
-    return least([*owed, TOP if kept or start.stop is not None else ANY])
+    return least([*map(owed, start.owes), TOP if kept or start.stop is not None else ANY])
 
 
 class _Ranges:
