@@ -147,6 +147,8 @@ class Lane:
         gap, found = self.flow.gap, INFINITY
         if gap is None:
             return found
+        if self.captured and self.flow.inputs.occurrences:
+            found = self.flow.position + gap  # there, what was captured of them is another
         for starter in self._repeating:
             found = min(found, max(self.flow.position + gap, -(-starter.since // gap) * gap))
         for episode in self._failed:
