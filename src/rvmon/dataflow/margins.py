@@ -47,7 +47,7 @@ def margin_reader(
 
     Args:
         leaf: any.
-        truth: gives its truth there.
+        truth: gives its truth there; before the birth of its signals, what it is taken for.
         inputs: read at each call.
         captured: values of `let` and `for each`.
         spec: gives the units.
@@ -64,8 +64,6 @@ def margin_reader(
         return margin(op, left(payloads), right(payloads), factor)
 
     events = events_of(leaf.left, leaf.right)
-    if not events:
-        return lambda: of({})
 
     def of_occurrences() -> Margin:
         if any(event in inputs.absent for event in events):
@@ -81,7 +79,13 @@ def margin_reader(
             found = max(found[0], own[0]), max(found[1], own[1])
         return found
 
-    return of_occurrences
+    read = of_occurrences if events else lambda: of({})
+
+    def of_known() -> Margin:
+        found = read()
+        return OF_TRUTH[truth()] if found == OF_TRUTH[UNKNOWN] else found
+
+    return of_known
 
 
 def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:

@@ -18,14 +18,16 @@ from rvmon.formula.core import (
     Until,
 )
 from rvmon.formula.factory import Factory
+from rvmon.formula.numeric import reads_fields
 from rvmon.formula.state import State, StateOp
+from rvmon.spec.checked import Compare
 from rvmon.spec.checked import Constant as ConstantLeaf
 
 
 def expanded(core: Core) -> Core:
     """The same formula, the propositions of whose literals are leaves.
 
-    What only asks whether a proposition is known to be false stays whole.
+    What only asks whether a proposition is known stays whole.
     """
     return _Expanding().core(core)
 
@@ -79,6 +81,8 @@ class _Expanding:
                 return factory.constant(state.leaf.value is positive)
             case StateOp.LEAF | StateOp.SURE | StateOp.DOUBT:
                 return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+            case StateOp.AND if _asks_what_is_known(state):
+                return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
             case StateOp.NOT:
                 return self.state(state.args[0], not positive)
             case StateOp.AND | StateOp.OR:
@@ -93,3 +97,14 @@ class _Expanding:
                 return factory.core_since(left, right, state.low, state.high, dual=not positive)
             case _:
                 assert_never(state.op)
+
+
+def _asks_what_is_known(state: State) -> bool:
+    """Whether it is `φ and not φ`, as `rvmon.formula.four` says that something is unknown."""
+    args = set(state.args)
+    denied = (arg.args[0] for arg in state.args if arg.op is StateOp.NOT)
+    return any(
+        args.issuperset(one.args if one.op is StateOp.AND else (one,))
+        for one in denied
+        if one.op is not StateOp.LEAF or (isinstance(one.leaf, Compare) and reads_fields(one.leaf))
+    )

@@ -91,6 +91,7 @@ class Lane:
         self.judges.append(judge)
         for place in judge.places:
             self._judges_at[place].append(judge)
+        self._note(judge)
 
     def add_starter(self, starter: Starter) -> None:
         """Have a requirement's attempts started."""
@@ -146,6 +147,8 @@ class Lane:
         gap, found = self.flow.gap, INFINITY
         if gap is None:
             return found
+        if self.captured and self.flow.inputs.occurrences:
+            found = self.flow.position + gap  # there, what was captured of them is another
         for starter in self._repeating:
             found = min(found, max(self.flow.position + gap, -(-starter.since // gap) * gap))
         for episode in self._failed:

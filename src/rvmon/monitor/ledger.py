@@ -90,13 +90,7 @@ class Ledger:
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
         requirement = judge.compiled.requirement
-        passes = attempt.better is not None and attempt.better[0] == PASSED
-        verdict, decision = settle_at_end(
-            requirement.at_end,
-            held=not attempt.void and judge.held_at_end(attempt, end, reached),
-            cannot_pass=attempt.void or attempt.token[0] == FAILED,
-            cannot_fail=passes or not attempt.sure or attempt.clouded,
-        )
+        verdict, decision = verdict_at_end(judge, attempt, end, reached)
         if verdict is Verdict.PASS and not attempt.sure:
             return
         now = max(2 * reached, 2 * end + 1)
@@ -165,6 +159,17 @@ class Ledger:
         self.told.clear()
         self.attempts += records
         return records
+
+
+def verdict_at_end(judge: Bench, attempt: Open, end: int, reached: int) -> tuple[Verdict, Decision]:
+    """What becomes of an attempt that is undecided at the end of the trace."""
+    passes = attempt.better is not None and attempt.better[0] == PASSED
+    return settle_at_end(
+        judge.compiled.requirement.at_end,
+        held=not attempt.void and judge.held_at_end(attempt, end, reached),
+        cannot_pass=attempt.void or attempt.token[0] == FAILED,
+        cannot_fail=passes or not attempt.sure or attempt.clouded,
+    )
 
 
 def _record(

@@ -1,20 +1,20 @@
-"""Open attempts whose robustness is followed in the place of their truth."""
+"""Attempts whose robustness is followed, beside a judge that follows their truth."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.cells import Rest
 from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.inputs import NEVER
 from rvmon.dataflow.leaves import reads
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.pieces import FAR
 from rvmon.dataflow.robust import Gauge
-from rvmon.dataflow.steps import Step, add
+from rvmon.dataflow.steps import INFINITE, Step, add
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.bench import Bench, Clerk, Open
@@ -27,7 +27,13 @@ _SIDES = {Rest.LEAST: 0, Rest.GREATEST: 1, Rest.END: 0}
 
 
 class Gauger(Clerk, Protocol):
-    """Keeps the figures."""
+    """Keeps the figures.
+
+    Attributes:
+        heard: the instant of the sample that came last.
+    """
+
+    heard: int
 
     def settled(self, judge: MarginJudge, attempt: Open, found: Robustness) -> None:
         """Take the figure of an attempt that nothing can change any more."""
@@ -37,7 +43,9 @@ class Gauger(Clerk, Protocol):
 
 
 class MarginJudge(Bench):
-    """Follows the robustness of its attempts: its least value, and its greatest if that differs.
+    """Follows the robustness of attempts: its least value, and its greatest if that differs.
+
+    The attempts are those of another judge, which knows what becomes of them.
 
     Args:
         compiled: the requirement.
@@ -46,7 +54,10 @@ class MarginJudge(Bench):
         clerk: takes the figures.
         captured: values of `let` and `for each`.
         spec: gives the units.
-        every: whether each position is measured, and not those of attempts alone.
+        every: whether each position of a sample is measured, and not those of attempts alone.
+
+    Attributes:
+        positions: of its attempts, where each of them begins.
 
     Memory: what is not settled of the formula's operators; nothing while nothing is asked for.
     """
@@ -66,6 +77,7 @@ class MarginJudge(Bench):
         self.restless = True
         self.gauger = clerk
         self.every = every
+        self.positions: dict[Open, int] = {}
         self._gap = flow.gap or 1
         self._plan = plan
         self._readers = [self._reader(core, spec) for _, core in plan.leaves]
@@ -95,27 +107,32 @@ class MarginJudge(Bench):
         def truth() -> int:
             return flow.values[place]
 
-        if core.sense is Sense.KNOWN_FALSE or state.leaf is None:
+        if core.sense is Sense.KNOWN_FALSE:
             return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
-        read = margin_reader(state.leaf, truth, flow.inputs, self.captured, spec)
-        about = reads(state.leaf)
-        passes = about.momentary and not about.names & flow.inputs.absent
-        later = OF_TRUTH[FALSE] if passes else None
+        later = None
+        if state.leaf is None:
+            read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
+        else:
+            read = margin_reader(state.leaf, truth, flow.inputs, self.captured, spec)
+            about = reads(state.leaf)
+            if about.momentary and not about.names & flow.inputs.absent:
+                later = OF_TRUTH[FALSE]
         if core.sense is Sense.TRUE:
             return read, later
         return (lambda: _negated(read())), None if later is None else _negated(later)
 
     def new_attempt(self, t: int, triggered: int) -> Open:
-        """See `Bench`."""
-        return Open(triggered, (PASSED + 1, (t,)), ())
+        """Nothing starts here."""
+        raise NotImplementedError
 
     def begin(self, attempt: Open, t: int) -> None:
-        """See `Bench`."""
+        """Measure an attempt of the other judge from the position `t` on."""
         if self.position < t or self._least is None:
             self.position = t
             self._enter(t // self._gap)
         self._ask(t // self._gap)
         self.attempts.append(attempt)
+        self.positions[attempt] = t // self._gap * self._gap
 
     def visit(self, t: int) -> None:
         """Note what all leaves are at the position `t`, which the flow is at."""
@@ -124,7 +141,7 @@ class MarginJudge(Bench):
         self._pass(position - 1, t)
         if self.every or self._plan.looks_back or self._least is not None:
             self._enter(position)
-        if self.every:
+        if self.every and t - self._gap < self.gauger.heard:
             self._ask(position)
 
     def _enter(self, position: int) -> None:
@@ -172,13 +189,15 @@ class MarginJudge(Bench):
         self._known = now
         for position in sorted(self._lows.keys() & self._highs.keys()):
             low, high = self._lows.pop(position), self._highs.pop(position)
-            self._tell(position * self._gap, Robustness(low, high, low))
+            self._tell(position * self._gap, self._figure(low, high, low))
         if not (self.attempts or self.every or self._plan.looks_back):
             self._least = self._greatest = None
 
     def _tell(self, t: int, found: Robustness) -> None:
-        while self.attempts and self.attempts[0].token[1][0] == t:
-            self.gauger.settled(self, self.attempts.pop(0), found)
+        while self.attempts and self.positions[self.attempts[0]] == t:
+            attempt = self.attempts.pop(0)
+            del self.positions[attempt]
+            self.gauger.settled(self, attempt, found)
         if self.every:
             self.gauger.passed(self, t, found)
 
@@ -209,11 +228,17 @@ class MarginJudge(Bench):
             values = gauge.copy().finish(self._steps(FAR, side), end, reached, rest)
             found[rest] = {**told, **dict(values)}
         return {
-            position * self._gap: Robustness(low, found[Rest.GREATEST][position], kept)
+            position * self._gap: self._figure(low, found[Rest.GREATEST][position], kept)
             for (position, low), kept in zip(
                 sorted(found[Rest.LEAST].items()), _in_order(found[Rest.END]), strict=True
             )
         }
+
+    def _figure(self, low: float, high: float, kept: float) -> Robustness:
+        # Behind the cut it is owed with values that nobody knows.
+        if self.flow.cut < NEVER:
+            return Robustness(-INFINITE, high, -INFINITE)
+        return Robustness(low, high, kept)
 
     def pass_to(self, t: int) -> None:
         """Nothing is decided by time here."""

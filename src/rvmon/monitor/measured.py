@@ -25,9 +25,11 @@ class Robustness:
 
     def of(self, attempt: Attempt) -> float | None:
         """The figure for a decided attempt: its distance from the other verdict, at least."""
-        if self.low == self.high:
-            return self.low
         match attempt.decision, attempt.verdict:
+            case Decision.OPEN, _:
+                return None
+            case _ if self.low == self.high:
+                return self.low
             case Decision.HELD_TO_END, _:
                 return self.kept
             case Decision.PREFIX, Verdict.PASS:
@@ -47,12 +49,14 @@ class Measured:
         number: of the attempt; `None` for what the requirement owes at a position, as in a stream.
         t: the instant of the trigger, or of the position, ticks.
         robustness: the figure.
+        in_doubt: whether it is not known that there was a trigger.
     """
 
     requirement: str
     number: int | None
     t: int
     robustness: Robustness
+    in_doubt: bool = False
 
 
 Key = tuple[str, int]
@@ -65,26 +69,31 @@ class Margins:
 
     Attributes:
         attempts: by requirement and number.
+        doubtful: those in doubt that have a record, the same way.
         streams: by requirement, at the instants of samples: the robustness of what it owes there.
             Requirements with `let` or `for each` have none: it would depend on the attempt.
     """
 
     attempts: Mapping[Key, Robustness]
+    doubtful: Mapping[Key, Robustness]
     streams: Mapping[str, Sequence[tuple[int, Robustness]]]
 
     def of(self, attempt: Attempt) -> Attempt:
         """An attempt with its figure."""
-        found = self.attempts.get((attempt.requirement, attempt.number))
+        figures = self.doubtful if attempt.in_doubt else self.attempts
+        found = figures.get((attempt.requirement, attempt.number))
         return attempt if found is None else replace(attempt, robustness=found.of(attempt))
 
 
 def margins_from(found: Iterable[Measured]) -> Margins:
     """The figures of a run, by what they are of."""
     attempts: dict[Key, Robustness] = {}
+    doubtful: dict[Key, Robustness] = {}
     streams: dict[str, list[tuple[int, Robustness]]] = {}
     for one in found:
         if one.number is None:
             streams.setdefault(one.requirement, []).append((one.t, one.robustness))
         else:
-            attempts[one.requirement, one.number] = one.robustness
-    return Margins(attempts, streams)
+            figures = doubtful if one.in_doubt else attempts
+            figures[one.requirement, one.number] = one.robustness
+    return Margins(attempts, doubtful, streams)

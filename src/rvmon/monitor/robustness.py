@@ -7,23 +7,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
+from weakref import WeakKeyDictionary
 
-from rvmon.dataflow.flow import Flow
+from rvmon.automaton.machine import Token
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.plan import plan_of
+from rvmon.dataflow.steps import INFINITE
 from rvmon.errors import UnknownNameError
 from rvmon.formula.expand import expanded
 from rvmon.monitor.bench import Bench, Open
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.instances import Instance
 from rvmon.monitor.intake import WAYS_TO_SETTLE
+from rvmon.monitor.lane import Lane
 from rvmon.monitor.lanes import Captured, Lanes
-from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.ledger import Ledger, verdict_at_end
 from rvmon.monitor.margin_judge import MarginJudge
 from rvmon.monitor.measured import Margins, Measured, Robustness, margins_from
 from rvmon.monitor.monitor import Monitor
 from rvmon.spec.checked import CheckedSpec
-from rvmon.trace.sample import Sample
-from rvmon.trace.time import ticks_of_seconds
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
+from rvmon.verdict.verdict import Verdict
 
 
 class RobustnessMonitor:
@@ -117,10 +122,11 @@ class _Run(Monitor):
 
     def taken(self) -> Sequence[Measured]:
         """The figures that are settled and were not taken yet, in order of their instants."""
-        if self._report is None and self._reached is not None:
+        over = self._report is not None
+        if not over and self._reached is not None:
             for judge in self._measuring:
                 judge.settle(self._reached)
-        return self._gauged.taken()
+        return self._gauged.taken(over=over)
 
     @property
     def _measuring(self) -> list[MarginJudge]:
@@ -130,20 +136,20 @@ class _Run(Monitor):
         """What is known of the open attempts."""
         if self._reached is None or self._report is not None:
             return ()
-        made = []
+        made = list(self._gauged.waiting)
         for judge in self._measuring:
             end = self._reached if self._last == self._reached else self._reached - 1
             found = judge.figures(end, self._reached) if judge.attempts else {}
-            name = judge.compiled.requirement.id
             made += [
-                Measured(name, one.number, one.triggered, found[one.token[1][0]])
-                for one in judge.attempts
+                _measured(judge, attempt, found[judge.positions[attempt]], attempt.triggered)
+                for attempt in judge.attempts
+                if attempt not in self._gauged.vanished
             ]
         return made
 
 
 class _MeasuringLanes(Lanes):
-    """Lanes whose judges measure."""
+    """Lanes in which another judge, beside each of the usual ones, measures its attempts."""
 
     def __init__(
         self,
@@ -155,23 +161,39 @@ class _MeasuringLanes(Lanes):
     ) -> None:
         self._gauged = gauged
         self._streams = streams
-        self._plans: dict[str, Plan] = {}
+        self._plans: dict[CompiledRequirement, Plan] = {}
         super().__init__(spec, requirements, "auto", sources, gauged)
 
-    def _new_judge(self, compiled: CompiledRequirement, flow: Flow, captured: Captured) -> Bench:
+    def _judge(
+        self,
+        compiled: CompiledRequirement,
+        lane: Lane,
+        captured: Captured,
+        instance: Instance | None,
+    ) -> Bench:
+        judge = super()._judge(compiled, lane, captured, instance)
         requirement = compiled.requirement
-        if requirement.id not in self._plans:
-            self._plans[requirement.id] = plan_of(expanded(compiled.obligation.owed), self.gap)
+        if compiled not in self._plans:
+            self._plans[compiled] = plan_of(expanded(compiled.obligation.owed), self.gap)
         alone = not requirement.captures and requirement.for_each is None
-        return MarginJudge(
+        told = compiled is self._by_id[requirement.id]
+        beside = MarginJudge(
             compiled,
-            self._plans[requirement.id],
-            flow,
+            self._plans[compiled],
+            lane.flow,
             self._gauged,
             captured,
             self.spec,
-            every=self._streams and alone,
+            every=self._streams and alone and told,
         )
+        lane.add_judge(beside)
+        self._gauged.beside[judge] = beside
+        return judge
+
+    def sample(self, t: int, values: Mapping[str, Value]) -> None:
+        """See `Lanes`."""
+        self._gauged.heard = t
+        super().sample(t, values)
 
     def finish(self, end: int, reached: int) -> None:
         """See `Lanes`; the positions that were not settled are measured as well."""
@@ -183,12 +205,44 @@ class _MeasuringLanes(Lanes):
 
 
 class _Gauged(Ledger):
-    """Numbers attempts as the ledger of records does, and keeps their figures until taken."""
+    """Numbers attempts as the ledger of records does, and keeps their figures until taken.
+
+    Attributes:
+        heard: the instant of the sample that came last.
+        beside: by the judge of attempts, the one that measures them.
+        vanished: attempts in doubt that were met and leave no record, up to their figures.
+    """
 
     def __init__(self) -> None:
         super().__init__()
+        self.heard = -TIME_LIMIT
+        self.beside: WeakKeyDictionary[Bench, MarginJudge] = WeakKeyDictionary()
+        self.vanished: set[Open] = set()
         self._found: list[tuple[MarginJudge, Open | None, int, Robustness]] = []
         self._ends: dict[Bench, Mapping[int, Robustness]] = {}
+
+    def sure(self, instance: int, judge: Bench, attempt: Open, t: int) -> None:
+        """See `Ledger`; what was in doubt before is measured already."""
+        super().sure(instance, judge, attempt, t)
+        if t == attempt.triggered:
+            self._measure(judge, attempt)
+
+    def doubtful(self, instance: int, judge: Bench, attempt: Open) -> None:
+        """See `Ledger`."""
+        super().doubtful(instance, judge, attempt)
+        self._measure(judge, attempt)
+
+    def _measure(self, judge: Bench, attempt: Open) -> None:
+        sampled = judge.flow.gap is None
+        self.beside[judge].begin(attempt, judge.flow.position if sampled else attempt.triggered)
+
+    def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, _: Token) -> None:
+        """See `rvmon.monitor.bench.Clerk`; there are no records."""
+        if not attempt.sure:
+            if verdict and not attempt.void:
+                self.vanished.add(attempt)
+        elif judge.episode is not None and not verdict:
+            judge.episode.fail(attempt, t)
 
     def settled(self, judge: MarginJudge, attempt: Open, found: Robustness) -> None:
         """See `rvmon.monitor.margin_judge.Gauger`."""
@@ -199,20 +253,49 @@ class _Gauged(Ledger):
         self._found.append((judge, None, t, found))
 
     def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
-        """See `Ledger`."""
+        """See `Ledger`; each attempt is seen by its own judge first."""
         if isinstance(judge, MarginJudge):
             if judge not in self._ends:
                 self._ends[judge] = judge.figures(end, reached)
-            self.settled(judge, attempt, self._ends[judge][attempt.token[1][0]])
+            self.settled(judge, attempt, self._ends[judge][judge.positions[attempt]])
+        elif not attempt.sure:
+            verdict, _ = verdict_at_end(judge, attempt, end, reached)
+            if verdict is Verdict.PASS:
+                self.vanished.add(attempt)
 
-    def taken(self) -> list[Measured]:
-        """What was found since the last time; all attempts are numbered."""
+    @property
+    def waiting(self) -> Sequence[Measured]:
+        """The figures of attempts of which it is not known what becomes of them."""
+        return [_measured(judge, attempt, found, t) for judge, attempt, t, found in self._found]
+
+    def taken(self, *, over: bool) -> Sequence[Measured]:
+        """What was found since the last time; all attempts are numbered.
+
+        Args:
+            over: whether the run is; before, those in doubt may still vanish or become sure.
+        """
         found, self._found = self._found, []
-        found.sort(key=lambda one: (one[2], one[0].compiled.rank, one[1] is None))
-        return [
-            Measured(judge.compiled.requirement.id, None if one is None else one.number, t, figure)
-            for judge, one, t, figure in found
-        ]
+        told = []
+        for one in sorted(found, key=lambda one: (one[2], one[0].compiled.rank, one[1] is None)):
+            attempt = one[1]
+            if attempt in self.vanished:
+                self.vanished.discard(attempt)
+            elif attempt is None or attempt.sure or over:
+                told.append(_measured(one[0], attempt, one[3], one[2]))
+            else:
+                self._found.append(one)
+        return told
+
+
+def _measured(judge: MarginJudge, attempt: Open | None, found: Robustness, t: int) -> Measured:
+    name = judge.compiled.requirement.id
+    if attempt is None:
+        return Measured(name, None, t, found)
+    if attempt.sure:
+        return Measured(name, attempt.number, t, found)
+    # Where nothing triggered it, nothing is owed.
+    possible = Robustness(found.low, INFINITE, found.kept)
+    return Measured(name, attempt.doubtful_number, t, possible, in_doubt=True)
 
 
 def margins_of(

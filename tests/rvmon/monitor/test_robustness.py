@@ -72,6 +72,30 @@ def test_an_episode_owes_nothing_where_it_ends():
     assert found.low == found.high == pytest.approx(0.07)
 
 
+def test_what_follows_a_failure_is_measured_from_where_it_begins():
+    """The attempt after a failure does not count what failed before it."""
+    samples = [(0, {"x": 3}), (1, {"x": 12}), (2, {"x": 5})]
+    found = margins("always x < 10 cm", samples).attempts
+    assert found["R1", 1].high == pytest.approx(-0.02)
+    assert found["R1", 2].kept == pytest.approx(0.05)
+
+
+def test_an_attempt_in_doubt_has_a_figure_if_it_has_a_record():
+    """What nothing may have triggered may owe nothing; what was met in doubt is not measured."""
+    samples = [(0, {"e": None, "x": 3}), (1, {"x": 5})]
+    found = margins("upon e then immediately x > 10 cm", samples)
+    assert not found.attempts
+    assert found.doubtful["R1", 1].low == pytest.approx(-0.07)
+    assert found.doubtful["R1", 1].high == INFINITE
+    assert not margins("upon e then immediately x < 10 cm", samples).doubtful
+
+
+def test_what_has_had_no_value_counts_in_favour_of_an_episode():
+    """Up to its birth a signal says nothing against a level `whenever`."""
+    found = margins("always x < 10 cm", [(0, {"p": True}), (1, {"x": 7})])
+    assert found.attempts["R1", 1].kept == pytest.approx(0.03)
+
+
 def test_until_decides_how_much_is_looked_at():
     """A trace that is cut at its end leaves windows open."""
     samples = [(0, {"x": 3, "e": True})]
