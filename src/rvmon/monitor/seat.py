@@ -99,6 +99,7 @@ class Seat(Witness):
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
         attempt.doubt = self.judge_now(rule)._doubt()
+        self._unit.news = True  # it may stay undecided: what is kept has to be bounded
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""

@@ -43,6 +43,7 @@ def snapshot(monitor: Monitor) -> bytes:
         "engine": choice.engine,
         "settle": choice.settle,
         "sources": None if choice.sources is None else sorted(choice.sources),
+        "keep": choice.keep,
         "machines": [_machine(one, choice.engine) for one in choice.requirements],
         "locations": {
             judge.compiled.requirement.id: machine.table()
@@ -92,6 +93,7 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
         engine=document["engine"],
         settle=document["settle"],
         sources=document["sources"],
+        keep=document["keep"],
     )
     choice = monitor.choice
     if document["machines"] != [_machine(one, choice.engine) for one in choice.requirements]:

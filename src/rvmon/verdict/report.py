@@ -30,6 +30,8 @@ class Report:
             deadline, ticks; where somebody looked.
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
+        dropped: by requirement, how many of its attempts were not kept, by verdict; verdicts and
+            counts speak of them as well.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -42,6 +44,7 @@ class Report:
     misses: Mapping[str, str] = field(default_factory=dict)
     late: Mapping[str, Mapping[int, int]] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
+    dropped: Mapping[str, Mapping[Verdict, int]] = field(default_factory=dict)
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.
