@@ -74,6 +74,12 @@ class Kept:
 
     def tidy(self, lanes: Lanes) -> None:
         """Drop all that is too much; see `bound`."""
+        if self._keep is not None:
+            self.trim()
+            self._forget_lost(lanes)
+
+    def trim(self) -> None:
+        """Drop the records that are too many; when the run is over, there are no others."""
         if self._keep is None:
             return
         self.verdicts(())
@@ -83,7 +89,6 @@ class Kept:
         self._seen_to = len(ledger.attempts)
         surplus = {id(one) for one in self._surplus((one, one[2]) for one in ledger.void)}
         ledger.void[:] = [one for one in ledger.void if id(one) not in surplus]
-        self._forget_lost(lanes)
 
     def _surplus(self, records: Iterable[tuple[_T, Attempt]]) -> list[_T]:
         """What is older than the newest of its kind that are kept; it is counted."""

@@ -177,12 +177,12 @@ class Monitor:
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
         >>> monitor = spec.monitor()
-        >>> stop = monitor.on_decided(print)
+        >>> stop = monitor.on_decided(lambda attempt: print(attempt.name, attempt.verdict.name))
         >>> for t, x in enumerate([1, 4, 2]):
         ...     _ = monitor.step(t, {"x": x})
-        R1 #1 FAIL at 1 s: `x <= 3` false at 1 s
+        R1#1 FAIL
         >>> _ = monitor.finish(5)
-        R1 #2 PASS at 5 s: held to the end of the trace
+        R1#2 PASS
         >>> stop()
         """
         return self._register(callback, failures_only=False)
@@ -273,7 +273,7 @@ class Monitor:
             self._lanes.through(end)
             self._lanes.finish(end, reached)
         decided = self._ledger.close()
-        self._kept.tidy(self._lanes)
+        self._kept.trim()
         report = report_of(
             self._names,
             self._ledger.attempts,

@@ -15,15 +15,15 @@ time held
 signal x : real
 signal y : real
 event e, stop, beat
-requirement L "level"
+requirement L1 "level"
   always x <= 3
-requirement U "edge"
+requirement U1 "edge"
   upon e
   then within 3 s stop
-requirement Y "reads what may be lost"
+requirement Y1 "reads what may be lost"
   upon e
   then immediately y > 0
-requirement B "a heart that beats"
+requirement B1 "a heart that beats"
   always within 3 s beat
 """
 
@@ -78,7 +78,7 @@ def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec, engine):
             for name, own in seen.items()
         }
         assert monitor.verdicts == expected
-    assert monitor.verdicts == {"L": "F", "U": "F", "Y": "F", "B": "F"}
+    assert monitor.verdicts == {"L1": "F", "U1": "F", "Y1": "F", "B1": "F"}
     report = monitor.finish()
     assert monitor.verdicts == report.verdicts
     monitor.reset()
@@ -87,14 +87,14 @@ def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec, engine):
 
 def test_what_is_undecided_does_not_count_so_far(spec, engine):
     """An open attempt leaves the verdict; what `finish` makes of it is the report's."""
-    monitor = spec.monitor(engine=engine, only=["U"])
+    monitor = spec.monitor(engine=engine, only=["U1"])
     monitor.step(0, {"e": True})
-    assert monitor.verdicts == {"U": "NT"}
+    assert monitor.verdicts == {"U1": "NT"}
     monitor.step(1, {"stop": True})
     monitor.step(2, {"e": True})
-    assert monitor.verdicts == {"U": "P"}
-    assert monitor.finish().verdicts == {"U": "I"}
-    assert monitor.verdicts == {"U": "I"}
+    assert monitor.verdicts == {"U1": "P"}
+    assert monitor.finish().verdicts == {"U1": "I"}
+    assert monitor.verdicts == {"U1": "I"}
 
 
 # Callbacks.
@@ -134,7 +134,7 @@ def test_a_monitor_that_is_listened_to_returns_the_same(spec, engine):
 
 def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec, engine):
     """It hears nothing after it was taken away, twice does no harm; until then every run."""
-    monitor = spec.monitor(engine=engine, only=["L"])
+    monitor = spec.monitor(engine=engine, only=["L1"])
     heard = []
     stop = monitor.on_failure(heard.append)
     monitor.step(0, {"x": 5})
@@ -187,7 +187,7 @@ def test_what_a_callback_raises_leaves_the_monitor_in_order(spec, engine):
 
 def test_a_callback_may_look_at_the_monitor(spec, engine):
     """Verdicts, what is open and a snapshot are those after the call."""
-    monitor = spec.monitor(engine=engine, only=["L", "B"])
+    monitor = spec.monitor(engine=engine, only=["L1", "B1"])
     seen = []
 
     def look(attempt):
@@ -229,7 +229,8 @@ def test_compiled_monitors_tell_the_same(spec, extensions, tmp_path, monkeypatch
         assert list(map(key, heard)) == list(map(key, expected))
         stop()
         compiled.reset()
-        assert len(compiled.step(0, {"x": 5.0})) == 1
+        decided = [*compiled.step(0, {"x": 5.0}), *compiled.advance(1)]
+        assert [one.name for one in decided] == ["L1#1"]
         assert len(heard) == len(expected)
     with pytest.raises(RvmonError, match="keeps all records"):
         spec.monitor(engine="c", keep=3)
@@ -260,7 +261,7 @@ def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec, engine, 
 
 def test_memory_does_not_grow_with_what_stays_undecided(spec, engine):
     """Attempts that unknown input has left without a way out are dropped, but counted."""
-    monitor = spec.monitor(engine=engine, only=["Y"], keep=5)
+    monitor = spec.monitor(engine=engine, only=["Y1"], keep=5)
     monitor.step(0, {"y": None})
     most = 0
     for second in range(1, 3000):
@@ -268,8 +269,8 @@ def test_memory_does_not_grow_with_what_stays_undecided(spec, engine):
         most = max(most, len(monitor.open)) if second % 100 == 0 else most
     assert most < 1000
     report = monitor.finish()
-    assert report.counts["Y"] == {"P": 0, "F": 0, "I": 2999}
-    assert (len(report.attempts), report.dropped) == (5, {"Y": {"I": 2994}})
+    assert report.counts["Y1"] == {"P": 0, "F": 0, "I": 2999}
+    assert (len(report.attempts), report.dropped) == (5, {"Y1": {"I": 2994}})
     assert [one.number for one in report.attempts] == [*range(2995, 3000)]
 
 
@@ -279,10 +280,10 @@ def test_attempts_in_doubt_are_bounded_too(engine):
 spec doubts
 time held
 signal p, q : bool
-requirement W
+requirement W1
   whenever p
   then q
-requirement U
+requirement U1
   upon p
   then within 5 ms q
 """)
@@ -304,7 +305,7 @@ def test_void_episodes_are_bounded_too(engine):
 spec void
 signal p : bool
 signal q : bool
-requirement W
+requirement W1
   whenever p
   then q
 """)
@@ -352,14 +353,14 @@ spec keys
 signal y : real
 signal s : real
 event e(id: int)
-requirement K
-  for each k in e.id
+requirement K1
   upon e
   then immediately y > 0
-requirement C
+  for each k in e.id
+requirement C1
   upon e
-  let v = s
   then immediately y > v
+  let v = s
 """)
     plain, monitor = spec.monitor(), spec.monitor(keep=3)
     for one in (plain, monitor):
@@ -370,6 +371,6 @@ requirement C
     expected, report = plain.finish(), monitor.finish()
     assert report.counts == expected.counts
     assert {name: sum(own.values()) for name, own in report.dropped.items()} == {
-        "K": 1196,
-        "C": 1196,
+        "K1": 1196,
+        "C1": 1196,
     }
