@@ -126,6 +126,7 @@ class Spec:
         engine: str = "auto",
         settle: str = "now",
         sources: Iterable[str] | None = None,
+        keep: int | None = None,
     ) -> Monitor:
         """Make an online monitor of all requirements.
 
@@ -136,9 +137,14 @@ class Spec:
             settle: `now` judges each sample at once; `next` merges samples with equal stamps and
                 judges each when the next stamp settles it.
             sources: the signals and events that can arrive; the others are unknown throughout.
+            keep: for runs that last for weeks: of each verdict the newest `keep` records are kept
+                per requirement, so that many passes hide no failure; verdicts and counts stay
+                exact, and the report says how many were dropped. Default: all. Not for the
+                engine `c`.
 
         Raises:
             UnknownNameError: `only`, `engine`, `settle` or `sources` names what does not exist.
+            RvmonError: the engine cannot judge a requirement, or `keep` is no count.
         """
         from rvmon.monitor import build_monitor
 
@@ -148,6 +154,7 @@ class Spec:
             engine=engine,
             settle=settle,
             sources=sources_asked(self.checked, sources),
+            keep=keep,
         )
 
     def restore(self, data: bytes) -> Monitor:

@@ -68,6 +68,12 @@ class Open:
         return made
 
 
+class Holder(Protocol):
+    """What has open attempts that are driven one by one: a judge, or a rule of generated code."""
+
+    attempts: list[Open]
+
+
 class Clerk(Protocol):
     """Keeps the records."""
 
@@ -167,3 +173,9 @@ class Bench(ABC):
                 found |= own
                 texts += [] if own else [text]
         return Doubt(self.position, tuple(found.values()), tuple(texts))
+
+
+def held_by(judge: Bench) -> tuple[str, Holder, Open | None]:
+    """The requirement of a judge, the judge, and the attempt of an episode that runs."""
+    running = None if judge.episode is None else judge.episode.current
+    return judge.compiled.requirement.id, judge, running

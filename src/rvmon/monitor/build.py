@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rvmon.errors import UnknownNameError
+from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.generated import Forms, GeneratedMonitor
 from rvmon.monitor.monitor import Monitor
@@ -21,6 +21,7 @@ def build_monitor(
     engine: str = "auto",
     settle: str = "now",
     sources: Iterable[str] | None = None,
+    keep: int | None = None,
 ) -> Monitor:
     """Build a monitor from a compiled specification.
 
@@ -34,11 +35,15 @@ def build_monitor(
         settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
             each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
+        keep: so many records of each verdict, the newest, are kept per requirement; default all.
 
     Raises:
         UnknownNameError: `only`, `engine` or `settle` names what does not exist.
-        RvmonError: the engine was asked for by name and cannot judge a requirement.
+        RvmonError: the engine was asked for by name and cannot judge a requirement, or drop
+            records; `keep` is no count.
     """
+    if keep is not None and (type(keep) is not int or keep < 0):
+        raise RvmonError(f"keep={keep!r}: expected a whole number from 0 on, or None to keep all")
     if settle not in ("now", "next"):
         raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
     wanted = requirements_asked(compiled.checked, only)
@@ -52,13 +57,15 @@ def build_monitor(
     if engine == "c" and chosen:
         from rvmon.monitor.online_c import compiled_monitor
 
+        if keep is not None:
+            raise RvmonError("the engine `c` keeps all records: leave out `keep`, or use `auto`")
         return compiled_monitor(compiled, chosen, settle, given)
     for requirement in chosen:
         requirement.engine(engine)
     if engine not in _GENERATED or not any(can_feed(one) for one in chosen):
-        return Monitor(compiled, chosen, engine, settle, given)
+        return Monitor(compiled, chosen, engine, settle, given, keep)
     key = (tuple(one.requirement.id for one in chosen), given)
     forms = compiled.forms.get(key)
     if not isinstance(forms, Forms):
         forms = compiled.forms[key] = Forms(compiled, chosen, given)
-    return GeneratedMonitor(forms, compiled, chosen, engine, settle, given)
+    return GeneratedMonitor(forms, compiled, chosen, engine, settle, given, keep)

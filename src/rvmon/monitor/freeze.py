@@ -37,6 +37,7 @@ from rvmon.monitor.health import HealthLog
 from rvmon.monitor.hosted import HostedRule
 from rvmon.monitor.intake import Intake
 from rvmon.monitor.judge import Judge
+from rvmon.monitor.kept import Kept
 from rvmon.monitor.lane import Lane, Starter
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
@@ -50,7 +51,7 @@ from rvmon.verdict.verdict import Verdict
 
 _BENCH = ("attempts", "due", "restless", "position")
 _LANES = ("_history", "all")
-_MONITOR = ("_ledger", "_lanes", "_intake", "_health", "_last", "_reached")
+_MONITOR = ("_ledger", "_kept", "_lanes", "_intake", "_health", "_last", "_reached")
 _UNIT = (
     *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
     *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired", "timers"),
@@ -63,6 +64,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     Monitor: _MONITOR,
     GeneratedMonitor: (*_MONITOR, "_floor"),
     Ledger: ("attempts", "_counts", "_doubts", "void"),
+    Kept: ("dropped", "_seen", "_seen_to"),
     HealthLog: ("began", "_seen"),
     Intake: ("floor", "conflicts", "late", "crowded", "_held", "_taken"),
     Conflicts: ("_seen",),

@@ -11,7 +11,7 @@ from rvmon.codegen.runtime.nodes import LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
-from rvmon.monitor.bench import Bench
+from rvmon.monitor.bench import Bench, Holder, Open, held_by
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.hosted import HostedRule
 from rvmon.monitor.lanes import Lanes, Shape
@@ -124,6 +124,16 @@ class GeneratedLanes(Lanes):
         own = (self._judge_now(rule) for rule in self.unit.rules)
         return [*(judge for judge in own if judge is not None), *super().judges]
 
+    def holders(self) -> Sequence[tuple[str, Holder, Open | None]]:
+        """See `Lanes`."""
+        return [*(self._holder(rule) for rule in self.unit.rules), *super().holders()]
+
+    def _holder(self, rule: Rule) -> tuple[str, Holder, Open | None]:
+        if isinstance(rule, HostedRule):
+            return held_by(rule.judge)
+        running = (one for one in rule.attempts if one.triggered == rule.current)
+        return self._seats[rule.index].compiled.requirement.id, rule, next(running, None)
+
     def _judge_now(self, rule: Rule) -> Bench | None:
         """The judge of a rule, or how it would stand if there were one; `None`: nobody asked it."""
         if isinstance(rule, HostedRule):
@@ -213,6 +223,7 @@ class GeneratedMonitor(Monitor):
         engine: judges what cannot be generated.
         settle: see `build_monitor`.
         sources: the names that can arrive; `None`: all.
+        keep: see `build_monitor`.
     """
 
     def __init__(
@@ -223,19 +234,20 @@ class GeneratedMonitor(Monitor):
         engine: str,
         settle: str,
         sources: frozenset[str] | None,
+        keep: int | None,
     ) -> None:
         names = {*compiled.checked.signals, *compiled.checked.events}
         absent = frozenset() if sources is None else frozenset(names - sources)
         self._forms = forms
         self._unit = forms.unit(forms.machines, absent)
-        super().__init__(compiled, requirements, engine, settle, sources)
+        super().__init__(compiled, requirements, engine, settle, sources, keep)
         self._by_unit = not forms.others and self._intake is None
         """Whether the unit alone takes samples as they come."""
         if self._by_unit:
             self.__dict__["step_ns"] = self._unit.step
 
     def _make_lanes(self) -> Lanes:
-        return GeneratedLanes(
+        self._unit_lanes = GeneratedLanes(
             self._forms,
             self._unit,
             self._compiled,
@@ -244,6 +256,11 @@ class GeneratedMonitor(Monitor):
             self._ledger,
             self.step_slowly,
         )
+        return self._unit_lanes
+
+    def _attend(self) -> None:
+        attends = self._callbacks or self.choice.keep is not None
+        self._unit_lanes.told = self._flush if attends else self._ledger.flush
 
     def reset(self) -> None:
         """Forget the run; the next sample starts another."""
@@ -265,31 +282,38 @@ class GeneratedMonitor(Monitor):
     def step_slowly(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample by the way of every monitor."""
         self._see()
-        decided = super().step_ns(t_ns, values)
+        return super().step_ns(t_ns, values)
+
+    def _flush(self) -> Sequence[Attempt]:
+        self._see()
         self._unit.news = False
-        self._floor = self._unit.after
-        return decided
+        self._close_off()
+        return super()._flush()
+
+    def _close_off(self) -> None:
+        """Have the unit refuse samples before the instant that time has come to."""
+        if self._reached is not None:
+            self._unit.after = self._floor = max(self._unit.after, self._reached - 1)
 
     def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
         """See `Monitor.advance_ns`."""
         self._see()
         unit = self._unit
-        decided: Sequence[Attempt] = ()
-        if self._by_unit and type(t_ns) is int and unit.after < t_ns < unit.wake:
-            self._reached = t_ns  # nothing happens up to then
-        else:
-            decided = super().advance_ns(t_ns)
-            unit.news = False
-        if self._reached is not None:
-            unit.after = self._floor = max(unit.after, self._reached - 1)
-        return decided
+        if not (self._by_unit and type(t_ns) is int and unit.after < t_ns < unit.wake):
+            return super().advance_ns(t_ns)
+        self._reached = t_ns  # nothing happens up to then
+        self._close_off()
+        return ()
 
     def finish_ns(self, t_ns: int | None = None) -> Report:
         """See `Monitor.finish_ns`."""
         self._see()
-        report = super().finish_ns(t_ns)
+        return super().finish_ns(t_ns)
+
+    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        concluded = super()._conclude(t_ns)
         self._unit.after = self._floor = LIMIT
-        return report
+        return concluded
 
     def snapshot(self) -> bytes:
         """See `Monitor.snapshot`."""

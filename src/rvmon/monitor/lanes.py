@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.bench import Bench, Holder, Open, held_by
 from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
@@ -94,6 +94,10 @@ class Lanes:
     def judges(self) -> Sequence[Bench]:
         """The judges of all lanes."""
         return [judge for lane in self.all for judge in lane.judges]
+
+    def holders(self) -> Sequence[tuple[str, Holder, Open | None]]:
+        """What has open attempts: of which requirement, and the attempt of an episode that runs."""
+        return [held_by(judge) for lane in self.all for judge in lane.judges]
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit` in all lanes, also those that are made on the way."""

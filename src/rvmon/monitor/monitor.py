@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from rvmon.automaton.machine import INFINITY
-from rvmon.errors import SnapshotError, TimeOrderError, TraceError
+from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.intake import Intake
+from rvmon.monitor.kept import Kept
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.validate import Validator
@@ -20,6 +21,9 @@ from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+Callback = Callable[[Attempt], object]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +35,7 @@ class Choice:
     engine: str
     settle: str
     sources: frozenset[str] | None
+    keep: int | None
 
 
 class Monitor:
@@ -47,8 +52,9 @@ class Monitor:
         engine: str,
         settle: str,
         sources: frozenset[str] | None,
+        keep: int | None,
     ) -> None:
-        self.choice = Choice(compiled, requirements, engine, settle, sources)
+        self.choice = Choice(compiled, requirements, engine, settle, sources, keep)
         self._compiled = compiled
         self._requirements = requirements
         self._engine = engine
@@ -56,12 +62,14 @@ class Monitor:
         self._settle = settle
         single = frozenset().union(*(one.single_payloads for one in requirements))
         self._validator = Validator(compiled.checked, sources, single)
+        self._callbacks: dict[object, tuple[bool, Callback]] = {}
         self.reset()
 
     def reset(self) -> None:
-        """Forget the run; the next sample starts another."""
+        """Forget the run; the next sample starts another. Callbacks stay."""
         self._ledger = Ledger()
         self._lanes = self._make_lanes()
+        self._kept = Kept(self._ledger, self.choice.keep)
         delay = self._compiled.checked.max_delay or 0
         holds_back = delay or self._settle == "next"
         self._intake = Intake(delay, self._compiled.checked.events) if holds_back else None
@@ -69,6 +77,10 @@ class Monitor:
         self._last: int | None = None
         self._reached: int | None = None
         self._report: Report | None = None
+        self._attend()
+
+    def _attend(self) -> None:
+        """Have what is decided flushed by `_flush`, if it is to be told or bounded."""
 
     def _make_lanes(self) -> Lanes:
         return Lanes(
@@ -118,8 +130,79 @@ class Monitor:
         return self._flush()
 
     def _flush(self) -> Sequence[Attempt]:
-        """What was decided since the last call."""
-        return self._ledger.flush()
+        """What was decided since the last call; all that hear of it have done so."""
+        decided = self._ledger.flush()
+        self._kept.bound(self._lanes)
+        self._tell(decided)
+        return decided
+
+    def _tell(self, decided: Sequence[Attempt]) -> None:
+        """Call the callbacks; the monitor is done with what it was asked for."""
+        if not self._callbacks:
+            return
+        errors: list[Exception] = []
+        for attempt in decided:
+            for failures_only, callback in tuple(self._callbacks.values()):
+                asked = attempt.verdict is Verdict.FAIL or not failures_only
+                if attempt.decided is None or not asked:
+                    continue
+                try:
+                    callback(attempt)
+                except Exception as error:  # noqa: BLE001 - the others are called first
+                    errors.append(error)
+        if len(errors) > 1:
+            raise ExceptionGroup("several callbacks of a monitor failed", errors)
+        if errors:
+            raise errors[0]
+
+    def on_decided(self, callback: Callback) -> Callable[[], None]:
+        r"""Have a function called with each attempt that passes or fails, as it is decided.
+
+        `step`, `advance` and `finish` call it when all their records are made, in the order in
+        which they return them, in the thread that called them; it may look at the monitor. An
+        attempt that ends undecided is only in the report. What a callback raises comes out of
+        that call when all callbacks were called for all attempts (several errors as an
+        `ExceptionGroup`); the sample was taken nevertheless. Callbacks stay over `reset`, and are
+        no part of snapshots: register them again after `Spec.restore`.
+
+        Args:
+            callback: takes an attempt.
+
+        Returns:
+            A function without arguments that ends this; to call it again does nothing.
+
+        Raises:
+            RvmonError: it cannot be called.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> stop = monitor.on_decided(lambda attempt: print(attempt.name, attempt.verdict.name))
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        R1#1 FAIL
+        >>> _ = monitor.finish(5)
+        R1#2 PASS
+        >>> stop()
+        """
+        return self._register(callback, failures_only=False)
+
+    def on_failure(self, callback: Callback) -> Callable[[], None]:
+        """Have a function called with each attempt that fails; otherwise as `on_decided`."""
+        return self._register(callback, failures_only=True)
+
+    def _register(self, callback: Callback, *, failures_only: bool) -> Callable[[], None]:
+        if not callable(callback):
+            raise RvmonError(f"expected a function that takes an attempt, found {callback!r}")
+        key = object()
+        self._callbacks[key] = (failures_only, callback)
+        self._attend()
+
+        def stop() -> None:
+            self._callbacks.pop(key, None)
+            self._attend()
+
+        return stop
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         self._health.note(t, values)
@@ -178,20 +261,23 @@ class Monitor:
             t_ns = self._taken_time(t_ns)
         for sample in () if self._intake is None else self._intake.close():
             self._judge(sample.t, sample.values)
-        self._report = self._conclude(t_ns)
+        self._report, decided = self._conclude(t_ns)
+        self._tell(decided)
         return self._report
 
-    def _conclude(self, t_ns: int | None) -> Report:
-        """Judge the run that ends, all samples of which were taken."""
+    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        """Judge the run that ends, all samples of which were taken; also what this decided."""
         end = self._end(t_ns)
         if end is not None:
             reached = end if self._reached is None else max(end, self._reached)
             self._lanes.through(end)
             self._lanes.finish(end, reached)
-        self._ledger.close()
-        return report_of(
-            [compiled.requirement.id for compiled in self._requirements],
+        decided = self._ledger.close()
+        self._kept.trim()
+        report = report_of(
+            self._names,
             self._ledger.attempts,
+            dropped=self._kept.dropped,
             untold=self._lanes.untold(),
             health=self._health.report(
                 self._requirements, self._lanes.main.flow.inputs, self._intake
@@ -199,6 +285,35 @@ class Monitor:
             origin=self._health.began or 0,
             end=end,
         )
+        return report, decided
+
+    @property
+    def _names(self) -> list[str]:
+        return [compiled.requirement.id for compiled in self._requirements]
+
+    @property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        r"""The verdict of each requirement so far: the fold of the attempts decided by now.
+
+        `F` if an attempt has failed, else `P` if one has passed, else `NT`. What is undecided does
+        not count, so that this is not what `finish` would say: it may call a run `I` or `F` that
+        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's.
+        A call costs what was decided since the last one.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        ...     print(monitor.verdicts["R1"])
+        NT
+        F
+        F
+        """
+        return self._verdicts_so_far() if self._report is None else self._report.verdicts
+
+    def _verdicts_so_far(self) -> Mapping[str, Verdict]:
+        return self._kept.verdicts(self._names)
 
     def _end(self, t: int | None) -> int | None:
         """The last instant of the trace; `None` if there was no sample."""
@@ -229,6 +344,7 @@ class Monitor:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
         from rvmon.monitor.snapshot import snapshot
 
+        self._kept.tidy(self._lanes)
         return snapshot(self)
 
     @property

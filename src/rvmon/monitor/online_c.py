@@ -7,6 +7,7 @@ from typing import Any
 
 from rvmon.codegen.c_exact import several_payloads, too_large
 from rvmon.codegen.c_online import NEVER, NOT_YET, OnlineLibrary, online_library
+from rvmon.codegen.c_tables import VERDICTS
 from rvmon.errors import SnapshotError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.lanes import Lanes
@@ -15,6 +16,7 @@ from rvmon.monitor.planned import plan_alone
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict, fold
 
 
 class CompiledMonitor(Monitor):
@@ -44,10 +46,15 @@ class CompiledMonitor(Monitor):
         self._library = library
         self._ids = [one.requirement.id for one in requirements]
         self._core = library.core(absent, look_closer=super().step, look_closer_ns=self.step_slowly)
-        super().__init__(compiled, requirements, "c", settle, sources)
-        if self._intake is None:
+        super().__init__(compiled, requirements, "c", settle, sources, None)
+
+    def _attend(self) -> None:
+        if self._intake is None and not self._callbacks:
             self.__dict__["step"] = self._core.step
             self.__dict__["step_ns"] = self._core.step_ns
+        else:
+            self.__dict__.pop("step", None)
+            self.__dict__.pop("step_ns", None)
 
     def _make_lanes(self) -> Lanes:
         return Lanes(self._compiled.checked, (), "auto", self._sources, self._ledger)
@@ -66,7 +73,12 @@ class CompiledMonitor(Monitor):
 
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """See `Monitor.step_ns`."""
-        return self.step_slowly(t_ns, values)
+        if self._intake is not None:
+            decided = self.step_slowly(t_ns, values)
+        else:
+            decided = self._core.step_ns(t_ns, values)
+        self._tell(decided)
+        return decided
 
     def step_slowly(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample by the way of every monitor."""
@@ -110,16 +122,25 @@ class CompiledMonitor(Monitor):
     def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
         """See `Monitor.advance_ns`."""
         self._see()
-        return super().advance_ns(t_ns)
+        decided = super().advance_ns(t_ns)
+        self._tell(decided)
+        return decided
 
-    def _conclude(self, t_ns: int | None) -> Report:
+    def _verdicts_so_far(self) -> Mapping[str, Verdict]:
+        so_far = (Verdict.FAIL, Verdict.PASS)
+        return {
+            name: fold(verdict for verdict in so_far if own[VERDICTS.index(verdict)])
+            for name, own in zip(self._ids, self._core.counts(), strict=True)
+        }
+
+    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
         import numpy as np
 
         from rvmon.codegen.c_batch import RECORD, Told
         from rvmon.monitor.recorded import report_of_records
 
         end = self._core.close(t_ns)
-        self._core.flush()
+        decided = self._core.flush()
         self._see()
         told = Told(
             np.frombuffer(self._core.records(), RECORD),
@@ -127,7 +148,7 @@ class CompiledMonitor(Monitor):
             counts=np.array(self._core.counts(), np.int64).reshape(-1, 4),
             end=None if end == NOT_YET else end,
         )
-        return report_of_records(self._ids, told, origin=self._health.began or 0)
+        return report_of_records(self._ids, told, origin=self._health.began or 0), decided
 
     def snapshot(self) -> bytes:
         """Refused: what C holds cannot be checked when it comes back.

@@ -111,7 +111,7 @@ class _Run(Monitor):
         streams: bool,
     ) -> None:
         self._streams = streams
-        super().__init__(compiled, requirements, "auto", settle, sources)
+        super().__init__(compiled, requirements, "auto", settle, sources, None)
 
     def _make_lanes(self) -> Lanes:
         self._gauged = _Gauged()

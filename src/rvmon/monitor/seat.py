@@ -99,11 +99,13 @@ class Seat(Witness):
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
         attempt.doubt = self.judge_now(rule)._doubt()
+        self._unit.news = True
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
         """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
         if verdict and attempt.void:
             self._ledger.say_nothing(self.judge_now(rule), attempt)
+            self._unit.news = True  # no record, but something that is kept; so it is below
             return
         if not attempt.sure:
             return  # met, triggered or not

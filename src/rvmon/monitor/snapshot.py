@@ -44,11 +44,9 @@ def snapshot(monitor: Monitor) -> bytes:
         "engine": choice.engine,
         "settle": choice.settle,
         "sources": None if choice.sources is None else sorted(choice.sources),
+        "keep": choice.keep,
         "machines": [_machine(one, choice.engine) for one in choice.requirements],
-        "locations": {
-            judge.compiled.requirement.id: machine.table()
-            for judge, machine in _progressing(monitor)
-        },
+        "locations": {name: machine.table() for name, _, machine in _progressing(monitor)},
     }
     freezer = Freezer(_plans(choice.compiled))
     document["lanes"] = freezer.freeze(lanes.shape())
@@ -93,6 +91,7 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
         engine=document["engine"],
         settle=document["settle"],
         sources=document["sources"],
+        keep=document["keep"],
     )
     choice = monitor.choice
     if document["machines"] != [_machine(one, choice.engine) for one in choice.requirements]:
@@ -101,8 +100,7 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
     monitor.lanes.rebuild(thawer.thaw(document["lanes"]))
     thawer.into(monitor, document["state"])
     moved: dict[str, list[int]] = {}
-    for judge, machine in _progressing(monitor):
-        name = judge.compiled.requirement.id
+    for name, judge, machine in _progressing(monitor):
         if name not in moved:
             moved[name] = machine.learn(document["locations"][name])
         for attempt in judge.attempts:
@@ -173,12 +171,13 @@ def _said(value: Any) -> Iterator[str]:
         yield repr(value)
 
 
-def _progressing(monitor: Monitor) -> Iterator[tuple[Judge, Progression]]:
-    """The judges whose locations are numbered as they are met."""
+def _progressing(monitor: Monitor) -> Iterator[tuple[str, Judge, Progression]]:
+    """The judges whose locations are numbered as they are met, and the name of what they judge."""
+    names = {id(one): name for name, one in _judged(monitor.choice.compiled)}
     for lane in monitor.lanes.all:
         for judge in lane.judges:
             if isinstance(judge, Judge) and isinstance(judge.machine, Progression):
-                yield judge, judge.machine
+                yield names[id(judge.compiled)], judge, judge.machine
 
 
 def _machine(compiled: CompiledRequirement, engine: str) -> str:
@@ -193,9 +192,12 @@ def _machine(compiled: CompiledRequirement, engine: str) -> str:
 
 
 def _plans(compiled: CompiledSpec) -> Mapping[str, Plan]:
-    """The plans of networks, those of attempts in doubt behind their requirement's name."""
-    return {
-        name + kind: judge.network_plan
-        for name, one in compiled.requirements.items()
-        for kind, judge in one.judges.items()
-    }
+    """The plans of networks."""
+    return {name: one.network_plan for name, one in _judged(compiled)}
+
+
+def _judged(compiled: CompiledSpec) -> Iterator[tuple[str, CompiledRequirement]]:
+    """What is judged by name, for attempts in doubt behind their requirement's."""
+    for name, one in compiled.requirements.items():
+        for kind, judged in one.judges.items():
+            yield name + kind, judged

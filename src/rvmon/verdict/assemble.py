@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
@@ -16,6 +17,7 @@ def report_of(
     requirements: Sequence[str],
     attempts: Iterable[Attempt],
     *,
+    dropped: Mapping[str, Mapping[Verdict, int]] | None = None,
     health: Sequence[Health] = (),
     untold: Collection[str] = (),
     trace: str = "",
@@ -27,6 +29,7 @@ def report_of(
     Args:
         requirements: all ids that were judged, in the order of the file.
         attempts: of these requirements, in any order.
+        dropped: by requirement, how many attempts more there were, by verdict.
         health: findings about the input.
         untold: the ids of those whose trigger was never true or false: without attempts, they are
             inconclusive.
@@ -48,18 +51,20 @@ def report_of(
         return (decided is None, decided or 0, place, attempt.in_doubt, attempt.number)
 
     ordered = tuple(sorted(attempts, key=order))
-    by_requirement: dict[str, list[Verdict]] = {name: [] for name in requirements}
+    not_kept = {name: {**found} for name, found in (dropped or {}).items()}
+    by_requirement = {name: Counter(not_kept.get(name)) for name in requirements}
     for attempt in ordered:
-        by_requirement[attempt.requirement].append(attempt.verdict)
+        by_requirement[attempt.requirement][attempt.verdict] += 1
     return Report(
         verdicts={
             name: fold(seen, told=name not in untold) for name, seen in by_requirement.items()
         },
         attempts=ordered,
         counts={
-            name: {verdict: seen.count(verdict) for verdict in _ATTEMPT_VERDICTS}
+            name: {verdict: seen[verdict] for verdict in _ATTEMPT_VERDICTS}
             for name, seen in by_requirement.items()
         },
+        dropped=not_kept,
         health=tuple(health),
         trace=trace,
         origin=origin,

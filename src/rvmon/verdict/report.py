@@ -31,6 +31,8 @@ class Report:
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
         law: version of the law that judged; a report that was kept may be of an older one.
+        dropped: by requirement, how many of its attempts were not kept, by verdict; verdicts and
+            counts speak of them as well.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -44,6 +46,7 @@ class Report:
     late: Mapping[str, Mapping[int, int]] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
     law: int = LAW
+    dropped: Mapping[str, Mapping[Verdict, int]] = field(default_factory=dict)
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.

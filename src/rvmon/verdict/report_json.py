@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import msgspec
 
@@ -23,6 +23,7 @@ class _AttemptsJson(msgspec.Struct):
     verdict: Verdict
     nearest_miss: str = ""
     late: dict[int, int] = {}
+    dropped: dict[Literal["P", "F", "I"], Annotated[int, msgspec.Meta(gt=0)]] = {}
 
 
 class _ReportJson(msgspec.Struct):
@@ -61,6 +62,8 @@ def _document(report: Report, attempts: Mapping[str, Sequence[str]]) -> Iterator
                 yield ","
             yield text
         rest: dict[str, object] = {"counts": report.counts[name]}
+        if report.dropped.get(name):
+            rest["dropped"] = report.dropped[name]
         if name in report.misses:
             rest["nearest_miss"] = report.misses[name]
         if report.late.get(name):
@@ -98,7 +101,7 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
 def decode(text: str | bytes) -> Report:
     """Read a report from JSON text.
 
-    Verdicts and counts are folded anew from the attempts.
+    Verdicts and counts are folded anew from the attempts, and from how many were dropped.
 
     Raises:
         TraceError: the text is no report.
@@ -115,6 +118,11 @@ def decode(text: str | bytes) -> Report:
     report = report_of(
         tuple(document.requirements),
         attempts,
+        dropped={
+            name: {Verdict(verdict): count for verdict, count in entry.dropped.items()}
+            for name, entry in document.requirements.items()
+            if entry.dropped
+        },
         health=document.health,
         untold=[
             name

@@ -95,9 +95,7 @@ def test_a_moment_of_a_run_is_the_run_up_to_there(time: TimeModel) -> None:
                 key: one.triggered
                 for key, one in waiting.items()
                 if not (key[1] and key not in told)
-            } == {
-                key: outcome.triggered for key, outcome in told.items() if key not in wanted
-            }
+            } == {key: outcome.triggered for key, outcome in told.items() if key not in wanted}
             seen.update(decided=len(decided), waiting=len(waiting))
     assert min(seen.values()) > 20
 

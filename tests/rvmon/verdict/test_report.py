@@ -52,6 +52,26 @@ def test_order_and_fold() -> None:
     assert got.counts["R3"] == {"P": 0, "F": 0, "I": 0}
 
 
+def test_what_was_not_kept_counts() -> None:
+    """Verdicts and counts speak of dropped attempts as well, also when read back."""
+    dropped = {"R1": {Verdict.FAIL: 3, Verdict.PASS: 10}, "R3": {Verdict.INCONCLUSIVE: 1}}
+    got = report_of(["R1", "R2", "R3"], attempts(), dropped=dropped)
+    assert got.verdicts == {"R1": "F", "R2": "F", "R3": "I"}
+    assert got.counts["R1"] == {"P": 11, "F": 3, "I": 0}
+    assert got.dropped == dropped
+    text = got.to_json()
+    assert json.loads(text)["requirements"]["R1"]["dropped"] == {"F": 3, "P": 10}
+    assert Report.from_json(text) == got
+
+
+@pytest.mark.parametrize("dropped", ['{"F":-1}', '{"NT":1}', '{"F":"x"}', "3"])
+def test_wrong_counts_of_what_was_not_kept_are_refused(dropped: str) -> None:
+    """They are no report."""
+    text = report().to_json().replace('"counts"', f'"dropped":{dropped},"counts"', 1)
+    with pytest.raises(TraceError):
+        Report.from_json(text)
+
+
 def test_json_round_trip() -> None:
     """What is written is read back equal."""
     assert Report.from_json(report().to_json()) == report()

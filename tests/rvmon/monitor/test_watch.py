@@ -1,0 +1,376 @@
+"""A monitor that watches for weeks: verdicts so far, callbacks, and records that are not kept."""
+
+import itertools
+
+import pytest
+
+import rvmon
+from rvmon.errors import RvmonError, TraceError
+from rvmon.monitor.compiled import ENGINES
+from rvmon.verdict.report import Report
+
+SPEC = """
+spec watch
+time held
+signal x : real
+signal y : real
+event e, stop, beat
+requirement L1 "level"
+  always x <= 3
+requirement U1 "edge"
+  upon e
+  then within 3 s stop
+requirement Y1 "reads what may be lost"
+  upon e
+  then immediately y > 0
+requirement B1 "a heart that beats"
+  always within 3 s beat
+"""
+
+
+def samples(count):
+    """Samples a second apart, in which each requirement passes, fails and goes on."""
+    for i in range(count):
+        values = {"x": 5.0 if i % 4 == 1 else 1.0}
+        if i == 0:
+            values["y"] = 1.0
+        if i % 20 == 10:
+            values["y"] = None
+        elif i % 20 == 15:
+            values["y"] = float(i % 3 - 1)
+        values |= {"e": True} if i % 2 else {}
+        values |= {"stop": True} if i % 5 == 0 else {}
+        values |= {"beat": True} if i % 7 < 3 else {}
+        yield i * 10**9, values
+
+
+def key(attempt):
+    return (attempt.requirement, attempt.number, attempt.in_doubt, attempt.verdict.value)
+
+
+@pytest.fixture(name="spec", scope="module")
+def _spec():
+    return rvmon.loads(SPEC)
+
+
+@pytest.fixture(name="engine", params=ENGINES)
+def _engine(request, spec):
+    try:
+        spec.monitor(engine=request.param)
+    except RvmonError as error:
+        pytest.skip(str(error))
+    return request.param
+
+
+# Verdicts so far.
+
+
+def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec, engine):
+    """F if an attempt failed, else P if one passed, else NT, after each call."""
+    monitor = spec.monitor(engine=engine)
+    seen = {name: set() for name in spec.requirements}
+    assert set(monitor.verdicts.values()) == {"NT"}
+    for t, values in samples(60):
+        for attempt in monitor.step_ns(t, values):
+            seen[attempt.requirement].add(attempt.verdict)
+        expected = {
+            name: next((one for one in ("F", "P") if one in own), "NT")
+            for name, own in seen.items()
+        }
+        assert monitor.verdicts == expected
+    assert monitor.verdicts == {"L1": "F", "U1": "F", "Y1": "F", "B1": "F"}
+    report = monitor.finish()
+    assert monitor.verdicts == report.verdicts
+    monitor.reset()
+    assert set(monitor.verdicts.values()) == {"NT"}
+
+
+def test_what_is_undecided_does_not_count_so_far(spec, engine):
+    """An open attempt leaves the verdict; what `finish` makes of it is the report's."""
+    monitor = spec.monitor(engine=engine, only=["U1"])
+    monitor.step(0, {"e": True})
+    assert monitor.verdicts == {"U1": "NT"}
+    monitor.step(1, {"stop": True})
+    monitor.step(2, {"e": True})
+    assert monitor.verdicts == {"U1": "P"}
+    assert monitor.finish().verdicts == {"U1": "I"}
+    assert monitor.verdicts == {"U1": "I"}
+
+
+# Callbacks.
+
+
+@pytest.mark.parametrize("settle", ["now", "next"])
+def test_callbacks_hear_of_each_decision_once_in_order(spec, engine, settle):
+    """They hear what the calls return and what finish decides, failures alone if asked."""
+    monitor = spec.monitor(engine=engine, settle=settle)
+    heard, failed, returned = [], [], []
+    monitor.on_decided(heard.append)
+    monitor.on_failure(failed.append)
+    for t, values in samples(60):
+        returned += monitor.step_ns(t, values)
+        returned += monitor.advance_ns(t + 5 * 10**8)
+        assert heard[: len(returned)] == returned
+        assert len(heard) == len(returned)
+    report = monitor.finish(70)
+    decided = [one for one in report.attempts if one.decided is not None]
+    assert sorted(map(key, heard)) == sorted(map(key, decided))
+    assert failed == [one for one in heard if one.verdict == "F"]
+    assert len(failed) > 20
+    monitor.finish()
+    assert len(heard) == len(decided)
+
+
+def test_a_monitor_that_is_listened_to_returns_the_same(spec, engine):
+    """A callback changes neither records nor what is due next."""
+    plain, watched = spec.monitor(engine=engine), spec.monitor(engine=engine)
+    watched.on_failure(lambda _: None)
+    for t, values in samples(60):
+        assert watched.step_ns(t, values) == plain.step_ns(t, values)
+        assert watched.next_due == plain.next_due
+        assert watched.advance_ns(t + 10**8) == plain.advance_ns(t + 10**8)
+    assert watched.finish() == plain.finish()
+
+
+def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec, engine):
+    """It hears nothing after it was taken away, twice does no harm; until then every run."""
+    monitor = spec.monitor(engine=engine, only=["L1"])
+    heard = []
+    stop = monitor.on_failure(heard.append)
+    monitor.step(0, {"x": 5})
+    monitor.reset()
+    monitor.step(0, {"x": 5})
+    assert [one.decided for one in heard] == [0, 0]
+    stop()
+    stop()
+    monitor.step(1, {"x": 1})
+    assert len(monitor.step(2, {"x": 5})) == 1
+    assert len(heard) == 2
+    monitor.on_failure(heard.append)
+    monitor.step(3, {"x": 1})
+    monitor.step(4, {"x": 5})
+    assert len(heard) == 3
+
+
+def test_what_a_callback_raises_leaves_the_monitor_in_order(spec, engine):
+    """The sample counts, the other callbacks hear, and the run goes on as without it."""
+    plain, monitor = spec.monitor(engine=engine), spec.monitor(engine=engine)
+    heard = []
+
+    def broken(attempt):
+        raise ValueError(attempt.requirement)
+
+    monitor.on_failure(broken)
+    monitor.on_decided(heard.append)
+    raised = 0
+
+    def call(method, *given):
+        nonlocal raised
+        try:
+            getattr(monitor, method)(*given)
+        except* ValueError:
+            raised += 1
+
+    for t, values in samples(40):
+        call("step_ns", t, values)
+        call("advance_ns", t + 3 * 10**8)
+        with pytest.raises(TraceError):
+            monitor.step_ns(t + 2 * 10**8, {})
+        plain.step_ns(t, values)
+        plain.advance_ns(t + 3 * 10**8)
+    call("finish", 60)
+    assert raised > 10
+    report = plain.finish(60)
+    assert monitor.finish() == report
+    assert len(heard) == sum(one.decided is not None for one in report.attempts)
+
+
+def test_a_callback_may_look_at_the_monitor(spec, engine):
+    """Verdicts, what is open and a snapshot are those after the call."""
+    monitor = spec.monitor(engine=engine, only=["L1", "B1"])
+    seen = []
+
+    def look(attempt):
+        seen.append((monitor.verdicts[attempt.requirement], spec.restore(monitor.snapshot()).open))
+        assert seen[-1][1] == monitor.open
+
+    monitor.on_failure(look)
+    for t, values in samples(20):
+        monitor.step_ns(t, values)
+        monitor.advance_ns(t + 10)
+    assert len(seen) > 5
+    assert {verdict for verdict, _ in seen} == {"F"}
+
+
+def test_what_cannot_be_called_is_refused(spec):
+    """The error shows what was given."""
+    with pytest.raises(RvmonError, match="takes an attempt, found 3"):
+        spec.monitor().on_failure(3)
+
+
+def test_compiled_monitors_tell_the_same(spec, extensions, tmp_path, monkeypatch):
+    """Callbacks and verdicts so far of the engine `c` are those of the others."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr("rvmon.codegen.c_online.FAST", ("-O0",))
+    for settle in ("now", "next"):
+        compiled = spec.monitor(engine="c", settle=settle)
+        plain = spec.monitor(settle=settle)
+        heard, expected = [], []
+        stop = compiled.on_decided(heard.append)
+        plain.on_decided(expected.append)
+        for t, values in samples(60):
+            compiled.step(t / 10**9, values)
+            plain.step(t / 10**9, values)
+            compiled.advance_ns(t + 10)
+            plain.advance_ns(t + 10)
+            assert compiled.verdicts == plain.verdicts
+            assert list(map(key, heard)) == list(map(key, expected))
+        assert compiled.finish().verdicts == plain.finish().verdicts
+        assert list(map(key, heard)) == list(map(key, expected))
+        stop()
+        compiled.reset()
+        decided = [*compiled.step(0, {"x": 5.0}), *compiled.advance(1)]
+        assert [one.name for one in decided] == ["L1#1"]
+        assert len(heard) == len(expected)
+    with pytest.raises(RvmonError, match="keeps all records"):
+        spec.monitor(engine="c", keep=3)
+
+
+# What is kept.
+
+
+@pytest.mark.parametrize("keep", [0, 1, 7])
+def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec, engine, keep):
+    """Verdicts and counts are those of a run that keeps all; the rest is told as dropped."""
+    plain, monitor = spec.monitor(engine=engine), spec.monitor(engine=engine, keep=keep)
+    for t, values in samples(1500):
+        assert monitor.step_ns(t, values) == plain.step_ns(t, values)
+        if t % (100 * 10**9) == 0:
+            assert monitor.verdicts == plain.verdicts
+    expected, report = plain.finish(), monitor.finish()
+    assert (report.verdicts, report.counts) == (expected.verdicts, expected.counts)
+    for name, counts in expected.counts.items():
+        for verdict, count in counts.items():
+            own = list(expected.of(name, verdict))
+            assert list(map(key, report.of(name, verdict))) == (
+                list(map(key, own[-keep:])) if keep else []
+            )
+            assert report.dropped.get(name, {}).get(verdict, 0) == max(0, count - keep)
+    assert Report.from_json(report.to_json()) == report
+
+
+def test_memory_does_not_grow_with_what_stays_undecided(spec, engine):
+    """Attempts that unknown input has left without a way out are dropped, but counted."""
+    monitor = spec.monitor(engine=engine, only=["Y1"], keep=5)
+    monitor.step(0, {"y": None})
+    most = 0
+    for second in range(1, 3000):
+        monitor.step(second, {"e": True})
+        most = max(most, len(monitor.open)) if second % 100 == 0 else most
+    assert most < 1000
+    report = monitor.finish()
+    assert report.counts["Y1"] == {"P": 0, "F": 0, "I": 2999}
+    assert (len(report.attempts), report.dropped) == (5, {"Y1": {"I": 2994}})
+    assert [one.number for one in report.attempts] == [*range(2995, 3000)]
+
+
+def test_attempts_in_doubt_are_bounded_too(engine):
+    """Episodes whose trigger is lost, one after the other, whose consequent fails."""
+    spec = rvmon.loads("""
+spec doubts
+time held
+signal p, q : bool
+requirement W1
+  whenever p
+  then q
+requirement U1
+  upon p
+  then within 5 ms q
+""")
+    plain, monitor = spec.monitor(engine=engine), spec.monitor(engine=engine, keep=4)
+    for t in range(4000):
+        values = {"p": None if t % 2 else False, "q": False}
+        assert monitor.step(t, values) == plain.step(t, values)
+    assert len(plain.open) > 3000
+    assert len(monitor.open) < 2000
+    expected, report = plain.finish(), monitor.finish()
+    assert report.counts == expected.counts
+    for name in spec.requirements:
+        assert list(map(key, report.of(name, "I"))) == list(map(key, expected.of(name, "I")))[-4:]
+
+
+def test_void_episodes_are_bounded_too(engine):
+    """Episodes that were over before all that is owed had a value."""
+    spec = rvmon.loads("""
+spec void
+signal p : bool
+signal q : bool
+requirement W1
+  whenever p
+  then q
+""")
+    plain, monitor = spec.monitor(engine=engine), spec.monitor(engine=engine, keep=4)
+    for t in range(2000):
+        plain.step(t, {"p": bool(t % 2)})
+        monitor.step(t, {"p": bool(t % 2)})
+    assert len(plain.open) == 1000
+    assert len(monitor.open) < 700
+    expected, report = plain.finish(), monitor.finish()
+    assert report.counts == expected.counts
+    assert list(report.attempts) == list(expected.attempts)[-4:]
+
+
+def test_a_snapshot_carries_the_counts(spec, engine):
+    """A run that is put away and taken up again drops and counts as if it had not been."""
+    plain, monitor = spec.monitor(engine=engine, keep=3), spec.monitor(engine=engine, keep=3)
+    sizes = []
+    for index, (t, values) in enumerate(samples(1000)):
+        plain.step_ns(t, values)
+        monitor.step_ns(t, values)
+        if index % 250 == 249:
+            data = monitor.snapshot()
+            sizes.append(len(data))
+            verdicts = monitor.verdicts
+            monitor = spec.restore(data)
+            assert monitor.verdicts == verdicts == plain.verdicts
+    assert max(sizes) < 1.5 * min(sizes)
+    expected = plain.finish()
+    assert monitor.finish() == expected
+    assert expected.dropped
+
+
+@pytest.mark.parametrize("keep", [-1, 2.0, True, "3"])
+def test_what_is_no_count_is_refused(spec, keep):
+    """The error says what is expected."""
+    with pytest.raises(RvmonError, match="whole number from 0 on"):
+        spec.monitor(keep=keep)
+
+
+def test_instances_and_captured_attempts_are_bounded(spec):
+    """What has judges of its own, per key or per attempt, is bounded per requirement."""
+    spec = rvmon.loads("""
+spec keys
+signal y : real
+signal s : real
+event e(id: int)
+requirement K1
+  upon e
+  then immediately y > 0
+  for each k in e.id
+requirement C1
+  upon e
+  then immediately y > v
+  let v = s
+""")
+    plain, monitor = spec.monitor(), spec.monitor(keep=3)
+    for one in (plain, monitor):
+        one.step(0, {"s": 1.0, "y": None})
+        for t, key_ in zip(range(1, 1200), itertools.cycle(range(5)), strict=False):
+            one.step(t, {"e": {"id": key_}})
+    assert len(monitor.open) < 1500 < len(plain.open)
+    expected, report = plain.finish(), monitor.finish()
+    assert report.counts == expected.counts
+    assert {name: sum(own.values()) for name, own in report.dropped.items()} == {
+        "K1": 1196,
+        "C1": 1196,
+    }
