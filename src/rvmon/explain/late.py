@@ -78,7 +78,7 @@ def late_arrivals(
             continue
         key = (formula, tuple(attempt.captured.items()))
         if key not in seen:
-            state = state_of(formula, requirement, Factory(), spec)
+            state = state_of(formula, Factory(), spec)
             instance = _instance(requirement, attempt.captured, begin)
             truths = state_truths(spec, [state], samples, end, instance, attempt.captured, names)
             seen[key] = truths[state].sure

@@ -68,7 +68,7 @@ def nearest_miss(
         return ""
     options = [_flat(part, BinaryOp.AND) for part in _flat(trigger, BinaryOp.OR)]
     factory = Factory()
-    states = {part: state_of(part, requirement, factory, spec) for o in options for part in o}
+    states = {part: state_of(part, factory, spec) for o in options for part in o}
     truths = state_truths(spec, list(states.values()), samples, end, None, {}, names)
     seen = {part: truths[state] for part, state in states.items()}
     misses = [_miss(parts, seen) for parts in options]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import assert_never
 
 from rvmon.dataflow.graph import graph_of
 from rvmon.formula.factory import Factory
-from rvmon.formula.lower import lower
+from rvmon.formula.four import Reader
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import Elapsed, Leaf, Lost, Missing, State, Unborn
+from rvmon.formula.state import UNKNOWN, Elapsed, Leaf, Lost, Missing, State, Unborn
 from rvmon.spec.checked import (
     BoundAtom,
     CheckedSpec,
@@ -28,14 +27,9 @@ from rvmon.spec.checked import (
 )
 
 
-def state_of(
-    formula: Formula, requirement: Requirement, factory: Factory, spec: CheckedSpec
-) -> State:
-    """A formula of a requirement, of present and past only, as the flow reads it."""
-    alone = replace(requirement, trigger=formula, consequent=Constant(True), captures=())
-    state = lower(alone, factory, spec.period).trigger
-    assert state is not None, "`end` stands alone"  # noqa: S101
-    return state
+def state_of(formula: Formula, factory: Factory, spec: CheckedSpec) -> State:
+    """A formula of present and past only, as the flow reads it; what is not born is unknown."""
+    return Reader(factory, spec.period).four(formula).read(UNKNOWN)
 
 
 def values_read(
@@ -50,7 +44,7 @@ def values_read(
     if spec.time is TimeModel.SAMPLED or requirement.for_each is not None:
         return None
     factory = Factory()
-    graph = graph_of(state_of(formula, requirement, factory, spec) for formula in formulas)
+    graph = graph_of(state_of(formula, factory, spec) for formula in formulas)
     leaves = [node.leaf for node in graph.nodes if node.leaf is not None]
     names = frozenset(graph.by_name)
     return names if all(map(_is_of_values, leaves)) and not names & stale else None

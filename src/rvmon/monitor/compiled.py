@@ -34,6 +34,9 @@ RUN_BYTES = 20
 MOST_SEEN = 19
 """So many truth values, seen at the trigger, fit into a number of 32 bits."""
 
+_BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
+"""What judges attempts in doubt has to be small: it is rarely asked for, and built beside each."""
+
 ENGINES = ("auto", "python", "automaton", "progression", "network")
 
 ALL_ENGINES = (*ENGINES, "c")
@@ -90,6 +93,7 @@ class CompiledRequirement:
         obligation: its formulas.
         alphabet: of what it owes.
         gap: ticks between two positions; `None` if only samples are positions.
+        is_beside: whether this judges the attempts in doubt of a requirement.
     """
 
     def __init__(
@@ -99,8 +103,11 @@ class CompiledRequirement:
         obligation: Obligation,
         factory: Factory,
         gap: int | None,
+        *,
+        is_beside: bool = False,
     ) -> None:
         self._factory = factory
+        self.is_beside = is_beside
         self.rank = rank
         self.gap = gap
         self.requirement = requirement
@@ -113,7 +120,8 @@ class CompiledRequirement:
         if self.network_plan.looks_back:
             return DoesNotCloseError("something of the future below an operator of the past")
         try:
-            return reduce(construct(self._owed, self.alphabet, Budget()), self.words.told)
+            budget = _BESIDE if self.is_beside else Budget()
+            return reduce(construct(self._owed, self.alphabet, budget), self.words.told)
         except DoesNotCloseError as error:
             return error.with_traceback(None)  # which would keep the frames of whoever asked
 

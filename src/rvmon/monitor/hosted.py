@@ -189,6 +189,7 @@ class _Hearing:
 
 
 def _judge(compiled: CompiledRequirement, flow: Flow, clerk: Clerk) -> Bench:
-    if compiled.automaton is None:
+    # No automaton is built while a monitor runs, as it would be here for attempts in doubt.
+    if compiled.is_beside or compiled.automaton is None:
         return NetworkJudge(compiled, compiled.network_plan, flow, clerk, {})
     return Judge(compiled, compiled.machine("auto"), flow, clerk, {})

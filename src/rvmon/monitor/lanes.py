@@ -220,15 +220,9 @@ class Lanes:
         return judge
 
     def _new_judge(self, compiled: CompiledRequirement, flow: Flow, captured: Captured) -> Bench:
-        # What judges attempts in doubt need not have an automaton where the requirement has.
-        hidden = (
-            compiled.obligation.trigger
-            is not self._by_id[compiled.requirement.id].obligation.trigger
-        )
-        engine = "auto" if hidden and self.engine == "automaton" else self.engine
-        if compiled.engine(engine) == "network":
+        if compiled.is_beside or compiled.engine(self.engine) == "network":
             return NetworkJudge(compiled, compiled.network_plan, flow, self.ledger, captured)
-        return Judge(compiled, compiled.machine(engine), flow, self.ledger, captured)
+        return Judge(compiled, compiled.machine(self.engine), flow, self.ledger, captured)
 
     def _seat(
         self,

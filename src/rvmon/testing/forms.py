@@ -170,7 +170,9 @@ class _Alone:
             RvmonError: its fold of the verdicts is not that of the attempts.
         """
         verdicts = self.monitor.finish_ns(t_ns)
-        report = report_of(self.names, _records(self.monitor.attempts))
+        # That a requirement without attempts is inconclusive is for the file to say.
+        untold = [name for name, verdict in verdicts.items() if verdict == "I"]
+        report = report_of(self.names, _records(self.monitor.attempts), untold=untold)
         if dict(report.verdicts) != verdicts:
             raise RvmonError(f"the file says {verdicts}, its attempts say {report.verdicts}")
         return report
@@ -185,6 +187,7 @@ def _records(found: Sequence[Any]) -> list[Attempt]:
             one.decided,
             Verdict(one.verdict),
             Decision(one.decision),
+            in_doubt=one.in_doubt,
         )
         for one in found
     ]

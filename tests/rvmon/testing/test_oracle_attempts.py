@@ -50,7 +50,7 @@ def starts(judge: Any, trigger: Formula, **told: Any) -> list[int]:
     [
         ("0.1.0.1", [2, 6]),
         ("1.0.1", [0, 4]),
-        # Never known before counts as an edge, unknown after known does not.
+        # Not born before counts as an edge, unknown after known does not.
         ("u.1", [2]),
         ("0u1", []),
         ("1u1", [0]),
@@ -180,12 +180,12 @@ def test_order_of_the_report(judge: Any) -> None:
         ({"p": "01.0", "q": "01", "x": "123456"}, ["1 P 3"]),
         ({"p": "01110", "q": "01"}, ["1 P 4"]),
         ({"p": "1.01.0", "q": "1"}, ["0 P 2", "3 P 5"]),
-        # An unknown trigger neither ends nor restarts the episode; q is owed there if it held.
+        # An unknown trigger starts an episode and ends none; q is owed there if it held.
         ({"p": "1u10", "q": "1"}, ["0 P 3"]),
         ({"p": "1u10", "q": "101"}, ["0 I"]),
         ({"p": "1u10", "q": "100"}, ["0 F 2"]),
         ({"p": "1u0", "q": "1"}, ["0 P 2"]),
-        ({"p": "0u1", "q": "0"}, []),
+        ({"p": "0u1", "q": "0"}, ["1 F 2"]),
         ({"p": "u1.0", "q": "1"}, ["1 P 3"]),
         ({"p": "1.u", "q": "1"}, ["0 P 2 held"]),
         # What is owed but not known leaves the episode open, unless something else fails.
@@ -194,9 +194,10 @@ def test_order_of_the_report(judge: Any) -> None:
         # Running at the end: held to it.
         ({"p": "1", "q": "1", "end": 4}, ["0 P 4 held"]),
         ({"p": "1", "q": "1u1", "end": 4}, ["0 I"]),
-        # A failed episode still has to end before another starts.
+        # A failed episode goes on where what is owed has not failed at once.
         ({"p": "1..01", "q": "0"}, ["0 F 0", "4 F 4"]),
-        ({"p": "1.1.1", "q": "01"}, ["0 F 0"]),
+        ({"p": "1.1.1", "q": "01"}, ["0 F 0", "1 P 4 held"]),
+        ({"p": "1....0", "q": "0101"}, ["0 F 0", "1 F 2", "3 P 5"]),
     ],
 )
 def test_whenever(judge: Any, rows: Any, expected: list[str]) -> None:

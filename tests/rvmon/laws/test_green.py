@@ -1,0 +1,23 @@
+"""Green never hides a failure: what was lost, filled in, turns no verdict."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import assume
+from hypothesis import strategies as st
+
+from rvmon.testing.sound import is_spoken_of, overturned
+from rvmon.testing.strategies import cases
+
+
+def test_filling_in_what_was_lost(subject: Any, holds: Any) -> None:
+    """A run's P or NT never becomes F, nor its F anything else."""
+
+    @holds
+    def _(data: st.DataObject) -> None:
+        case = data.draw(cases(subject.profile))
+        assume(is_spoken_of(case.spec))
+        dice = data.draw(st.randoms(use_true_random=False))
+        _, overturning = overturned(dice, case, 4, subject.judge)
+        assert overturning is None
