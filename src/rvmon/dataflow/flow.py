@@ -37,6 +37,7 @@ class Flow:
         since: per node, the position from which on it has had its value.
         memory: what the nodes that look back remember.
         cut: the instant from which on the node of `cut_off` is FALSE.
+        uncut: that node, and the value that it would have.
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class Flow:
         self._wakes: dict[int, int] = {}
         self._left = True
         self.cut = NEVER
+        self.uncut = (-1, FALSE)
         self._cut_place = -1
         self.memory: dict[int, Since | Previous | Hidden] = {}
         self._momentary = frozenset(
@@ -98,7 +100,11 @@ class Flow:
                 if state in self.graph.index:
                     made._take_over(place, self)
             made._left = not occurring
-            made.evaluate(self.position)
+            if occurring:  # of the position that this one is at: nobody moves
+                made._last = self._last
+                made._settle(self.position)
+            else:
+                made.evaluate(self.position)
         return made
 
     def cut_off(self, place: int) -> None:
@@ -107,9 +113,11 @@ class Flow:
         self._cut_place = place
 
         def evaluate(t: int) -> int:
+            value = read(t)
             if t < self.cut:
-                return read(t)
+                return value
             self._set_wake(place, NEVER)
+            self.uncut = place, value
             return FALSE
 
         self._evaluate[place] = evaluate
@@ -153,7 +161,11 @@ class Flow:
         if self.inputs.next_expiry <= t:
             for name in self.inputs.expire(t):
                 dirty.update(self.graph.by_name.get(name, ()))
-        changed, evaluated = self._propagate(t, dirty)
+        return self._settle(t)
+
+    def _settle(self, t: int) -> list[int]:
+        """Evaluate what may have changed, at the position at `t`; returns the nodes that did."""
+        changed, evaluated = self._propagate(t, self._dirty)
         values = self.values
         self._fading = [place for place in self._momentary & evaluated if values[place] != FALSE]
         self._dirty = set()

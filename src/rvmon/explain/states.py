@@ -57,11 +57,9 @@ def _is_of_values(leaf: Leaf) -> bool:
             return all(isinstance(part, SignalValue | Literal) for part in parts)
         case ProbeAtom(probe=probe):
             return probe is Probe.KNOWN
-        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed() | Unborn():
+        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed() | Unborn() | Lost():
             return True
         case Missing(atom=atom):
             return _is_of_values(atom)
-        case Lost():
-            return False
         case _:
             assert_never(leaf)

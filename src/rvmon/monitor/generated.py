@@ -260,7 +260,7 @@ class GeneratedMonitor(Monitor):
 
     def _attend(self) -> None:
         attends = self._callbacks or self.choice.keep is not None
-        self._unit_lanes.told = self._flush if attends else self._ledger.flush
+        self._unit_lanes.told = self._hear if attends else self._ledger.flush
 
     def reset(self) -> None:
         """Forget the run; the next sample starts another."""
@@ -284,8 +284,13 @@ class GeneratedMonitor(Monitor):
         self._see()
         return super().step_ns(t_ns, values)
 
-    def _flush(self) -> Sequence[Attempt]:
+    def _hear(self) -> Sequence[Attempt]:
+        """Give out what the generated code has decided by itself."""
         self._see()
+        return self._flush()
+
+    def _flush(self) -> Sequence[Attempt]:
+        self._floor = self._unit.after
         self._unit.news = False
         self._close_off()
         return super()._flush()

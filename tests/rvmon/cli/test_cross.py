@@ -70,7 +70,7 @@ def test_a_disagreement_is_shown_with_attempt_and_instant(files, capsys, monkeyp
     monkeypatch.setattr(cross, "_judged", crooked)
     assert main(["cross", *files, "--only", "D1"]) == 1
     shown = capsys.readouterr().out
-    assert "≠ network: D1 #2: triggered at 5 s, F at 7.000000001 s" in shown
+    assert "≠ network: D1#2: triggered at 5 s, F at 7.000000001 s" in shown
 
 
 def test_the_oracle_notices_a_wrong_baseline(files, capsys, monkeypatch):
@@ -87,7 +87,7 @@ def test_the_oracle_notices_a_wrong_baseline(files, capsys, monkeypatch):
 
     monkeypatch.setattr(cross, "_judged", late)
     assert main(["cross", *files, "--only", "D1"]) == 1
-    assert "≠ oracle: D1 #1" in capsys.readouterr().out
+    assert "≠ oracle: D1#1" in capsys.readouterr().out
 
 
 def test_long_recordings_are_nothing_for_the_oracle(tmp_path, capsys):

@@ -89,6 +89,12 @@ def changed(report: Report, **fields: object) -> Report:
     return report_of(tuple(report.verdicts), attempts, end=report.end)
 
 
+def refolded(report: Report, attempts: Sequence[Attempt]) -> Report:
+    """A report of other attempts on the same run."""
+    untold = [name for name, v in report.verdicts.items() if v is Verdict.INCONCLUSIVE]
+    return report_of(tuple(report.verdicts), attempts, untold=untold, end=report.end)
+
+
 class LateDeadline(Echo):
     """Wrong by one tick where a deadline is missed."""
 
@@ -105,7 +111,7 @@ class LateDeadline(Echo):
             else a
             for a in report.attempts
         ]
-        return report_of(tuple(report.verdicts), attempts, end=report.end)
+        return refolded(report, attempts)
 
 
 class Silent(Echo):
