@@ -148,6 +148,8 @@ class VisitWriter:
         yield from self._concluded([*self._concerns(triggers=triggers)], triggers=triggers)
         if timed or not self.calm:
             yield from indented(self._alarm())
+        elif self.goes_on:
+            yield from indented(self._resumption())
         yield from indented(self._news())
         if timed:
             yield "else:"
@@ -226,6 +228,10 @@ class VisitWriter:
             yield "    self.wake = t + 1"
             yield "else:"
         yield from indented(wake, 1 if waiting else 0)
+        yield from self._resumption()
+
+    def _resumption(self) -> Iterator[str]:
+        """What has failed may go on before anything else happens."""
         if self.goes_on:
             yield "if self.resume_at < self.wake:"
             yield "    self.wake = self.resume_at"

@@ -292,8 +292,8 @@ class Unit(Nodes):
             rule.visit(t)
             if not (rule.runs or rule.attempts):
                 self.active ^= bit
-                if rule.failed_at is not None:
-                    self.follow(rule)
+            if rule.failed_at is not None:
+                self.follow(rule)
         again = triggers >> len(rules)
         triggers &= (1 << len(rules)) - 1
         while triggers:
@@ -316,8 +316,8 @@ class Unit(Nodes):
             rule.visit(t)
             if not (rule.runs or rule.attempts):
                 self.active = 0
-                if rule.failed_at is not None:
-                    self.follow(rule)
+            if rule.failed_at is not None:
+                self.follow(rule)
         if triggers & 1 and rule.starts(self.v[rule.trigger]):
             self.begin(rule, t)
         if triggers >> 1 & self.failing or self.resume_at <= t:
