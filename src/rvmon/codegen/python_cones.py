@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.plan import Plan, asks_knowledge
 from rvmon.codegen.python_leaves import known_test
 from rvmon.codegen.python_nodes import NodeWriter, Roles, bits
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
@@ -47,7 +47,7 @@ class ConeWriter:
         self.cones = [
             self._above(place)
             for place, state in enumerate(plan.graph.nodes)
-            if state.leaf is not None
+            if state.leaf is not None and not asks_knowledge(state.leaf)
         ]
         self.small = sum(map(len, self.cones)) <= _MOST
         self.each = plan.gap in (None, 1)

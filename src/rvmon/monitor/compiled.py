@@ -194,7 +194,9 @@ class CompiledRequirement:
     def _beside(self, obligation: Obligation | None) -> CompiledRequirement | None:
         if obligation is None:
             return None
-        return CompiledRequirement(self.rank, self.requirement, obligation, self._factory, self.gap)
+        return CompiledRequirement(
+            self.rank, self.requirement, obligation, self._factory, self.gap, is_beside=True
+        )
 
     @cached_property
     def _table(self) -> TableMachine | None:
