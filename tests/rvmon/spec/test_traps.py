@@ -6,13 +6,14 @@ from dataclasses import replace
 import pytest
 
 from rvmon.diagnostics.span import Source, Span
-from rvmon.spec.checked import Constant, TimeModel, Unary, UnaryOp
+from rvmon.spec.checked import Constant, TimeModel, Unary, UnaryOp, UpdateValue
 from rvmon.spec.compile import compile_text
 from rvmon.spec.traps import traps_at_start, traps_at_trigger
 from rvmon.testing import build
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.law import judge
+from rvmon.testing.walk import numerics
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
 
@@ -179,7 +180,7 @@ def born(case):
     """The case with a value for each signal in its first sample: what is unborn fails nothing."""
     first = case.samples[0]
     known = {name: value for name, value in first.values.items() if value is not None}
-    whole = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red", **known}
+    whole = {"p": True, "q": False, "r": True, "x": 1, "y": 2, "mode": "red", **known}
     actions = (Sample(first.t, whole), *case.actions[1:])
     return replace(case, actions=actions, names=None)
 
@@ -194,6 +195,8 @@ def test_what_is_said_of_the_first_instant_holds_on_every_run():
             continue
         if not list(traps_at_start(*parts, NOWHERE)):
             continue
+        if any(isinstance(one, UpdateValue) for one in numerics(owed)):
+            continue  # it is born with the second update, and fails nothing before
         warned += 1
         own = build.spec_of(requirement, time=time, period=period)
         case = random_trace(random.Random(number), own, TraceProfile(advances=False))
