@@ -179,8 +179,7 @@ def owed_first():
 def born(case):
     """The case with a value for each signal in its first sample: what is unborn fails nothing."""
     first = case.samples[0]
-    known = {name: value for name, value in first.values.items() if value is not None}
-    whole = {"p": True, "q": False, "r": True, "x": 1, "y": 2, "mode": "red", **known}
+    whole = {**first.values, "p": True, "q": False, "r": True, "x": 1, "y": 2, "mode": "red"}
     actions = (Sample(first.t, whole), *case.actions[1:])
     return replace(case, actions=actions, names=None)
 
