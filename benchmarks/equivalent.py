@@ -47,9 +47,6 @@ EQUIVALENT = {
     "lower.py and/or: `interval and interval.high` => `interval or interval.high`": (
         "`held` always has an interval"
     ),
-    "lane.py dropped statement: `self._pass_to(min(position - 1, limit))` => `pass`": (
-        "a visit, and `reach`, let time pass to the instant before by themselves"
-    ),
     "graph.py constant: `remembers = False` => `remembers = (True)`": (
         "what came before is replayed where going on from now would do"
     ),
