@@ -66,9 +66,9 @@ class ConeWriter:
             yield f"def cone{leaf}(self, t):"
             lines = [*self.nodes.statements(leaf), *self.visit.momentary_lines(leaf)]
             lines += [f"if n == v[{leaf}]:", "    return 0, 0, fading"]
-            lines += ["if n == 2:", *indented(self._cone(places, "2"))]
-            lines += ["elif n == 0:", *indented(self._cone(places, "0"))]
-            lines += ["else:", *indented(self._cone(places, "1"))]
+            lines += ["if n == 2:", *indented(self._cone([leaf], places, "2"))]
+            lines += ["elif n == 0:", *indented(self._cone([leaf], places, "0"))]
+            lines += ["else:", *indented(self._cone([leaf], places, "1"))]
             yield "    letters = triggers = fading = 0"
             yield from indented([*at_hand(lines), *lines])
             yield "    return letters, triggers, fading"
@@ -85,10 +85,10 @@ class ConeWriter:
             name: of the signal.
             kept: what keeps the value.
         """
-        places = self._cone_of(name)
+        leaves, places = self.plan.readers(name), self._cone_of(name)
         lines = list(kept)
-        for test, value in self._values(places[0]):
-            lines += [test, *indented(self._moved(places, value))]
+        for test, value in self._values(leaves[0]):
+            lines += [test, *indented(self._moved(leaves, places, value))]
         timed = self.joins or any(self.nodes.is_timed(place) for place in places)
         triggers = self.joins or any(self.roles.triggers[place] for place in places)
         lines += self.visit.followed(timed=timed, triggers=triggers)
@@ -116,27 +116,30 @@ class ConeWriter:
             yield f"if {test}:", "2"
             yield "else:", "0"
 
-    def _moved(self, places: list[int], value: str) -> Iterator[str]:
-        """What a sample does that may bring a leaf another value."""
+    def _moved(self, leaves: Sequence[int], places: list[int], value: str) -> Iterator[str]:
+        """What a sample does that may bring leaves another value, the same to all."""
         if self.joins:
-            yield f"if v[{places[0]}] != {value}:"
-            yield from indented(self._cone(places, value))
+            yield f"if v[{leaves[0]}] != {value}:"
+            yield from indented(self._cone(leaves, places, value))
             return
-        if not isinstance(self.plan.graph.nodes[places[0]].leaf, SignalAtom):
-            yield f"if v[{places[0]}] == {value}:"
+        if not isinstance(self.plan.graph.nodes[leaves[0]].leaf, SignalAtom):
+            yield f"if v[{leaves[0]}] == {value}:"
             yield from indented(self.visit.done())
             yield "    return ()"
-        yield from self._cone(places, value)
+        yield from self._cone(leaves, places, value)
 
     def can_follow(self, name: str, instant: frozenset[int]) -> bool:
-        """Whether what follows from another value can be written: it is read by one leaf.
+        """Whether what follows from another value can be written: one atom reads it.
+
+        The atom may stand as several leaves, which differ where the signal is not known only.
 
         Args:
             name: of a signal.
             instant: the leaves that depend on the present value of one signal and nothing else.
         """
         readers = self.plan.readers(name)
-        return self.each and self.small and len(readers) == 1 and instant.issuperset(readers)
+        atoms = {self.plan.graph.nodes[place].leaf for place in readers}
+        return self.each and self.small and len(atoms) == 1 and instant.issuperset(readers)
 
     def apart(self, name: str, quiet: str) -> str:
         """The condition under which a sample that brings another value of a signal is `followed`.
@@ -145,7 +148,7 @@ class ConeWriter:
             name: of the signal.
             quiet: the condition under which nothing but a new value can change anything.
         """
-        if self.plan.knowers(name):
+        if self.plan.knowers(name) or len(self.plan.readers(name)) > 1:
             quiet += f" and self.last{self.plan.signals.index(name)} is not MISSING"
         if not self.joins:
             return quiet
@@ -155,26 +158,35 @@ class ConeWriter:
         return f"(t < self.wake or {late}){rest}"
 
     def _cone_of(self, name: str) -> list[int]:
-        (leaf,) = self.plan.readers(name)
-        (places,) = (places for places in self.cones if places[0] == leaf)
-        return places
+        readers = self.plan.readers(name)
+        return sorted({place for places in self.cones if places[0] in readers for place in places})
 
-    def _cone(self, places: list[int], value: str) -> Iterator[str]:
-        """What the new value of a leaf makes of the nodes above it."""
-        leaf, *above = places
+    def _cone(self, leaves: Sequence[int], places: list[int], value: str) -> Iterator[str]:
+        """What the new value of leaves makes of the nodes above them.
+
+        Args:
+            leaves: all of them take the value.
+            places: of the leaves and what is above them.
+            value: the new one.
+        """
+        above = [place for place in places if place not in leaves]
         below = {
             place: [other for other in places if self.roles.parents[other] >> place & 1]
             for place in above
         }
-        self.nodes.settling(leaf, value)
+        for leaf in leaves:
+            self.nodes.settling(leaf, value)
         written = {place: self._value_of(place) for place in above}
         self.nodes.settled.clear()
         roots = _nested(above, below)
         waiting = [
-            root.place for root in roots if leaf not in below[root.place] and written[root.place][0]
+            root.place
+            for root in roots
+            if not set(leaves).intersection(below[root.place]) and written[root.place][0]
         ]
         asked = {other for place in waiting for other in below[place]}
-        yield from self.visit.changed(leaf, value)
+        for leaf in leaves:
+            yield from self.visit.changed(leaf, value)
         if asked:
             yield f"{' = '.join(f'moved{other}' for other in sorted(asked))} = False"
         for root in roots:
