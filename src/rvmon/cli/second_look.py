@@ -53,7 +53,7 @@ def second_look(
         names: the signals and events that have a source; `None`: all.
         goals: whether the cover goals are asked for.
     """
-    silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
+    silent = [name for name in report.verdicts if report.is_silent(name)]
     end = report.end
     if end is None or not can_be_read_again(trace):
         return report

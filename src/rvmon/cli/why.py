@@ -113,10 +113,12 @@ def _named(text: str, spec: Spec) -> tuple[str, str | None]:
 
 
 def _chosen(report: Report, name: str, exact: str | None) -> Attempt:
+    from rvmon.report.afterword import without_attempts
+
     attempts = sorted(report.attempts, key=lambda attempt: (attempt.in_doubt, attempt.number))
     if not attempts:
-        miss = f": {report.misses[name]}" if report.misses.get(name) else ""
-        raise RvmonError(f"error: {name} was not triggered in this recording{miss}")
+        why = without_attempts(report.verdicts[name], report.misses.get(name, ""))
+        raise RvmonError(f"error: {name} has no attempt in this recording: {why}")
     if exact is None:
         return _most_telling(attempts)
     for attempt in attempts:

@@ -19,8 +19,11 @@ from rvmon.spec.checked import (
     EventAtom,
     Formula,
     Requirement,
+    SignalAtom,
 )
 from rvmon.spec.printer import format_formula
+from rvmon.spec.reads import names_read
+from rvmon.trace.gaps import is_unknown
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import format_ticks
 
@@ -73,7 +76,10 @@ def nearest_miss(
     seen = {part: truths[state] for part, state in states.items()}
     misses = [_miss(parts, seen) for parts in options]
     best = min(misses, key=lambda miss: len(miss.missing))
-    return _sentence(best, seen, samples[0].t, end)
+    if best.missing and best.at is None:
+        unborn = _unborn(spec, best.parts, samples, names)
+        return "; ".join(_apart(best.parts, seen, unborn, samples[0].t, end))
+    return _sentence(best, seen)
 
 
 def read_as_values(spec: CheckedSpec, requirement: Requirement) -> frozenset[str] | None:
@@ -111,13 +117,12 @@ def _holds(spans: Spans, t: int) -> bool:
     return place > 0 and t <= spans[place - 1][1]
 
 
-def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], start: int, end: int) -> str:
-    if not miss.missing:
-        when = "" if miss.at is None else f" at {format_ticks(miss.at)}"
-        return f"its trigger was true{when}, but not known to be false before: no edge was seen"
-    if miss.at is None:
-        return "; ".join(_apart(miss.parts, seen, start, end))
+def _sentence(miss: _Miss, seen: Mapping[Formula, Truth]) -> str:
+    """What is to be said if some part was true, or there is none."""
     at = miss.at
+    if at is None or not miss.missing:
+        when = "" if at is None else f" at {format_ticks(at)}"
+        return f"its trigger was true{when}, but not known to be false before: no edge was seen"
     rest = miss.there[0]
     for part in miss.there[1:]:
         rest = Binary(BinaryOp.AND, rest, part)
@@ -128,14 +133,20 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth], start: int, end: int) 
 
 
 def _apart(
-    parts: tuple[Formula, ...], seen: Mapping[Formula, Truth], start: int, end: int
+    parts: tuple[Formula, ...],
+    seen: Mapping[Formula, Truth],
+    unborn: Mapping[str, str],
+    start: int,
+    end: int,
 ) -> Iterator[str]:
-    """What is to be said of parts of which none was ever true."""
+    """What is to be said of parts of which none was ever true, and of signals without a value."""
     groups: dict[str, list[Formula]] = {}
     for part in parts:
         word = "was never true"
         low, high = seen[part].may[0]
-        if low <= start and high >= end:
+        if isinstance(part, SignalAtom) and part.name in unborn:
+            word = unborn[part.name]
+        elif low <= start and high >= end:
             word = "was never known"
         elif low <= end:
             word = "was never known to be true"
@@ -144,6 +155,26 @@ def _apart(
         groups.setdefault(word, []).append(part)
     for word, own in groups.items():
         yield f"{_listed(own)} {word}"
+    said = {part.name for part in parts if isinstance(part, SignalAtom)}
+    for name in sorted(unborn.keys() - said):
+        yield f"`{name}` {unborn[name]}"
+
+
+def _unborn(
+    spec: CheckedSpec,
+    parts: Sequence[Formula],
+    samples: Sequence[Sample],
+    sources: frozenset[str] | None,
+) -> Mapping[str, str]:
+    """Of the signals that parts read, those without any value, and what is to be said of them."""
+    lacking = {name for part in parts for name in names_read(part)} & spec.signals.keys()
+    absent = set() if sources is None else lacking - sources
+    lacking -= absent
+    for sample in samples:
+        if not lacking:
+            break
+        lacking -= {name for name in lacking if not is_unknown(sample.values.get(name))}
+    return dict.fromkeys(absent, "has no source") | dict.fromkeys(lacking, "never had a value")
 
 
 def _listed(parts: Sequence[Formula]) -> str:

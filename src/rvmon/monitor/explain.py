@@ -11,10 +11,12 @@ from rvmon.dataflow.flow import Flow
 from rvmon.formula.horizon import horizon
 from rvmon.formula.progress import after
 from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.doubt import outage_in_words
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.reasons import Reasons
 from rvmon.monitor.sentence import told
 from rvmon.monitor.wording import settled_alone
+from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
@@ -104,7 +106,7 @@ def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) 
     residual = after(judge.machine.residual(location), [now // 2 - anchor for anchor in anchors])
     owed = judge.compiled.words.owed(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    reason = f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}"
+    reason = f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}{unborn(judge, end)}"
     return Explanation(reason, owed, deadline=_deadline(judge, attempt))
 
 
@@ -134,6 +136,17 @@ def still_owed(owed: str, end: int | None) -> str:
     """What an undecided attempt waits for, or waited for when the trace ended."""
     when = "" if end is None else f" when the recording ended at {format_ticks(end)}"
     return f"still owed{when}: {owed}"
+
+
+def unborn(judge: Bench, end: int | None) -> str:
+    """Which of what a requirement reads has had no value so far: nothing holds of it, or fails."""
+    reads, outages = judge.flow.graph.reads, judge.flow.outages
+    names = {name for place, _ in judge.leaves for name in reads[place].names & outages.keys()}
+    found = [outages[name] for name in sorted(names)]
+    ended = "" if end is not None else " so far"
+    return "".join(
+        f"; {outage_in_words(one)}{ended}" for one in found if one.why is HealthKind.MISSING
+    )
 
 
 def longer(judge: Bench, attempt: Open, end: int | None) -> str:

@@ -8,7 +8,7 @@ from rvmon.dataflow.alone import known_alone, settled
 from rvmon.dataflow.network import Network
 from rvmon.monitor.bench import Open
 from rvmon.monitor.cause_network import NetworkCauseFinder
-from rvmon.monitor.explain import Explanation, earlier, longer, still_owed
+from rvmon.monitor.explain import Explanation, earlier, longer, still_owed, unborn
 from rvmon.monitor.network_judge import WAITING, NetworkJudge
 from rvmon.monitor.owed_network import owed_at
 from rvmon.monitor.sentence import told
@@ -52,7 +52,8 @@ def network_open(
     network = judge.moment(network, now).network
     owed = owed_at(network, core, position, network.grown, judge.compiled.words)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    reason = f"{still_owed(owed or 'what lies ahead', end)}{longer(judge, attempt, end)}{doubt}"
+    waiting = still_owed(owed or "what lies ahead", end)
+    reason = f"{waiting}{longer(judge, attempt, end)}{doubt}{unborn(judge, end)}"
     return Explanation(reason, owed, _deadline(judge, attempt, now))
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rvmon.trace.gaps import is_unknown
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 
@@ -86,9 +87,9 @@ class Alternations:
         for name, value in values.items():
             if isinstance(value, Mapping):
                 for field, scalar in value.items():
-                    self._of(f"{name}.{field}").add(is_unknown=_is_unknown(scalar))
+                    self._of(f"{name}.{field}").add(is_unknown=is_unknown(scalar))
             elif not isinstance(value, tuple):
-                self._of(name).add(is_unknown=_is_unknown(value))
+                self._of(name).add(is_unknown=is_unknown(value))
 
     def note_column(self, name: str, unknown: NDArray[np.bool_]) -> None:
         """Look through rows of a signal: whether its value is unknown in each; there is one."""
@@ -114,7 +115,3 @@ class Alternations:
             else one
             for one in health
         )
-
-
-def _is_unknown(value: Any) -> bool:
-    return value is None or (isinstance(value, float) and value != value)

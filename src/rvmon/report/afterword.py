@@ -1,4 +1,4 @@
-"""What the rest of a recording adds to the reason of a failure."""
+"""Why, in full: what the rest of a recording adds to reasons, or says where there is none."""
 
 from __future__ import annotations
 
@@ -6,6 +6,24 @@ from rvmon.spec.printer import format_duration
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+
+def without_attempts(verdict: Verdict, miss: str) -> str:
+    """Why a requirement has no attempt.
+
+    Args:
+        verdict: of the requirement: `NT`, or `I` if its trigger was never known.
+        miss: what the trigger lacked when it was nearest; empty if nobody looked.
+
+    >>> without_attempts(Verdict.NOT_TRIGGERED, "`near` was never true")
+    'never triggered: `near` was never true'
+    >>> without_attempts(Verdict.INCONCLUSIVE, "")
+    'not known ever to be triggered'
+    """
+    told = verdict is Verdict.NOT_TRIGGERED
+    why = "never triggered" if told else "not known ever to be triggered"
+    return f"{why}: {miss}" if miss else why
 
 
 def full_reason(attempt: Attempt, report: Report) -> str:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from rvmon.report.afterword import with_afterword
+from rvmon.report.afterword import with_afterword, without_attempts
 from rvmon.report.panel import Panel
 from rvmon.report.style import MARKS
 from rvmon.report.view import moment, with_moments
-from rvmon.verdict.verdict import Verdict
 
 
 def headline(run: str, panel: Panel, origin: int) -> str:
@@ -21,13 +20,13 @@ def headline(run: str, panel: Panel, origin: int) -> str:
     >>> from rvmon.verdict.attempt import Attempt
     >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
     >>> view = View(0, 20_000_000_000)
-    >>> headline("test 17", Panel("R2-1", "R2", failed, view, (), None), 0)
+    >>> headline("test 17", Panel("R2-1", "R2", failed, failed.verdict, view, (), None), 0)
     'R2 failed, test 17, 14.25 s: `released` too soon'
     """
     attempt = panel.attempt
     if attempt is None:
-        miss = f": {with_moments(panel.miss, panel.view)}" if panel.miss else ""
-        return f"{panel.requirement} {MARKS[Verdict.NOT_TRIGGERED].word}, {run}{miss}"
+        why = without_attempts(panel.verdict, with_moments(panel.miss, panel.view))
+        return f"{panel.requirement} {MARKS[panel.verdict].word}, {run}: {why}"
     when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
     told = with_afterword(attempt, panel.late)
     reason = f": {with_moments(told, panel.view)}" if told else ""

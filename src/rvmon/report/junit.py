@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.report.afterword import full_reason
+from rvmon.report.afterword import full_reason, without_attempts
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -66,13 +66,13 @@ def _add_case(
         ET.SubElement(properties, "property", name="requirement", value=_clean(requirement))
     if verdict is Verdict.PASS:
         return
-    if verdict is Verdict.NOT_TRIGGERED:
-        miss = f": {report.misses[name]}" if name in report.misses else ""
-        ET.SubElement(case, "skipped", message=_clean(f"NT: never triggered{miss}"))
+    if report.is_silent(name):
+        why = without_attempts(verdict, report.misses.get(name, ""))
+        ET.SubElement(case, "skipped", message=_clean(f"{verdict}: {why}"))
         return
     reasons = [
         _clean(
-            f"attempt {attempt.number}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
+            f"attempt {attempt.numbered}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
         )
         for attempt in report.of(name, verdict)
     ]

@@ -9,6 +9,7 @@ from rvmon.report.timeline import Ghost
 from rvmon.report.tracks import Track
 from rvmon.report.view import View
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,19 +19,21 @@ class Panel:
     Attributes:
         id: of the element on the page, and its address behind `#`.
         requirement: its id.
-        attempt: `None` if the requirement was never triggered.
+        attempt: `None` if there is none.
+        verdict: of the attempt, or of a requirement without any.
         view: the stretch of time that is shown.
         tracks: of the signals and events concerned.
         ghost: the nearest passing attempt, for a failed one.
         strands: the truth of each part of the requirement over the view; empty if that would take
             too long.
         late: when what the attempt had awaited came after its deadline, ticks; `None`: it did not.
-        miss: if it was never triggered, what the trigger lacked when it was nearest.
+        miss: without an attempt, what the trigger lacked when it was nearest.
     """
 
     id: str
     requirement: str
     attempt: Attempt | None
+    verdict: Verdict
     view: View
     tracks: tuple[Track, ...]
     ghost: Ghost | None

@@ -32,7 +32,6 @@ def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET
     """
     report = content.run.report
     requirement = content.spec.requirements[panel.requirement]
-    verdict = Verdict.NOT_TRIGGERED if panel.attempt is None else panel.attempt.verdict
     sentence = headline(content.run.name, panel, report.origin)
     end = report.origin if report.end is None else report.end
     blame = None if panel.attempt is None else panel.attempt.blame
@@ -48,8 +47,8 @@ def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET
     )
     return e(
         "section",
-        {"id": panel.id, "data-verdict": verdict.value},
-        e("h1", None, _badge(verdict), e("span", None, *with_code(sentence))),
+        {"id": panel.id, "data-verdict": panel.verdict.value},
+        e("h1", None, _badge(panel.verdict), e("span", None, *with_code(sentence))),
         e("p", {"class": "requirement"}, requirement.text) if requirement.text else None,
         spec_lines(requirement, blame),
         drawing,

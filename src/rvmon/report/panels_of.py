@@ -25,7 +25,7 @@ MOST_DISSECTED = 50_000
 
 
 def panels_of(content: RunPage) -> list[Panel]:
-    """A panel for each attempt that is shown, and for each requirement that was not triggered."""
+    """A panel for each attempt that is shown, and for each requirement without any."""
     return [
         panel
         for name, attempts in shown_attempts(content.run.report).items()
@@ -46,7 +46,9 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
     if not attempts:
         view = whole_run(report, samples[0].t if samples else report.origin)
         miss = _miss(content, name)
-        yield Panel(panel_id(name, None), name, None, view, tracks, None, miss=miss)
+        yield Panel(
+            panel_id(name, None), name, None, report.verdicts[name], view, tracks, None, miss=miss
+        )
     candidates: list[Candidate] = []
     if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
         candidates.append(Candidate(content.run, tracks))
@@ -61,7 +63,17 @@ def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) ->
         if attempt.verdict is Verdict.FAIL:
             ghost = nearest_passing(attempt, tracks, view, candidates)
         strands = dissected.strands(attempt, view)
-        yield Panel(panel_id(name, attempt), name, attempt, view, tracks, ghost, strands, came)
+        yield Panel(
+            panel_id(name, attempt),
+            name,
+            attempt,
+            attempt.verdict,
+            view,
+            tracks,
+            ghost,
+            strands,
+            came,
+        )
 
 
 class _Dissected:

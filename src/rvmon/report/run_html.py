@@ -45,9 +45,7 @@ def _navigation(content: RunPage, panels: Sequence[Panel]) -> ET.Element:
     order = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)
     for name, verdict in content.run.report.verdicts.items():
         own = [panel for panel in panels if panel.requirement == name]
-        worst = min(
-            own, key=lambda panel: order.index(panel.attempt.verdict) if panel.attempt else 0
-        )
+        worst = min(own, key=lambda panel: order.index(panel.verdict) if panel.attempt else 0)
         links.append(
             e(
                 "a",

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.report.afterword import full_reason
+from rvmon.report.afterword import full_reason, without_attempts
 from rvmon.report.forecast import forecast_sentence
 from rvmon.report.wrapped import wrapped
 from rvmon.trace.health import Health, HealthKind
@@ -54,7 +54,8 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     console.print(_verdict_table(report, spec))
     for name, requirement in spec.requirements.items():
         if name in report.misses:
-            console.print(_miss_text(name, report.misses[name], console.width))
+            why = without_attempts(report.verdicts[name], report.misses[name])
+            console.print(_silence_text(name, report.verdicts[name], why, console.width))
         for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             for attempt in islice(report.of(name, verdict), SHOWN_PER_REQUIREMENT):
                 console.print(_attempt_text(attempt, requirement, report, console.width))
@@ -114,14 +115,13 @@ def _goals_text(goals: Mapping[str, Verdict]) -> Text:
     return text
 
 
-def _miss_text(name: str, miss: str, width: int) -> Text:
+def _silence_text(name: str, verdict: Verdict, why: str, width: int) -> Text:
     from rich.text import Text
 
     from rvmon.report.style import verdict_text
 
-    mark = verdict_text(Verdict.NOT_TRIGGERED)
-    told = f"  never triggered\n{wrapped(miss, width)}\n"
-    return Text.assemble((f"{name} ", "bold"), mark, told)
+    told = f"\n{wrapped(why, width)}\n"
+    return Text.assemble((f"{name} ", "bold"), verdict_text(verdict), told)
 
 
 def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, width: int) -> Text:

@@ -45,6 +45,11 @@ class Gaps:
         return same_kind and value == self.no_update
 
 
+def is_unknown(value: Any) -> bool:
+    """Whether the value of a sample is none: NaN, or nothing."""
+    return value is None or (isinstance(value, float) and value != value)
+
+
 NO_GAPS = Gaps()
 """Only what is absent says nothing."""
 

@@ -24,8 +24,8 @@ class Report:
         trace: name of the recording, or empty.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the trace, ticks; `None` if it has no position.
-        misses: by requirement that was not triggered, what its trigger lacked when it was nearest;
-            where somebody looked.
+        misses: by requirement without attempts, what its trigger lacked when it was nearest; where
+            somebody looked.
         late: by requirement and number of the attempt, when what it had awaited came after its
             deadline, ticks; where somebody looked.
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
@@ -62,6 +62,14 @@ class Report:
             for attempt in self.attempts
             if attempt.requirement == requirement and attempt.verdict is verdict
         )
+
+    def is_silent(self, requirement: str) -> bool:
+        """Whether a requirement has no attempt: it is `NT`, or `I` if its trigger was never known.
+
+        Args:
+            requirement: its id.
+        """
+        return not any(self.counts[requirement].values())
 
     def to_json(self) -> str:
         """The report as JSON text, in the shape that `rvmon run --format json` prints.

@@ -91,7 +91,7 @@ def test_late_samples_are_put_in_order(tmp_path, capsys):
         (["none.rv", "a.csv", "D1"], "none.rv"),
         (["door.rv", "-", "D1"], "save the recording"),
         (["door.rv", "b.csv", "D1"], "line 3"),
-        (["door.rv", "c.csv", "D1"], "not triggered"),
+        (["door.rv", "c.csv", "D1"], "never triggered"),
     ],
 )
 def test_wrong_words_are_answered_with_a_mend(door, capsys, words, said):

@@ -9,6 +9,7 @@ from rvmon.trace.sample import Sample
 SPEC = """
 spec s
 signal a, b, c : bool
+signal x : real
 event e, f
 requirement R1 "x"
   upon {}
@@ -33,11 +34,16 @@ CASES = {
         [(0, {"a": False}), (5, {"a": None})],
         "`a` was never known to be true",
     ),
-    "a level that was unknown throughout": ("a", [(0, {"a": None})], "`a` was never known"),
+    "a level that was unknown throughout": ("a", [(0, {"a": None})], "`a` never had a value"),
+    "a comparison of what never came": (
+        "x < 3 and not b",
+        [(0, {"b": True})],
+        "`x < 3` was never known; `not b` was never true; `x` never had a value",
+    ),
     "an input that never came": (
         "e and a",
         [(0, {"b": True})],
-        "`e` never occurred; `a` was never known",
+        "`e` never occurred; `a` never had a value",
     ),
     "an input unknown at the best moment": (
         "e and a",

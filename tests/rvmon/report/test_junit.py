@@ -10,7 +10,7 @@ from rvmon.verdict.verdict import Verdict
 
 SPEC = rvmon.loads(
     "spec door\nsignal a : bool input\n"
-    + "".join(f'requirement D{n} "text {n}"\n  upon a\n  then within 2 s not a\n' for n in range(4))
+    + "".join(f'requirement D{n} "text {n}"\n  upon a\n  then within 2 s not a\n' for n in range(5))
 ).checked
 
 
@@ -22,7 +22,8 @@ def reports():
         Attempt("D1", 2, 1, 6, Verdict.FAIL, reason="again"),
         Attempt("D2", 1, 0, None, Verdict.INCONCLUSIVE, reason="open"),
     ]
-    return [report_of(["D0", "D1", "D2", "D3"], attempts, trace="run\x01.csv")]
+    names = ["D0", "D1", "D2", "D3", "D4"]
+    return [report_of(names, attempts, untold=["D4"], trace="run\x01.csv")]
 
 
 def test_every_verdict_has_its_form():
@@ -33,16 +34,18 @@ def test_every_verdict_has_its_form():
         name: [child.tag for child in case if child.tag != "properties"]
         for name, case in cases.items()
     }
-    assert kinds == {"D0": [], "D1": ["failure"], "D2": ["skipped"], "D3": ["skipped"]}
+    skipped = {name: ["skipped"] for name in ("D2", "D3", "D4")}
+    assert kinds == {"D0": [], "D1": ["failure"], **skipped}
     assert "again" in cases["D1"].find("failure").text
     assert cases["D3"].find("skipped").get("message") == "NT: never triggered"
+    assert cases["D4"].find("skipped").get("message") == "I: not known ever to be triggered"
 
 
 def test_the_suite_counts():
     """CI servers read the counts of the suite."""
     suite = ET.fromstring(junit_xml(reports(), SPEC)).find("testsuite")  # noqa: S314
     shown = {name: suite.get(name) for name in ("tests", "failures", "skipped")}
-    assert shown == {"tests": "4", "failures": "1", "skipped": "2"}
+    assert shown == {"tests": "5", "failures": "1", "skipped": "3"}
 
 
 def test_a_broken_recording_is_an_error():
