@@ -103,7 +103,9 @@ def main(argv: list[str]) -> int:
     with contextlib.ExitStack() as stack:
         each: Iterable[Campaign] = map(work, parts)
         if options.workers > 1:
-            each = stack.enter_context(ProcessPoolExecutor(options.workers)).map(work, parts)
+            pool = stack.enter_context(ProcessPoolExecutor(options.workers))
+            stack.callback(pool.shutdown, cancel_futures=True)
+            each = pool.map(work, parts)
         for part in each:
             total.add(part)
             if options.fail_fast and total.disagreements:

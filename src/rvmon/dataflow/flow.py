@@ -40,6 +40,8 @@ class Flow:
         uncut: that node, and the value that it would have.
     """
 
+    cut = NEVER
+
     def __init__(
         self, graph: Graph, inputs: Inputs, gap: int | None, captured: Mapping[str, Scalar]
     ) -> None:
@@ -57,7 +59,6 @@ class Flow:
         self._fading: list[int] = []
         self._wakes: dict[int, int] = {}
         self._left = True
-        self.cut = NEVER
         self.uncut = (-1, FALSE)
         self._cut_place = -1
         self.memory: dict[int, Since | Previous | Hidden] = {}
@@ -116,11 +117,18 @@ class Flow:
             value = read(t)
             if t < self.cut:
                 return value
-            self._set_wake(place, NEVER)
+            # An occurrence is over at the next position: nothing else would look there.
+            passing = place in self._momentary and value != FALSE
+            self._set_wake(place, t + (self.gap or 1) if passing else NEVER)
             self.uncut = place, value
             return FALSE
 
         self._evaluate[place] = evaluate
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether that instant is set."""
+        return self.cut < NEVER
 
     def cut_at(self, t: int) -> None:
         """Set that instant, which has not come yet."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from rvmon.automaton.machine import INFINITY, Token
@@ -114,7 +114,7 @@ class Bench(ABC):
         self.captured = captured
         index = flow.graph.index
         self.places = tuple(index[state] for state in compiled.alphabet.propositions)
-        self.leaves = tuple((index[leaf], text) for leaf, text in compiled.leaves if leaf in index)
+        self.leaves = leaves_in(flow, compiled)
         self.attempts: list[Open] = []
         self.due = INFINITY
         self.restless = False
@@ -160,22 +160,39 @@ class Bench(ABC):
     def seen(self) -> tuple[int, ...]:
         """The values of the leaves now."""
         values = self.flow.values
-        if self.captured and self.flow.cut < INFINITY:
+        if self.captured and self.flow.is_cut:
             cut, value = self.flow.uncut
             return tuple([value if place == cut else values[place] for place, _ in self.leaves])
         return tuple([values[place] for place, _ in self.leaves])
 
     def _doubt(self) -> Doubt:
         """What is not known at this position of all that is read of the input."""
-        values, reads, outages = self.flow.values, self.flow.graph.reads, self.flow.outages
-        found: dict[str, Outage] = {}
-        texts = []
-        for place, text in self.leaves:
-            if values[place] == UNKNOWN:
-                own = {name: outages[name] for name in sorted(reads[place].names & outages.keys())}
-                found |= own
-                texts += [] if own else [text]
-        return Doubt(self.position, tuple(found.values()), tuple(texts))
+        return doubt_in(self.flow, self.leaves, self.position)
+
+
+def leaves_in(flow: Flow, compiled: CompiledRequirement) -> tuple[tuple[int, str], ...]:
+    """What a requirement reads of the input, as far as a flow has it."""
+    index = flow.graph.index
+    return tuple((index[leaf], text) for leaf, text in compiled.leaves if leaf in index)
+
+
+def doubt_in(flow: Flow, leaves: Sequence[tuple[int, str]], position: int) -> Doubt:
+    """What a flow does not know of some leaves.
+
+    Args:
+        flow: at the position.
+        leaves: place and text of each.
+        position: its instant.
+    """
+    values, reads, outages = flow.values, flow.graph.reads, flow.outages
+    found: dict[str, Outage] = {}
+    texts = []
+    for place, text in leaves:
+        if values[place] == UNKNOWN:
+            own = {name: outages[name] for name in sorted(reads[place].names & outages.keys())}
+            found |= own
+            texts += [] if own else [text]
+    return Doubt(position, tuple(found.values()), tuple(texts))
 
 
 def held_by(judge: Bench) -> tuple[str, Holder, Open | None]:

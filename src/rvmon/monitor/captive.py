@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import payloads_of
 from rvmon.dataflow.numbers import reader
 from rvmon.formula.state import FALSE, UNKNOWN
+from rvmon.monitor.bench import Open, doubt_in, leaves_in
+from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.lane import Lane
-from rvmon.spec.checked import Capture, Numeric
+from rvmon.spec.checked import Numeric
 from rvmon.trace.sample import Payload, Scalar
 
 Captured = Mapping[str, Scalar]
@@ -22,7 +24,7 @@ class CapturedAttempt:
     Args:
         parent: the lane in which it was triggered.
         lane: its own.
-        captures: of its requirement.
+        compiled: its requirement.
         trigger: place of the trigger in the parent's flow: where that is FALSE, it is over.
         doubt: place there of what is UNKNOWN where it may have begun.
 
@@ -30,26 +32,36 @@ class CapturedAttempt:
     """
 
     def __init__(
-        self, parent: Lane, lane: Lane, captures: tuple[Capture, ...], trigger: int, doubt: int
+        self, parent: Lane, lane: Lane, compiled: CompiledRequirement, trigger: int, doubt: int
     ) -> None:
         self._parent = parent
         self._lane = lane
-        self._captures = captures
+        self._captures = compiled.requirement.captures
+        self._leaves = leaves_in(parent.flow, compiled)
         self._trigger = trigger
         self._doubt = doubt
 
     def keeps(self, t: int) -> bool:
         """See `rvmon.monitor.lane.Captive`."""
         flow, lane = self._parent.flow, self._lane
-        if not lane.blurs or lane.is_idle or flow.values[self._trigger] == FALSE:
+        trigger = flow.values[self._trigger]
+        if lane.is_idle or trigger == FALSE:
             lane.blurs = False
-        elif flow.values[self._doubt] == UNKNOWN and not self._is_same(flow):
+        elif lane.blurs and flow.values[self._doubt] == UNKNOWN and not self._is_same(flow):
             lane.flow.cut_at(t)
-            for judge in lane.judges:
-                for attempt in judge.attempts:
-                    attempt.void = True
             lane.blurs = False
-        return lane.blurs
+            doubt = doubt_in(flow, self._leaves, t)
+            for attempt in self._attempts:
+                attempt.doubt = attempt.doubt or doubt
+        for attempt in self._attempts if lane.flow.is_cut else ():
+            attempt.void = True
+            # Its own lane can no longer see whether it is over.
+            attempt.clouded = trigger != FALSE and (attempt.clouded or trigger == UNKNOWN)
+        return lane.blurs or (lane.flow.is_cut and trigger != FALSE)
+
+    @property
+    def _attempts(self) -> Iterator[Open]:
+        return (attempt for judge in self._lane.judges for attempt in judge.attempts)
 
     def _is_same(self, flow: Flow) -> bool:
         made_for = self._lane.made_for

@@ -60,11 +60,6 @@ class Episode:
         """Whether an episode runs: it may go on."""
         return self.current is not None
 
-    @property
-    def has_failed(self) -> bool:
-        """Whether the attempt of the episode that runs has."""
-        return self.failed_at is not None
-
     def begin(self, t: int, triggered: int) -> Open:
         """Start an attempt at the position `t`, which the flow is at."""
         value = self._flow.values[self.place]
@@ -107,7 +102,7 @@ class Episode:
         for attempt in self.judge.attempts:
             if attempt is self.current:
                 attempt.void = attempt.void or self.is_unborn
-            else:
+            elif not self._flow.is_cut:
                 attempt.clouded = False
 
     @property

@@ -117,17 +117,20 @@ def _deadline(judge: Judge, attempt: Open) -> int | None:
         undecided = token[0] > PASSED
         return settled_alone(judge.machine.residual(token[0]), token[1]) if undecided else None
 
-    return earlier(alone(attempt.token), alone(attempt.better or attempt.token))
+    return earlier(attempt, alone(attempt.token), alone(attempt.better or attempt.token))
 
 
-def earlier(worse: tuple[int, bool] | None, better: tuple[int, bool] | None) -> int | None:
+def earlier(
+    attempt: Open, worse: tuple[int, bool] | None, better: tuple[int, bool] | None
+) -> int | None:
     """When two runs come to a decision: the one for the worse has to pass, or the other to fail.
 
     Args:
+        attempt: whose they are; one that is void does not pass.
         worse: what time alone makes of the run that takes the unknown for the worse, and when.
         better: the same of the run that takes it for the better.
     """
-    found = [worse[0]] if worse is not None and worse[1] else []
+    found = [worse[0]] if worse is not None and worse[1] and not attempt.void else []
     found += [better[0]] if better is not None and not better[1] else []
     return min(found, default=None)
 

@@ -68,5 +68,7 @@ def _deadline(judge: NetworkJudge, attempt: Open, now: int) -> int | None:
 
     better = judge.worse if judge.better is None else judge.better
     return earlier(
-        alone(judge.worse, attempt.token), alone(better, attempt.better or attempt.token)
+        attempt,
+        alone(judge.worse, attempt.token),
+        alone(better, attempt.better or attempt.token),
     )

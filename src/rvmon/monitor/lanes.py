@@ -291,8 +291,7 @@ class Lanes:
             return  # what it owes, it owes at one position
         index = parent.flow.graph.index
         lane.flow.cut_off(lane.flow.graph.index[obligation.trigger or doubt])
-        captures = compiled.requirement.captures
-        one = CapturedAttempt(parent, lane, captures, index[main.trigger], index[doubt])
+        one = CapturedAttempt(parent, lane, compiled, index[main.trigger], index[doubt])
         parent.captured.append(one)
         one.keeps(parent.flow.position)
 

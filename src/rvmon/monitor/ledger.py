@@ -202,7 +202,9 @@ def _why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> 
     """What an undecided attempt waits for; one in doubt waits for nothing but to be met."""
     if attempt.sure:
         why = why_open(judge, attempt, now, end)
-        return replace(why, deadline=None) if attempt.void else why
+        # What is owed of signals without a value does not fail, and time gives them none.
+        is_unborn = attempt.void and not judge.flow.is_cut
+        return replace(why, deadline=None) if is_unborn else why
     if attempt.token[0] == FAILED:
         cause = f"; {attempt.doubt}" if attempt.doubt else ""
         return Explanation(f"it is not known whether there was a trigger{cause}")

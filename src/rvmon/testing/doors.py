@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -129,17 +128,6 @@ def _event(
             cells[f"{name}.{field}"] = NAN if scalar is None else scalar
         if chance(dice, 50):
             cells[name] = True
-
-
-def same_doubt(text: str) -> str:
-    """A report's JSON without the positions at which unknown input was noticed.
-
-    What stands there depends on where an engine looked last, not on the door alone.
-
-    >>> same_doubt("`g` unknown at 32 ns")
-    '`g` unknown'
-    """
-    return re.sub(r" unknown at [-0-9.]+ (s|ns)", " unknown", text)
 
 
 Door = Callable[[Content, Path], tuple[Any, dict[str, Any]]]

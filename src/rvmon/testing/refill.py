@@ -19,7 +19,8 @@ def refilled(dice: Dice, case: Case) -> Case:
 
     Signals keep their births: before its first known value nothing of a signal was lost. Where a
     signal became stale, updates may be put in, if nothing in the specification counts updates;
-    events without a source may occur.
+    events without a source may occur. NaN of a signal that ignores it is no update: nothing is lost
+    there.
 
     Args:
         dice: draws the values.
@@ -35,6 +36,8 @@ def refilled(dice: Dice, case: Case) -> Case:
             continue
         values: dict[str, Value] = {}
         for name, value in action.values.items():
+            if name in case.spec.ignoring and not _is_known(value):
+                continue
             values[name] = lost.filled(name, value, born=name in born)
             if name in case.spec.signals:
                 updated[name] = action.t

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rvmon.monitor import build_monitor, compile_spec
-from rvmon.spec.checked import Capture, ForEach, TimeModel
+from rvmon.spec.checked import Capture, EndPolicy, ForEach, TimeModel
 from rvmon.testing.build import (
     always,
     compared,
@@ -71,6 +71,14 @@ CASES = {
     "time that has come to zero, behind the end": (
         requirement(eventually(false, 0, 0), upon=end),
         (Sample(-3, {}), 0),
+    ),
+    "values that may be others in an episode that may be over": (
+        requirement(eventually(false, 0, 9), whenever=f, captures=OF_K, at_end=EndPolicy.STRONG),
+        (Sample(0, {"f": True, "g": {"k": 1}}), Sample(1, {"f": None})),
+    ),
+    "values that may be others in an episode that is over": (
+        requirement(eventually(false, 0, 9), whenever=f, captures=OF_K, at_end=EndPolicy.STRONG),
+        (Sample(0, {"f": True}), Sample(1, {"f": None}), Sample(2, {"f": False})),
     ),
     "an event that is unknown to one reading only": (
         requirement(two(eventually(e, 0, 2), "and", always(p, 1, 3)), upon=start),

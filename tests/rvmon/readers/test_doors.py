@@ -12,7 +12,7 @@ import rvmon
 from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
 from rvmon.session import Spec
 from rvmon.testing.differential import cases_of
-from rvmon.testing.doors import content_of, doors, same_doubt, whole
+from rvmon.testing.doors import content_of, doors, whole
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 
@@ -40,7 +40,7 @@ def judged(spec, trace, **arguments):
 
 def told(spec, trace, **arguments) -> str:
     try:
-        return same_doubt(judged(spec, trace, **arguments).to_json())
+        return judged(spec, trace, **arguments).to_json()
     except RvmonError as error:
         return type(error).__name__
 
