@@ -12,6 +12,7 @@ from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_text import comment, filled, template
 from rvmon.codegen.plan import Plan
 from rvmon.spec.checked import Type
+from rvmon.spec.reads import names_of_requirement
 from rvmon.trace.schema import Kind
 from rvmon.verdict.verdict import LAW
 
@@ -76,6 +77,7 @@ def _is_steady(plan: Plan) -> bool:
 def _entries(plan: Plan, names: Names) -> Iterator[str]:
     spec = plan.spec
     limits = whole_limits(plan)
+    read = {name for rule in plan.rules for name in names_of_requirement(rule.requirement)}
     things: list[tuple[str, int, int, Type | None]] = [
         (name, names.signal(name), -1, signal.type) for name, signal in spec.signals.items()
     ]
@@ -97,10 +99,11 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
         most = f"{min(limits.get(name, EXACT), EXACT - 1)}.0"
         is_event = "true" if type_ is None else "false"
         ignores = "true" if name in spec.ignoring else "false"
-        said = f"{number}, {event}, {kind}, {is_event}, {ignores}, {tables}, {most}"
+        is_read = "true" if name in read else "false"
+        said = f"{number}, {event}, {kind}, {is_event}, {is_read}, {ignores}, {tables}, {most}"
         yield f"    {{{c_string(name)}, {said}}},"
     if not things:
-        yield '    {"", 0, -1, KIND_BOOL, false, false, NULL, NULL, 0.0},'
+        yield '    {"", 0, -1, KIND_BOOL, false, false, false, NULL, NULL, 0.0},'
     yield "};"
     yield f"#define ENTRY_COUNT {max(len(things), 1)}"
     yield ""

@@ -119,11 +119,10 @@ def told(text: str) -> dict:
 
 def said_alike(program, trace, capsys):
     """What program and `rvmon run` both say of a recording."""
-    main(["run", str(program.spec), str(trace), "--format", "json", "--allow-missing"])
+    code = main(["run", str(program.spec), str(trace), "--format", "json", "--allow-missing"])
     expected = told(capsys.readouterr().out)
     done = program.judge(str(trace))
-    failed = any(one[0] == "F" for one in expected.values() if isinstance(one, tuple))
-    assert (done.returncode, done.stderr) == (int(failed), "")
+    assert (done.returncode, done.stderr) == (code, "")
     assert told(done.stdout) == expected
     return expected
 
@@ -263,3 +262,25 @@ def test_a_gap_that_starts_many_attempts(tmp_path, capsys, monkeypatch):
     assert main([*command, "--until", "301"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["requirements"]["R1"]["counts"]["P"] == 22 * 50
+
+
+def test_what_is_read_has_a_column(tmp_path, monkeypatch):
+    """Else the program refuses, or says that it is not known and is not content."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "door.rv").write_text(
+        "spec door\nsignal open, shut : bool\nrequirement R1\n  always not (open and shut)\n"
+    )
+    (tmp_path / "door.csv").write_text("t,open\n0,0\n1,1\n")
+    assert main(["build", str(tmp_path / "door.rv"), "-o", str(tmp_path / "door")]) == 0
+
+    def judged(*words):
+        return subprocess.run(  # noqa: S603
+            [tmp_path / "door", *words, tmp_path / "door.csv"], capture_output=True, check=False
+        )
+
+    refused, allowed = judged(), judged("--allow-missing")
+    assert (refused.returncode, refused.stdout) == (2, b"")
+    assert b"no column" in refused.stderr
+    assert b"`shut`" in refused.stderr
+    assert allowed.returncode == 1
+    assert json.loads(allowed.stdout)["requirements"]["R1"]["verdict"] == "I"
