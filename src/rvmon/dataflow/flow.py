@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping
 from copy import deepcopy
 from heapq import heappop, heappush
 from typing import assert_never
@@ -16,6 +16,8 @@ from rvmon.dataflow.since import Previous, Since
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf, State, StateOp
 from rvmon.spec.checked import Compare, ProbeAtom, SignalAtom
 from rvmon.trace.sample import Scalar
+
+Memory = Since | Previous | Hidden
 
 
 class Flow:
@@ -38,9 +40,11 @@ class Flow:
         memory: what the nodes that look back remember.
         cut: the instant from which on the node of `cut_off` is FALSE.
         uncut: that node, and the value that it would have.
+        begun: of a flow that was made by `twin`, the position from which on it saw what is its own.
     """
 
     cut = NEVER
+    begun: int | None = None
 
     def __init__(
         self, graph: Graph, inputs: Inputs, gap: int | None, captured: Mapping[str, Scalar]
@@ -61,7 +65,7 @@ class Flow:
         self._left = True
         self.uncut = (-1, FALSE)
         self._cut_place = -1
-        self.memory: dict[int, Since | Previous | Hidden] = {}
+        self.memory: dict[int, Memory] = {}
         self._momentary = frozenset(
             place
             for place, reads in graph.reads.items()
@@ -83,30 +87,62 @@ class Flow:
         for name in values:
             self._dirty.update(self.graph.by_name.get(name, ()))
 
-    def fork(self, graph: Graph, captured: Mapping[str, Scalar], *, occurring: bool) -> Flow:
-        """A flow at the same position for another graph.
+    def fork(self, graph: Graph, captured: Mapping[str, Scalar]) -> Flow:
+        """A flow at the same position for another graph, which sees what occurs there.
 
         It must not remember anything but by nodes that this one has, too.
 
         Args:
             graph: of the new flow.
             captured: values of `let` and `for each`.
-            occurring: whether it sees what occurs at this position.
         """
         made = Flow(graph, self.inputs.copy(), self.gap, captured)
         if self.origin is not None:
             made.origin = self.origin
             made._dirty.update(range(len(graph.nodes)))
-            for place, state in enumerate(graph.nodes) if occurring else ():
+            for place, state in enumerate(graph.nodes):
                 if state in self.graph.index:
                     made._take_over(place, self)
-            made._left = not occurring
-            if occurring:  # of the position that this one is at: nobody moves
-                made._last = self._last
-                made._settle(self.position)
-            else:
-                made.evaluate(self.position)
+            made._left = False
+            made._last = self._last
+            made._settle(self.position)
         return made
+
+    def twin(
+        self, captured: Mapping[str, Scalar], varying: Iterable[int], own: Iterable[int]
+    ) -> Flow:
+        """The same flow with other captured values.
+
+        Args:
+            captured: values of `let` and `for each`.
+            varying: the nodes that depend on them; none of them remembers anything.
+            own: the nodes of which nothing is told that was before.
+        """
+        made = Flow(self.graph, self.inputs.copy(), self.gap, captured)
+        made.begun, made.origin, made.position = self.position, self.origin, self.position
+        made.values[:], made.since[:] = self.values, self.since
+        made._until, made._wakes = dict(self._until), dict(self._wakes)
+        made._dirty, made._fading = set(self._dirty), list(self._fading)
+        made._last, made._left = self._last, self._left
+        for place, node in self.memory.items():
+            _copy_memory(node, made.memory[place])
+        if self.origin is not None:
+            made._propagate(self.position, set(varying))
+            for place in own:
+                made.since[place] = self.position
+        return made
+
+    def stands_like(self, other: Flow, varying: Container[int]) -> bool:
+        """Whether a flow of the same graph, at this instant too, goes on as this one will.
+
+        Args:
+            other: that flow.
+            varying: the nodes that depend on captured values.
+        """
+        theirs = other.values
+        return all(
+            value == theirs[place] or place in varying for place, value in enumerate(self.values)
+        ) and all(_remembered(one) == _remembered(other.memory[at]) for at, one in self.memory.items())
 
     def cut_off(self, place: int) -> None:
         """Have a node be FALSE from the instant `cut` on."""
@@ -142,8 +178,7 @@ class Flow:
         if place not in self._momentary:  # those are seen to be over at the next position
             self._dirty.discard(place)
         if theirs in other.memory:
-            for name in type(self.memory[place]).__slots__:
-                setattr(self.memory[place], name, deepcopy(getattr(other.memory[theirs], name)))
+            _copy_memory(other.memory[theirs], self.memory[place])
         if theirs in other._wakes:
             self._wakes[place] = other._wakes[theirs]
 
@@ -307,3 +342,17 @@ class Flow:
             self._wakes[place] = wake
         else:
             self._wakes.pop(place, None)
+
+
+def _copy_memory(source: Memory, target: Memory) -> None:
+    for name in type(target).__slots__:
+        setattr(target, name, deepcopy(getattr(source, name)))
+
+
+def _remembered(node: object) -> tuple[object, ...]:
+    """What a node remembers, by value."""
+    found = []
+    for name in type(node).__slots__:  # type: ignore[attr-defined]
+        one = getattr(node, name)
+        found.append(_remembered(one) if hasattr(type(one), "__slots__") else one)
+    return tuple(found)

@@ -127,6 +127,35 @@ class Lane:
         running = any(episode.is_running for episode in self.episodes)
         return judged and not self.starters and not running
 
+    @property
+    def is_quiet(self) -> bool:
+        """Whether nothing is open in it, waits, or starts before something changes."""
+        return not (
+            self.waiting
+            or self.captured
+            or self._failed
+            or self._repeating
+            or any(judge.attempts for judge in self.judges)
+            or any(episode.is_running for episode in self.episodes)
+            or any(one.trigger is not None and one.trigger.running for one in self.starters)
+        )
+
+    @property
+    def alarm(self) -> int:
+        """An instant before which nothing happens in it, no sample being taken."""
+        return min(self._awaited, self.flow.next_change, self._next_start, self._soonest)
+
+    def twin(self, flow: Flow, captured: Mapping[str, Scalar]) -> Lane:
+        """A lane for the same requirement that waits for what this one does.
+
+        Args:
+            flow: its own.
+            captured: its values.
+        """
+        made = Lane(flow, self.made_for and (self.made_for[0], captured))
+        made.waiting, made._awaited = list(self.waiting), self._awaited
+        return made
+
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`, positions there included, without a further sample."""
         while True:
@@ -266,6 +295,8 @@ class Lane:
     def drop_episode(self, starter: Starter, t: int) -> None:
         """Take it that no episode of a starter is running, and none was before `t`."""
         if starter.trigger is not None:
+            if self.flow.origin is not None:
+                starter.trigger.before = self.flow.values[starter.place]
             starter.trigger.running = False
             starter.since = t
             if starter.trigger.repeats:

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from heapq import heappop, heappush
 
+from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs
+from rvmon.errors import TraceError
 from rvmon.monitor.bench import Bench, Holder, Open, held_by
 from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
 from rvmon.monitor.instances import Instance, seen_by, values_in
 from rvmon.monitor.judge import Judge
+from rvmon.monitor.keyed import MOST_OPEN, Keyed
 from rvmon.monitor.lane import Lane, Starter
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.trigger import Trigger
-from rvmon.spec.checked import CheckedSpec, ForEach, Mode, TimeModel
+from rvmon.spec.checked import CheckedSpec, Mode, TimeModel
 from rvmon.trace.sample import Scalar, Value
+from rvmon.trace.time import format_ticks
 
 Captured = Mapping[str, Scalar]
 
@@ -26,12 +31,12 @@ Start = Callable[[int, int], None]
 """Starts an attempt; see `rvmon.monitor.lane.Starter`."""
 
 Shape = tuple[
-    list[tuple[str, list[tuple[Scalar, int]]]],
+    list[tuple[str, list[tuple[int, Scalar, int]]]],
     list[tuple[str, str, dict[str, Scalar], Scalar, bool]],
     list[str],
     list[int],
 ]
-"""Per requirement the values of its instances with their first instants; per lane its requirement,
+"""Per requirement its instances: rank, value, first instant; per lane its requirement,
 which of its judges it has, captured values, the value of its instance, and whether attempts start
 in it; the requirements of which all values were known so far; the rules of generated code that had
 a judge of their own."""
@@ -49,7 +54,10 @@ class Lanes:
 
     Attributes:
         main: the lane of all requirements without `for each`; its inputs are those of the run.
+        forgets: whether instances are let go of that are over.
     """
+
+    forgets = True
 
     def __init__(
         self,
@@ -65,30 +73,41 @@ class Lanes:
         self.ledger = ledger
         self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
         self._by_id = {compiled.requirement.id: compiled for compiled in requirements}
-        self._each: list[tuple[CompiledRequirement, ForEach]] = []
-        self._instances: dict[str, dict[Scalar, Instance]] = {}
-        needs_history = any(_needs_history(compiled) for compiled in requirements)
-        self._history: list[tuple[int, Mapping[str, Value]]] | None = [] if needs_history else None
-        shared = []
-        for compiled in requirements:
-            if compiled.requirement.for_each is None:
-                shared.append(compiled)
-            else:
-                self._each.append((compiled, compiled.requirement.for_each))
+        self._keyed: dict[str, Keyed] = {}
+        self._history: list[tuple[int, Mapping[str, Value]]] | None = None
+        shared = [one for one in requirements if one.requirement.for_each is None]
         roots = [node for compiled in shared for node in compiled.shared_graph.nodes]
         self.main = Lane(self._flow(graph_of(roots), {}))
-        self._lanes: list[tuple[Lane, Instance | None]] = [(self.main, None)]
         for compiled in shared:
             self._seat(self.main, compiled, {}, None)
-        self._doubted: list[Instance] = []
         self._unopened: dict[str, tuple[Lane, list[Starter], list[Start]]] = {}
-        for compiled, each in self._each:
-            self._make_doubted(compiled, each)
+        self._captured: list[tuple[Lane, Instance | None]] = []
+        self._alarms: list[tuple[int, int, Keyed, Scalar]] = []
+        """When open instances are to be looked at; `_alarm_of` says which entries still hold."""
+        self._alarm_of: dict[Lane, int] = {}
+        self._alarms_set = 0
+        for compiled in requirements:
+            if compiled.requirement.for_each is not None:
+                keyed = self._make_keyed(compiled)
+                self._keyed[compiled.requirement.id] = keyed
+        if any(self._needs_history(compiled) for compiled in requirements):
+            self._history = []
+
+    @property
+    def _entries(self) -> Iterator[tuple[Lane, Instance | None]]:
+        """The lanes there are now, with their instances; those of captured attempts last."""
+        yield self.main, None
+        for keyed in self._keyed.values():
+            yield keyed.template, keyed.doubted
+        for keyed in self._keyed.values():
+            for value, lane in keyed.open.items():
+                yield lane, keyed.known[value]
+        yield from self._captured
 
     @property
     def all(self) -> Sequence[Lane]:
         """The lanes there are now."""
-        return [lane for lane, _ in self._lanes]
+        return [lane for lane, _ in self._entries]
 
     @property
     def judges(self) -> Sequence[Bench]:
@@ -101,26 +120,93 @@ class Lanes:
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit` in all lanes, also those that are made on the way."""
+        self.main.through(limit)
+        for keyed in self._keyed.values():
+            keyed.template.through(limit)
+        for keyed, value, lane in self._rung(limit):
+            lane.through(limit)
+            self._see_to(keyed, value, lane)
         index = 0
-        while index < len(self._lanes):
-            self._lanes[index][0].through(limit)
+        while index < len(self._captured):
+            self._captured[index][0].through(limit)
             index += 1
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, of which no position is known, in all lanes."""
-        for lane in self.all:
+        self.main.reach(t)
+        for keyed in self._keyed.values():
+            keyed.template.reach(t)
+        for keyed, value, lane in self._rung(t):
+            lane.reach(t)
+            self._see_to(keyed, value, lane)
+        for lane, _ in self._captured:
             lane.reach(t)
 
+    def _rung(self, limit: int) -> list[tuple[Keyed, Scalar, Lane]]:
+        """The open instances in which something happens up to an instant."""
+        found = []
+        while self._alarms and self._alarms[0][0] <= limit:
+            at, _, keyed, value = heappop(self._alarms)
+            lane = keyed.open.get(value)
+            if lane is not None and self._alarm_of.get(lane) == at:
+                del self._alarm_of[lane]
+                found.append((keyed, value, lane))
+        return found
+
+    def _see_to(self, keyed: Keyed, value: Scalar, lane: Lane) -> None:
+        """Let go of an open instance if it is over, after something was done to it."""
+        if self.forgets and keyed.is_over(lane) and not self._has_captured(keyed, value):
+            keyed.close(value)
+            self._alarm_of.pop(lane, None)
+            return
+        alarm = lane.alarm
+        if self._alarm_of.get(lane) != alarm:
+            self._alarm_of[lane] = alarm
+            if alarm < INFINITY:
+                self._alarms_set += 1
+                heappush(self._alarms, (alarm, self._alarms_set, keyed, value))
+
+    def _has_captured(self, keyed: Keyed, value: Scalar) -> bool:
+        instance = keyed.known[value]
+        return any(one is instance for _, one in self._captured)
+
+    def admit(self, t: int, values: Mapping[str, Value]) -> None:
+        """See that there is room for the instances that a sample asks for.
+
+        Raises:
+            TraceError: there would be too many at once.
+        """
+        for name, keyed in self._keyed.items():
+            asked = len(keyed.open) + len(keyed.values_to_open(values))
+            if asked > MOST_OPEN:
+                source = keyed.each.value
+                raise TraceError(
+                    f"sample at {format_ticks(t)}: {name} would have {asked} instances of "
+                    f"`{source.event}.{source.field}` open at once, of {MOST_OPEN} that there can "
+                    "be: an upper bound in what is owed (`within D`) lets them close, or run "
+                    "one monitor for each part of the values"
+                )
+
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
-        """Give a sample to all lanes; time has come to `t − 1` before."""
-        for compiled, each in self._each:
-            self._make_instances(compiled, each, t, values)
+        """Give a sample to the lanes that it concerns; time has come to `t − 1` before."""
+        for keyed in self._keyed.values():
+            self._open_instances(keyed, t, values)
         if self._history is not None:
             self._history.append((t, values))
-        for lane, instance in tuple(self._lanes):
+        captured = tuple(self._captured)
+        self.main.sample(t, values)
+        # In some, something happens at `t` by time alone; that is seen to at once as well.
+        asked = {lane: (keyed, value) for keyed, value, lane in self._rung(t)}
+        for keyed in self._keyed.values():
+            keyed.template.sample(t, seen_by(keyed.doubted, values))
+            asked |= {keyed.open[value]: (keyed, value) for value in keyed.concerned(values)}
+        for lane, (keyed, value) in asked.items():
+            lane.sample(t, seen_by(keyed.known[value], values))
+            self._see_to(keyed, value, lane)
+        for lane, instance in captured:
             lane.sample(t, seen_by(instance, values))
-        if len(self._lanes) > 1:
-            self._lanes = [entry for entry in self._lanes if not entry[0].is_idle]
+        if self._captured:
+            self._captured = [entry for entry in self._captured if not entry[0].is_idle]
 
     def finish(self, end: int, reached: int) -> None:
         """Settle what is undecided; time has come to `end` before.
@@ -131,7 +217,7 @@ class Lanes:
         """
         for judge in self.judges:
             judge.pass_to(end)
-        for lane, instance in tuple(self._lanes):
+        for lane, instance in tuple(self._entries):
             for starter in lane.starters:
                 if starter.trigger is None and lane.flow.origin is not None:
                     position = lane.stand_at_last(end)
@@ -151,14 +237,15 @@ class Lanes:
     def shape(self) -> Shape:
         """What instances and captured attempts there are: what `rebuild` makes lanes for."""
         instances = [
-            (name, [(one.value, one.first) for one in known.values()])
-            for name, known in self._instances.items()
+            (name, [(one.rank, one.value, one.first) for one in keyed.instances()])
+            for name, keyed in self._keyed.items()
         ]
+        templates = {keyed.template for keyed in self._keyed.values()}
         lanes = [
             (*self._kind(lane.made_for[0]), dict(lane.made_for[1]), _value(instance), starts)
-            for lane, instance in self._lanes
+            for lane, instance in self._entries
             for starts in (bool(lane.starters),)
-            if lane.made_for is not None and not (starts and instance in self._doubted)
+            if lane.made_for is not None and lane not in templates
         ]
         return instances, lanes, list(self._unopened), []
 
@@ -175,30 +262,29 @@ class Lanes:
             shape: of the other run.
         """
         instances, lanes, unopened, _ = shape
-        each_of = {compiled.requirement.id: each for compiled, each in self._each}
         for name, found in instances:
-            self._instances[name] = {
-                value: Instance(rank, each_of[name].value, value, first)
-                for rank, (value, first) in enumerate(found, start=1)
-            }
+            keyed = self._keyed[name]
+            source = keyed.each.value
+            keyed.take(Instance(rank, source, value, first) for rank, value, first in found)
         for name in [name for name in self._unopened if name not in unopened]:
             _open(*self._unopened.pop(name), 0)
         for name, kind, captured, value, starts in lanes:
             compiled = self._by_id[name].judges[kind]
-            instance = None
-            if value is not None:
-                instance = self._instances[name][value]
-            elif name in each_of:
-                instance = next(one for one in self._doubted if one.source == each_of[name].value)
+            own = self._keyed.get(name)
+            instance = None if own is None else own.doubted if value is None else own.known[value]
             graph = compiled.shared_graph if starts else compiled.consequent_graph
             lane = Lane(self._flow(graph, captured), (compiled, captured))
-            if starts:
+            if starts and own is not None:
                 self._seat(lane, compiled, captured, instance)
+                own.opened(value, lane)
+                # Its time is set when it is looked at, which it is at once.
+                self._alarm_of[lane] = -INFINITY
+                heappush(self._alarms, (-INFINITY, len(self._alarms), own, value))
             else:
                 self._judge(compiled, lane, captured, instance)
-                parents = (one for one, its in self._lanes if one.starters and its is instance)
+                parents = (one for one, its in self._entries if one.starters and its is instance)
                 self._compare(next(parents, self.main), lane, compiled, instance)
-            self._lanes.append((lane, instance))
+                self._captured.append((lane, instance))
 
     # Making lanes.
 
@@ -262,7 +348,7 @@ class Lanes:
             def start(t: int, triggered: int) -> None:
                 new, own = self._captured_lane(lane, compiled, captured, instance, t)
                 self._begin(new, own, instance, t, triggered, hidden=hidden)
-                self._lanes.append((new, instance))
+                self._captured.append((new, instance))
                 self._compare(lane, new, compiled, instance)
         else:
             judge = self._judge(compiled, lane, captured, instance)
@@ -358,7 +444,7 @@ class Lanes:
             self._replay(lane, instance)
             lane.through(t)
         else:
-            lane = Lane(parent.flow.fork(graph, own, occurring=True), (compiled, own))
+            lane = Lane(parent.flow.fork(graph, own), (compiled, own))
             judge = self._judge(compiled, lane, own, instance)
         return lane, judge
 
@@ -368,76 +454,64 @@ class Lanes:
             lane.through(t - 1)
             lane.sample(t, seen_by(instance, values))
 
-    def _make_instances(
-        self, compiled: CompiledRequirement, each: ForEach, t: int, values: Mapping[str, Value]
-    ) -> None:
-        """Make the instances whose value occurs for the first time in a sample."""
-        known = self._instances.setdefault(compiled.requirement.id, {})
-        for value in values_in(each.value, values):
-            if value is not None and value not in known:
-                known[value] = instance = Instance(len(known) + 1, each.value, value, t)
-                lane = self._instance_lane(compiled, {each.name: value}, instance, t)
-                self._lanes.append((lane, instance))
-            elif value is None and compiled.requirement.id in self._unopened:
-                _open(*self._unopened.pop(compiled.requirement.id), t)
+    def _open_instances(self, keyed: Keyed, t: int, values: Mapping[str, Value]) -> None:
+        """Make the lanes that a sample asks for."""
+        for value in keyed.values_to_open(values):
+            instance = keyed.instance(value, t)
+            keyed.opened(value, self._instance_lane(keyed, instance, t))
+        name = keyed.compiled.requirement.id
+        if name in self._unopened and None in values_in(keyed.each.value, values):
+            _open(*self._unopened.pop(name), t)
 
-    def _make_doubted(self, compiled: CompiledRequirement, each: ForEach) -> None:
+    def _make_keyed(self, compiled: CompiledRequirement) -> Keyed:
         """A lane for the occurrences whose value is not known; nothing starts in it before one."""
+        each = compiled.requirement.for_each
+        if each is None:
+            raise AssertionError("it has no instances")
         captured = {each.name: None}
         instance = Instance(0, each.value, None, 0)
-        self._doubted.append(instance)
         lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
         starters = self._seat(lane, compiled, captured, instance)
-        self._lanes.append((lane, instance))
-        if self.sources is not None and each.value.event not in self.sources:
-            return  # whatever occurs is unknown, from the first position on
-        starts = [starter.start for starter in starters]
-        for starter in starters:
-            starter.start = _never
-        self._unopened[compiled.requirement.id] = (lane, starters, starts)
-
-    def _instance_lane(
-        self, compiled: CompiledRequirement, captured: Captured, instance: Instance, t: int
-    ) -> Lane:
-        """A lane for an instance, as of just before the sample at `t`."""
-        graph = compiled.shared_graph
-        if _needs_history(compiled):
-            lane = Lane(self._flow(graph, captured), (compiled, captured))
-            starters = self._seat(lane, compiled, captured, instance)
-            # No attempt starts before the value has occurred.
+        if self.sources is None or each.value.event in self.sources:
             starts = [starter.start for starter in starters]
             for starter in starters:
                 starter.start = _never
+            self._unopened[compiled.requirement.id] = (lane, starters, starts)
+        # Else whatever occurs is unknown, from the first position on.
+        return Keyed(compiled, each, lane, instance, is_timed=self.gap is not None)
+
+    def _instance_lane(self, keyed: Keyed, instance: Instance, t: int) -> Lane:
+        """A lane for an instance, as of just before the sample at `t`."""
+        compiled, reach = keyed.compiled, keyed.reach
+        captured = {keyed.each.name: instance.value}
+        if reach.is_fresh:
+            flow = keyed.template.flow.twin(captured, reach.varying, reach.own)
+            lane = keyed.template.twin(flow, captured)
+        else:
+            lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
+        starters = self._seat(lane, compiled, captured, instance)
+        # No attempt starts before the value has occurred.
+        starts = [starter.start for starter in starters]
+        for starter in starters:
+            starter.start = _never
+        if not reach.is_fresh:
             self._replay(lane, instance)
             lane.through(t - 1)
-            _open(lane, starters, starts, t)
-            return lane
-        flow = self.main.flow.fork(graph, captured, occurring=False)
-        lane = Lane(flow, (compiled, captured))
-        for taken, seen in self.main.waiting:
-            lane.sample(taken, seen_by(instance, seen))
-        self._seat(lane, compiled, captured, instance)
-        # The main lane may stand at an earlier position, where nothing of its own has changed.
-        lane.through(t - 1)
+        _open(lane, starters, starts, t)
         return lane
+
+    def _needs_history(self, compiled: CompiledRequirement) -> bool:
+        """Whether an instance or a captured attempt has to look at what was before it."""
+        keyed = self._keyed.get(compiled.requirement.id)
+        kinds = [one for one in (compiled, compiled.hidden, compiled.doubted) if one is not None]
+        return (keyed is not None and not keyed.reach.is_fresh) or (
+            bool(compiled.requirement.captures)
+            and any(_looks_back(one, compiled.shared_graph) for one in kinds)
+        )
 
 
 def _value(instance: Instance | None) -> Scalar:
     return None if instance is None else instance.value
-
-
-def _needs_history(compiled: CompiledRequirement) -> bool:
-    """Whether an instance or a captured attempt has to look at what was before it."""
-    requirement = compiled.requirement
-    kinds = [one for one in (compiled, compiled.hidden, compiled.doubted) if one is not None]
-    if requirement.captures and any(_looks_back(one, compiled.shared_graph) for one in kinds):
-        return True
-    remembers = (
-        bool(compiled.shared_graph.stateful)
-        or not requirement.pulse
-        or compiled.network_plan.looks_back
-    )
-    return requirement.for_each is not None and remembers
 
 
 def _looks_back(compiled: CompiledRequirement, parent: Graph) -> bool:

@@ -205,8 +205,13 @@ class Monitor:
         return stop
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
-        self._health.note(t, values)
         self._lanes.through(t - 1)
+        try:
+            self._lanes.admit(t, values)
+        except TraceError:
+            self._pass_to(t)
+            raise
+        self._health.note(t, values)
         self._lanes.sample(t, values)
         self._last = self._reached = t
 

@@ -151,6 +151,8 @@ class _Run(Monitor):
 class _MeasuringLanes(Lanes):
     """Lanes in which another judge, beside each of the usual ones, measures its attempts."""
 
+    forgets = False
+
     def __init__(
         self,
         spec: CheckedSpec,

@@ -123,6 +123,8 @@ def told(sentence: Sentence, decided: int, start: int, triggered: int, flow: Flo
                 return f", {format_ticks(decided - start)} after the trigger"
             case LastWith(proposition=proposition, value=value, verb=verb):
                 last = flow.last_with(flow.graph.index[proposition], value, decided)
+                if last is None and flow.begun is not None:
+                    return f"it had not {verb} since {format_ticks(flow.begun)}"
                 if last is None:
                     return f"it had never {verb} before"
                 if last == decided:
