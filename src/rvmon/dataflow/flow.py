@@ -139,10 +139,11 @@ class Flow:
             other: that flow.
             varying: the nodes that depend on captured values.
         """
-        theirs = other.values
-        return all(
-            value == theirs[place] or place in varying for place, value in enumerate(self.values)
-        ) and all(_remembered(one) == _remembered(other.memory[at]) for at, one in self.memory.items())
+        pairs = zip(self.values, other.values, strict=True)
+        if any(one != its and place not in varying for place, (one, its) in enumerate(pairs)):
+            return False
+        nodes = ((node, other.memory[place]) for place, node in self.memory.items())
+        return all(_remembered(one) == _remembered(its) for one, its in nodes)
 
     def cut_off(self, place: int) -> None:
         """Have a node be FALSE from the instant `cut` on."""

@@ -224,7 +224,11 @@ class Thawer:
             names = _KEPT[kept]
             for name, one in zip(names, frozen[1:], strict=True):
                 before = getattr(current, name)
+                kind = _kind(before)
                 after = self.into(before, one)
+                # What is a number or a table in a fresh monitor is one in any.
+                if _kind(after)[: len(kind)] != kind:
+                    raise SnapshotError(f"the snapshot is damaged: `{name}` fits no monitor")
                 if after is not before:
                     object.__setattr__(current, name, after)
             return current
@@ -275,6 +279,14 @@ class Thawer:
         for name, one in zip(_fields_of(class_), rest, strict=True):
             object.__setattr__(made, name, self.thaw(one))
         return made
+
+
+def _kind(value: Any) -> tuple[Any, ...]:
+    """What a field stays to be: a type; of a table of numbers its size too; else empty."""
+    kind = type(value)
+    if kind in (list, tuple) and value and all(type(one) is int for one in value):
+        return kind, len(value)
+    return (kind,) if kind in (int, bool, list, tuple, dict, set) else ()
 
 
 def _tag(frozen: Any) -> Any:

@@ -122,6 +122,8 @@ class Kept:
         for _, holder, _ in lanes.holders() if gone else ():
             if any(id(one) in gone for one in holder.attempts):
                 holder.attempts = [one for one in holder.attempts if id(one) not in gone]
+        if gone:
+            lanes.let_go()
 
 
 def _is_lost(attempt: Open) -> bool:

@@ -166,6 +166,12 @@ class Lanes:
                 self._alarms_set += 1
                 heappush(self._alarms, (alarm, self._alarms_set, keyed, value))
 
+    def let_go(self) -> None:
+        """Let go of all instances that are over, after attempts were taken away."""
+        for keyed in self._keyed.values():
+            for value, lane in tuple(keyed.open.items()):
+                self._see_to(keyed, value, lane)
+
     def _has_captured(self, keyed: Keyed, value: Scalar) -> bool:
         instance = keyed.known[value]
         return any(one is instance for _, one in self._captured)

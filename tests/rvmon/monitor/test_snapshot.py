@@ -1,11 +1,14 @@
 """A run that is put away and taken up again goes on as if nothing had happened."""
 
+import copy
+import hashlib
+import json
 import random
 
 import pytest
 
 import rvmon
-from rvmon.errors import SnapshotError
+from rvmon.errors import RvmonError, SnapshotError
 from rvmon.session import Spec
 from rvmon.testing.differential import campaign, case_of
 from rvmon.testing.drive import tell
@@ -148,3 +151,39 @@ def test_a_finished_run_has_a_report_and_no_snapshot():
     monitor.finish()
     with pytest.raises(SnapshotError, match="finished"):
         monitor.snapshot()
+
+
+def places_in(value, path=()):
+    """The paths to all that a document holds."""
+    found = list(enumerate(value)) if isinstance(value, list) else []
+    found += list(value.items()) if isinstance(value, dict) else []
+    for key, one in found:
+        yield (*path, key)
+        yield from places_in(one, (*path, key))
+
+
+def test_most_hostile_snapshots_are_refused_at_once():
+    """A sealed snapshot with something else at a place is refused, or makes a monitor to ask."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    for t, values in SAMPLES[:5]:
+        monitor.step(t, values)
+    head, _, body = monitor.snapshot().partition(b"\n")
+    document = json.loads(body)
+    places = list(places_in(document))
+    for seed in range(150):
+        dice = random.Random(seed)
+        hostile, path = copy.deepcopy(document), dice.choice(places)
+        inner = hostile
+        for key in path[:-1]:
+            inner = inner[key]
+        inner[path[-1]] = dice.choice([None, True, -1, 1.5, "x", [], ["dict"], ["same", 0], {}])
+        sealed = json.dumps(hostile, separators=(",", ":")).encode()
+        seal = hashlib.sha256(sealed).hexdigest().encode()
+        try:
+            restored = spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed)
+            _ = restored.open, restored.next_due, restored.verdicts
+            restored.snapshot()
+            restored.finish()
+        except RvmonError:
+            continue
