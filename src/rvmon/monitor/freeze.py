@@ -115,6 +115,9 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
 }
 """Per class the fields that a run changes, in an order in which what is pointed at comes first."""
 
+_MIXED = ("w", "b")
+"""Fields that hold first a number, then something else."""
+
 _MADE: Mapping[str, type] = {
     one.__name__: one
     for one in (
@@ -227,7 +230,7 @@ class Thawer:
                 kind = _kind(before)
                 after = self.into(before, one)
                 # What is a number or a table in a fresh monitor is one in any.
-                if _kind(after)[: len(kind)] != kind:
+                if name not in _MIXED and _kind(after)[: len(kind)] != kind:
                     raise SnapshotError(f"the snapshot is damaged: `{name}` fits no monitor")
                 if after is not before:
                     object.__setattr__(current, name, after)

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.inputs import Reported
 from rvmon.dataflow.leaves import captured_names
 from rvmon.dataflow.numbers import events_of
 from rvmon.formula.state import Leaf, Missing, State, StateOp
@@ -14,7 +13,7 @@ from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.instances import Instance, values_in
 from rvmon.monitor.lane import Lane
 from rvmon.spec.checked import Captured, Compare, CompareOp, EventAtom, FieldValue, ForEach
-from rvmon.trace.sample import Scalar
+from rvmon.trace.sample import Scalar, Value
 
 MOST_OPEN = 50_000
 """So many instances of one requirement can be open at once."""
@@ -166,7 +165,7 @@ class Keyed:
             self._over[one.value] = None
             self._last_rank = max(self._last_rank, one.rank)
 
-    def values_to_open(self, values: Mapping[str, Reported]) -> list[Scalar]:
+    def values_to_open(self, values: Mapping[str, Value]) -> list[Scalar]:
         """The values of which a sample asks for the instance, and that have no lane.
 
         An occurrence of unknown value may be of any that is known.
@@ -189,7 +188,7 @@ class Keyed:
             found = self.known[value] = Instance(self._last_rank, self.each.value, value, t)
         return found
 
-    def concerned(self, values: Mapping[str, Reported]) -> list[Scalar]:
+    def concerned(self, values: Mapping[str, Value]) -> list[Scalar]:
         """The open instances that a sample concerns."""
         if self._sees_all or not self.reach.others.isdisjoint(values):
             return list(self.open)
