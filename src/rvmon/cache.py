@@ -27,6 +27,12 @@ _IN_USE_S = 60.0
 _ABANDONED_S = 3_600.0
 """Seconds after which nobody writes any more what is not finished."""
 
+_TIDY_S = 60.0
+"""Seconds between two looks through the folder, which take their time if it holds thousands."""
+
+_TIDIED = "tidied"
+"""The file whose time of change says when the last look was."""
+
 _NAMES = rf"(?P<unfinished>tmp\w{{8}}|{PREFIX}\w{{8}}{SUFFIX})|(\w+-)?[0-9a-f]{{40,}}[-.].+"
 """The names of all that rvmon puts there; a folder may by mistake hold other things."""
 
@@ -157,6 +163,10 @@ def _tidy(folder: Path) -> None:
     import time
 
     now = time.time()
+    with suppress(FileNotFoundError):
+        if now - (folder / _TIDIED).stat().st_mtime < _TIDY_S:
+            return
+    (folder / _TIDIED).touch(mode=0o600)
     found: list[tuple[float, int, str]] = []
     for entry in os.scandir(folder):
         named = re.fullmatch(_NAMES, entry.name)
