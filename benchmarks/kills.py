@@ -190,7 +190,9 @@ READERS: dict[str, Callable[[Path], object]] = {
 
 def _is_half_written(path: Path) -> bool:
     body = path.read_bytes()
-    if path.parent.name == "rvmon":
+    if path.parent.name == "rvmon":  # a cache, with a file that is empty
+        if not path.suffix:
+            return bool(body)
         return read_kept(path) is None if path.suffix == ".json" else not is_whole(path)
     if path.suffix in READERS:
         try:
