@@ -1,7 +1,7 @@
 """The command `rvmon`: one file per subcommand, each with `add_parser` and `run`.
 
 Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
-3 internal error, 130 interrupted.
+3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
+from rvmon.children import interrupted_by_sigterm
 from rvmon.cli.reading import with_values
 from rvmon.errors import RvmonError
 
@@ -49,7 +50,8 @@ def program() -> int:
     try:
         from rvmon.cli.at_once import judged_at_once
 
-        code = judged_at_once(sys.argv[1:])
+        with interrupted_by_sigterm():
+            code = judged_at_once(sys.argv[1:])
     except KeyboardInterrupt:
         return _interrupted()
     if code is None:
@@ -83,8 +85,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def guarded(namespace: argparse.Namespace) -> int:
     """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
     try:
-        code = namespace.run(namespace)
-        sys.stdout.flush()
+        with interrupted_by_sigterm():
+            code = namespace.run(namespace)
+            sys.stdout.flush()
     except RvmonError as error:
         text = str(error)
         rendered = text.startswith(("error", "warning"))  # diagnostics bring their own heading

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -70,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
-            (folder / name).write_text(text, encoding="utf-8")
+            write_whole(folder / name, text)
             print(folder / name)
     except OSError as error:
         raise RvmonError(f"cannot write to {folder}: {error.strerror}") from None
@@ -119,6 +120,6 @@ def _write_or_print(text: str, output: str | None) -> None:
         sys.stdout.write(text)
         return
     try:
-        Path(output).write_text(text, encoding="utf-8")
+        write_whole(output, text)
     except OSError as error:
         raise RvmonError(f"cannot write {output}: {error.strerror}") from None

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled import CompiledSpec
@@ -112,6 +113,6 @@ def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace)
             if len(ids) > 1:
                 raise RvmonError("error: --svg draws one requirement: name it after the file")
             try:
-                Path(arguments.svg).write_text(graph_svg(graph, name), encoding="utf-8")
+                write_whole(arguments.svg, graph_svg(graph, name))
             except OSError as error:
                 raise RvmonError(f"error: {arguments.svg}: {error.strerror or error}") from None

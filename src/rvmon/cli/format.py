@@ -6,6 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from rvmon.writing import write_whole
+
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the subcommand's arguments."""
@@ -33,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
             text = sys.stdin.read() if name == "-" else Path(name).read_text(encoding="utf-8")
             laid_out = format_text(text, name=name)
             if name != "-" and laid_out != text and not arguments.check:
-                Path(name).write_text(laid_out, encoding="utf-8")
+                write_whole(name, laid_out)
         except SpecError as error:
             print(error, file=sys.stderr)
             wrong += 1

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import add_time, time_words
 from rvmon.errors import RvmonError
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.starter.column import Profile
@@ -48,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.write(text)
         return 0
     try:
-        Path(output).write_text(text, encoding="utf-8")
+        write_whole(output, text)
     except OSError as error:
         raise RvmonError(f"error: {output}: {error.strerror or error}") from None
     print(f"wrote {output}: {_contents(profile)}")

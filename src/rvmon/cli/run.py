@@ -23,6 +23,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
@@ -215,9 +216,7 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
 
         broken = [(one.trace, one.error) for one in judged if one.report is None]
         try:
-            Path(arguments.junit).write_text(
-                junit_xml(reports, spec.checked, broken), encoding="utf-8"
-            )
+            write_whole(arguments.junit, junit_xml(reports, spec.checked, broken))
         except OSError as error:
             raise RvmonError(f"cannot write {arguments.junit}: {error.strerror or error}") from None
     if arguments.report:
