@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
+from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
 from rvmon.errors import RvmonError
 
@@ -83,7 +84,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def guarded(namespace: argparse.Namespace) -> int:
     """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
     try:
-        code = namespace.run(namespace)
+        with at_most(getattr(namespace, "most_megabytes", None)):
+            code = namespace.run(namespace)
         sys.stdout.flush()
     except RvmonError as error:
         text = str(error)
