@@ -70,10 +70,13 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
         return [program, trace]
 
     row = "0,true,false,1\n1,true,false,2\n"
-    yield "10,000 requirements: check", lambda: [
-        *rvmon("check"),
-        written("s.rv", many_requirements(10_000)),
-    ]
+    yield (
+        "10,000 requirements: check",
+        lambda: [
+            *rvmon("check"),
+            written("s.rv", many_requirements(10_000)),
+        ],
+    )
     yield (
         "10,000 requirements: run",
         lambda: run(many_requirements(10_000), written("r.csv", "t,p,q,x\n" + row)),
@@ -116,10 +119,15 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
                 written("s.rv", windowed(count)),
             ],
         )
-    yield "100,000 terms: check", lambda: [
-        *rvmon("check"),
-        written("s.rv", SPEC + "requirement R2\n  always " + " and ".join(["p"] * 100_000) + "\n"),
-    ]
+    yield (
+        "100,000 terms: check",
+        lambda: [
+            *rvmon("check"),
+            written(
+                "s.rv", SPEC + "requirement R2\n  always " + " and ".join(["p"] * 100_000) + "\n"
+            ),
+        ],
+    )
     yield (
         "/dev/zero as spec: run",
         lambda: [*rvmon("run"), "/dev/zero", written("r.csv", "t,x\n0,1\n")],
@@ -136,10 +144,13 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
                 f"/dev/zero as {ending}: program",
                 lambda ending=ending: built(SPEC, linked(folder, ending)),
             )
-    yield "counters to 10^9: verify", lambda: [
-        *rvmon("verify"),
-        written("m.ta", counters()),
-    ]
+    yield (
+        "counters to 10^9: verify",
+        lambda: [
+            *rvmon("verify"),
+            written("m.ta", counters()),
+        ],
+    )
 
 
 def rvmon(command: str) -> list[str]:
@@ -163,7 +174,9 @@ def many_requirements(count: int) -> str:
 def wide_spec(count: int) -> str:
     """A spec that declares so many signals and reads the last."""
     names = ", ".join(f"c{number}" for number in range(count))
-    return f"spec s\nsignal x : real\nsignal {names} : bool\nrequirement R1\n  always c{count - 1}\n"
+    return (
+        f"spec s\nsignal x : real\nsignal {names} : bool\nrequirement R1\n  always c{count - 1}\n"
+    )
 
 
 def wide_csv(count: int) -> str:
@@ -196,8 +209,17 @@ def linked(folder: Path, ending: str) -> str:
 
 
 def counters() -> str:
-    """A model of timed automata with three counters to 10^9."""
-    return ""
+    """A model of timed automata with counters to 10^9."""
+    return """
+int[0, 1000000000] a, b
+automaton counting {
+  clock x
+  location going invariant x <= 1
+  start going
+  edge going -> going when x >= 1 do x = 0, a = a + 1
+}
+query far: E<> a == 1000000000
+"""
 
 
 def measured(command: Sequence[str], limit: float) -> Cost:
@@ -208,7 +230,7 @@ def measured(command: Sequence[str], limit: float) -> Cost:
 
     begun = time.monotonic()
     with tempfile.TemporaryFile() as output:
-        process = subprocess.Popen(  # noqa: PLW1509
+        process = subprocess.Popen(
             command, stdout=output, stderr=output, preexec_fn=bounded, start_new_session=True
         )
         signal.signal(signal.SIGALRM, lambda *_: os.killpg(process.pid, signal.SIGKILL))

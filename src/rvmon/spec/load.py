@@ -75,9 +75,7 @@ def _index(path: tuple[tuple[str, ImportItem], ...], key: str) -> int:
     return keys.index(key) if key in keys else len(keys)
 
 
-def _sources(
-    item: ImportItem, directory: Path, tree: Tree
-) -> Iterator[tuple[Source, Path, str]]:
+def _sources(item: ImportItem, directory: Path, tree: Tree) -> Iterator[tuple[Source, Path, str]]:
     """The texts that an import means, each with its folder and a key of its own."""
     if not item.library:
         path = directory / item.target

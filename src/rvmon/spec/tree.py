@@ -37,9 +37,7 @@ def tree_of(directory: Path) -> Tree:
     """The tree of a main file in a folder: that of its project, else the folder itself."""
     own = directory.resolve()
     marked = (
-        folder
-        for folder in (own, *own.parents)
-        if any((folder / mark).exists() for mark in _MARKS)
+        folder for folder in (own, *own.parents) if any((folder / mark).exists() for mark in _MARKS)
     )
     named = os.environ.get("RVMON_ALLOW_IMPORTS", "").split(os.pathsep)
     return Tree(next(marked, own), tuple(Path(name).resolve() for name in named if name))

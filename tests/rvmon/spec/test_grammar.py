@@ -252,5 +252,5 @@ def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
 
 def test_words_in_texts_and_comments_are_no_operators():
     """A long comment stands in no one's way."""
-    text = "signal p : bool\nrequirement R \"" + "and " * 3000 + "\"\n  always p  # " + "or " * 3000
+    text = 'signal p : bool\nrequirement R "' + "and " * 3000 + '"\n  always p  # ' + "or " * 3000
     compile_text(text)

@@ -15,7 +15,7 @@ IMPORT = Rule(
     "RV016",
     "import",
     Severity.ERROR,
-    "An imported file cannot be read or lies outside the project, or files import each other in a circle.",
+    "An imported file cannot be read, lies outside the project, or imports itself in a circle.",
     "Imports are looked up beside the file they stand in, within the project: the nearest folder "
     "above the main file that holds `.git` or `pyproject.toml`, else the main file's own. Folders "
     "that `RVMON_ALLOW_IMPORTS` names count, too. `import patterns` without quotes takes the "
