@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.children import interrupted_by_sigterm
+from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
 from rvmon.errors import RvmonError
 
@@ -85,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def guarded(namespace: argparse.Namespace) -> int:
     """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
     try:
-        with interrupted_by_sigterm():
+        with interrupted_by_sigterm(), at_most(getattr(namespace, "most_megabytes", None)):
             code = namespace.run(namespace)
             sys.stdout.flush()
     except RvmonError as error:

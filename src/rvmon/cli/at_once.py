@@ -19,6 +19,7 @@ from pathlib import Path
 
 from rvmon import __version__
 from rvmon.cache import cache_folder, files_told, is_whole, keep, read_kept
+from rvmon.diagnostics.text_file import text_of_file
 from rvmon.readers.steps import FEWEST, LONG_STEP, LOOKED_AT, median_step
 
 _VALUED = ("--only", "--const", "--engine", "--format")
@@ -43,9 +44,7 @@ def judged_at_once(words: Sequence[str]) -> int | None:
     if folder is None or not _is_plain_file(trace):
         return None
     try:
-        if not stat.S_ISREG(os.stat(spec).st_mode):
-            return None
-        text = Path(spec).read_text(encoding="utf-8")
+        text = text_of_file(spec)
     except (OSError, UnicodeDecodeError):
         return None
     if "import" in text:  # of what is imported, too, it would depend

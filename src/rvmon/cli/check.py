@@ -8,7 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
+from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
@@ -49,6 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file"
     )
+    add_max_memory(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -61,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     unreadable = broken = 0
     for name in arguments.specs:
         try:
-            text = sys.stdin.read() if name == "-" else Path(name).read_text(encoding="utf-8")
+            text = text_of_input() if name == "-" else text_of_file(name)
         except (OSError, UnicodeDecodeError) as error:
             reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
             print(f"error: {name}: {reason}", file=sys.stderr)

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import positive
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.writing import write_whole
@@ -41,6 +42,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
     )
+    add_max_memory(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -26,13 +26,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Lay out, and return the exit code."""
+    from rvmon.diagnostics.text_file import text_of_file, text_of_input
     from rvmon.errors import SpecError
     from rvmon.spec.formatter import format_text
 
     changed = wrong = 0
     for name in arguments.specs:
         try:
-            text = sys.stdin.read() if name == "-" else Path(name).read_text(encoding="utf-8")
+            text = text_of_input() if name == "-" else text_of_file(name)
             laid_out = format_text(text, name=name)
             if name != "-" and laid_out != text and not arguments.check:
                 write_whole(name, laid_out)

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import instant, positive
 from rvmon.cli.reading import (
     add_allow_missing,
@@ -92,6 +93,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="columns that are missing or not declared are errors",
     )
+    add_max_memory(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -105,6 +105,8 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
     if not things:
         yield '    {"", 0, -1, KIND_BOOL, false, false, false, NULL, NULL, 0.0},'
     yield "};"
+    order = sorted(range(len(things)), key=lambda place: things[place][0].encode())
+    yield f"static const int32_t by_name[] = {{{', '.join(map(str, order or [0]))}}};"
     yield f"#define ENTRY_COUNT {max(len(things), 1)}"
     yield ""
     ids = ", ".join(c_string(rule.requirement.id) for rule in plan.rules)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import suppress
+from math import isinf
 from typing import Any, assert_never
 
 from rvmon.errors import TraceError
@@ -36,9 +37,13 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
                 return False
         case Kind.INT | Kind.REAL:
             # Python reads 1_000 as a number; no recording means it.
-            with suppress(ValueError):
+            try:
                 if "_" not in text:
-                    return int(text) if kind is Kind.INT else float(text)
+                    return int(text) if kind is Kind.INT else double_of(text)
+            except TraceError:
+                raise
+            except ValueError:  # it may be NaN
+                pass
             if kind is Kind.INT and is_whole(text):
                 most = sys.get_int_max_str_digits()
                 raise TraceError(f"`{shorten(text)}` has more than {most} digits: is it a number?")
@@ -54,6 +59,22 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
         if fits(made, kind):
             return made  # type: ignore[no-any-return]
     raise TraceError(f"`{shorten(text)}` is not {DESCRIPTION[kind]}")
+
+
+def double_of(text: str) -> float:
+    """A number as a double; infinite only if it is called so.
+
+    Raises:
+        ValueError: the text is no number.
+        TraceError: it is a number that is too large.
+
+    >>> double_of("2.5"), double_of("-inf")
+    (2.5, -inf)
+    """
+    number = float(text)
+    if isinf(number) and any(map(str.isdigit, text)):
+        raise TraceError(f"`{shorten(text)}` is too large for a number: at most 1.7e308")
+    return number
 
 
 _CLASSES = {Kind.BOOL: bool, Kind.INT: int, Kind.REAL: float, Kind.LABEL: str}

@@ -167,9 +167,10 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
     """What was not known of the input, or noticed while reading it, a line each."""
     if found:
         yield "input health:"
-    ignored = [health for health in found if health.kind is HealthKind.IGNORED]
+    ignored: dict[str, list[str]] = {}
     for health in found:
-        if health in ignored:
+        if health.kind is HealthKind.IGNORED:
+            ignored.setdefault(health.remark, []).append(health.name)
             continue
         if health.kind is HealthKind.UNIT:
             yield f"  {health.name}  warning: {health.remark}"
@@ -179,6 +180,5 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
         readers = f"  ({', '.join(health.requirements)})" if health.requirements else ""
         remark = f": {health.remark}" if health.remark else ""
         yield f"  {health.name}  {health.kind.value} {times}{first}{remark}{readers}"
-    for remark in dict.fromkeys(health.remark for health in ignored):
-        names = ", ".join(health.name for health in ignored if health.remark == remark)
-        yield f"  ignored{f', {remark}' if remark else ''}: {names}"
+    for remark, names in ignored.items():
+        yield f"  ignored{f', {remark}' if remark else ''}: {', '.join(names)}"
