@@ -6,6 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from rvmon.cli.say import say, warn
+
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the subcommand's arguments."""
@@ -35,18 +37,18 @@ def run(arguments: argparse.Namespace) -> int:
             if name != "-" and laid_out != text and not arguments.check:
                 Path(name).write_text(laid_out, encoding="utf-8")
         except SpecError as error:
-            print(error, file=sys.stderr)
+            warn(str(error))
             wrong += 1
             continue
         except (OSError, UnicodeDecodeError) as error:
             reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
-            print(f"error: {name}: {reason}", file=sys.stderr)
+            warn(f"error: {name}: {reason}")
             wrong += 1
             continue
         if name == "-" and not arguments.check:
-            print(laid_out, end="")
+            sys.stdout.write(laid_out)
         elif laid_out != text:
-            print(f"{'would change' if arguments.check else 'changed'}: {name}")
+            say(f"{'would change' if arguments.check else 'changed'}: {name}")
         changed += laid_out != text
     if wrong:
         return 2

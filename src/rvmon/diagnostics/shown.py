@@ -11,7 +11,7 @@ _STEERS_JSON = re.compile(
 
 
 def shown(text: str) -> str:
-    r"""The text with its control and formatting characters written out; tabs become spaces.
+    r"""The text with its control and formatting characters written out.
 
     Names, cells, labels, texts and files' names may hold escapes of a terminal, and signs that turn
     the direction of writing: everything that leaves for people goes through here. Ends of lines
@@ -46,8 +46,6 @@ def shown_json(text: str) -> str:
 
 
 def _shown(char: str) -> str:
-    if char == "\t":
-        return " "
     if char == "\n" or char.isprintable() or unicodedata.category(char) == "Zs":
         return char
     return ascii(char)[1:-1]

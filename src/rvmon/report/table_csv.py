@@ -9,9 +9,11 @@ from collections.abc import Mapping
 from rvmon.report.table import VerdictTable
 from rvmon.verdict.verdict import Verdict
 
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
+
 
 def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str:
-    """Several tables as one CSV text.
+    """Several tables as one CSV text; a name that would be a formula begins with an apostrophe.
 
     Args:
         tables: by what the first column calls them.
@@ -24,5 +26,11 @@ def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str
         for group in table.groups:
             for requirement, counts in group.counts.items():
                 figures = (counts.get(verdict, 0) for verdict in Verdict)
-                writer.writerow([name, group.name, requirement, group.runs, *figures])
+                names = map(_plain, (name, group.name, requirement))
+                writer.writerow([*names, group.runs, *figures])
     return text.getvalue()
+
+
+def _plain(name: str) -> str:
+    """A name that no spreadsheet takes for a formula: before such a one stands an apostrophe."""
+    return f"'{name}" if name.startswith(_FORMULA) else name
