@@ -6,10 +6,11 @@ import csv
 import io
 from collections.abc import Mapping
 
+from rvmon.diagnostics.shown import shown_line
 from rvmon.report.table import VerdictTable
 from rvmon.verdict.verdict import Verdict
 
-_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
+_FORMULA = ("=", "+", "-", "@")
 
 
 def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str:
@@ -33,4 +34,6 @@ def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str
 
 def _plain(name: str) -> str:
     """A name that no spreadsheet takes for a formula: before such a one stands an apostrophe."""
-    return f"'{name}" if name.startswith(_FORMULA) else name
+    # Written out, a TAB or an end of line is neither the start of a formula nor the end of a row.
+    text = shown_line(name)
+    return f"'{text}" if text.startswith(_FORMULA) else text
