@@ -19,6 +19,7 @@ from rvmon import __version__
 from rvmon.children import interrupted_by_sigterm
 from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
+from rvmon.cli.say import warn
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def guarded(namespace: argparse.Namespace) -> int:
     except RvmonError as error:
         text = str(error)
         rendered = text.startswith(("error", "warning"))  # diagnostics bring their own heading
-        print(text if rendered else f"error: {text}", file=sys.stderr)
+        warn(text if rendered else f"error: {text}")
         return 2
     except KeyboardInterrupt:
         return _interrupted()
@@ -102,15 +103,14 @@ def guarded(namespace: argparse.Namespace) -> int:
         return 0
     except Exception as error:
         if isinstance(error, OSError) and error.errno == errno.ENOSPC:
-            print(f"error: the output cannot be written: {error.strerror}", file=sys.stderr)
+            warn(f"error: the output cannot be written: {error.strerror}")
             _drop_output()
             return 2
         if os.environ.get("RVMON_TRACEBACK"):
             raise
-        print(
+        warn(
             f"internal error: {type(error).__name__}: {error}\n"
-            "This is a bug in rvmon. RVMON_TRACEBACK=1 shows where it happened.",
-            file=sys.stderr,
+            "This is a bug in rvmon. RVMON_TRACEBACK=1 shows where it happened."
         )
         return 3
     return int(code)
@@ -122,17 +122,16 @@ def _drop_output() -> None:
 
 
 def _interrupted() -> int:
-    print("interrupted", file=sys.stderr)
+    warn("interrupted")
     return 130
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """The parser with the named subcommand only, or with all for help and for errors."""
-    import argparse
-
+    from rvmon.cli.parser import Parser
     from rvmon.verdict.verdict import LAW
 
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="rvmon",
         description="Temporal requirements in, verdicts about robots out.",
         epilog="example: rvmon run specs/handover.rv recording.csv",

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.say import say
+from rvmon.diagnostics.shown import shown_json
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.writing import write_whole
 
@@ -72,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
             write_whole(folder / name, text)
-            print(folder / name)
+            say(str(folder / name))
     except OSError as error:
         raise RvmonError(f"cannot write to {folder}: {error.strerror}") from None
     return 0
@@ -102,7 +104,7 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
         from rvmon.export.automaton_json import automaton_json
 
         found = [automaton_json(one, spec.checked) for one in chosen]
-        return msgspec.json.format(msgspec.json.encode(found), indent=1).decode() + "\n"
+        return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
     from rvmon.explain.graph import graph_of
     from rvmon.explain.graph_text import graph_dot
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 
+from rvmon.cli.say import say, warn
 from rvmon.writing import write_whole
 
 
@@ -38,18 +38,18 @@ def run(arguments: argparse.Namespace) -> int:
             if name != "-" and laid_out != text and not arguments.check:
                 write_whole(name, laid_out)
         except SpecError as error:
-            print(error, file=sys.stderr)
+            warn(str(error))
             wrong += 1
             continue
         except (OSError, UnicodeDecodeError) as error:
             reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
-            print(f"error: {name}: {reason}", file=sys.stderr)
+            warn(f"error: {name}: {reason}")
             wrong += 1
             continue
         if name == "-" and not arguments.check:
-            print(laid_out, end="")
+            sys.stdout.write(laid_out)
         elif laid_out != text:
-            print(f"{'would change' if arguments.check else 'changed'}: {name}")
+            say(f"{'would change' if arguments.check else 'changed'}: {name}")
         changed += laid_out != text
     if wrong:
         return 2

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import add_time, time_words
+from rvmon.cli.say import say
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
@@ -52,9 +53,9 @@ def run(arguments: argparse.Namespace) -> int:
         write_whole(output, text)
     except OSError as error:
         raise RvmonError(f"error: {output}: {error.strerror or error}") from None
-    print(f"wrote {output}: {_contents(profile)}")
+    say(f"wrote {output}: {_contents(profile)}")
     words = ["rvmon", "run", output, arguments.data, *time_words(arguments)]
-    print(f"try:   {shlex.join(words)}")
+    say(f"try:   {shlex.join(words)}")
     return 0
 
 

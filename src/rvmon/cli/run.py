@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import shlex
-import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -20,6 +19,7 @@ from rvmon.cli.reading import (
     reading_spec,
     reading_words,
 )
+from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
@@ -129,7 +129,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.require_triggered is not None:
         silent = _never_triggered(reports, must_trigger)
         for name in silent:
-            print(f"{name} was triggered in no recording", file=sys.stderr)
+            warn(f"{name} was triggered in no recording")
         failed |= bool(silent)
     return int(failed)
 
@@ -153,25 +153,25 @@ def _show_warnings(spec: Spec) -> None:
     if spec.warnings:
         from rvmon.diagnostics.render import render_full
 
-        print(render_full(spec.warnings), file=sys.stderr)
+        warn(render_full(spec.warnings))
     if not spec.requirements and not spec.checked.covers:
-        print(f"{spec.checked.name} has no requirement: nothing is judged", file=sys.stderr)
+        warn(f"{spec.checked.name} has no requirement: nothing is judged")
 
 
 def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
     for one in judged:
         if one.error:
-            print(f"error: {one.error}", file=sys.stderr)
+            warn(f"error: {one.error}")
             for line in _before_lines(one.before):
-                print(f"  judged before that: {line}", file=sys.stderr)
+                warn(f"  judged before that: {line}")
         if one.missing:
             names = ", ".join(f"`{name}`" for name in one.missing)
             told = f"{one.trace} has no column for {names}: what reads that is inconclusive"
-            print(f"warning: {told}", file=sys.stderr)
+            warn(f"warning: {told}")
     if form == "json":
         _show_doubts(judged)
         texts = [_json(one) for one in judged]
-        print(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
+        say_json(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
 
@@ -183,7 +183,7 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
     for one in judged:
         for health in () if one.report is None else one.report.health:
             if health.kind is HealthKind.UNIT:
-                print(f"warning: {one.trace}: `{health.name}`: {health.remark}", file=sys.stderr)
+                warn(f"warning: {one.trace}: `{health.name}`: {health.remark}")
 
 
 def _json(one: Judged) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rvmon.codegen.c_leaves import leaf_value
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_nodes import group_count, groups_of
-from rvmon.codegen.c_text import comment
+from rvmon.codegen.comment import comment
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import signals_of

@@ -7,6 +7,7 @@ from contextlib import suppress
 from math import isinf
 from typing import Any, assert_never
 
+from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
@@ -142,10 +143,10 @@ DESCRIPTION = {
 
 
 def shorten(text: str, width: int = 40) -> str:
-    """The text on one line, cut to `width` characters, with unprintable ones escaped.
+    """The text on one line, cut to `width` characters, with what would steer a terminal shown.
 
     >>> shorten("a" * 50, 5)
     'aaaa…'
     """
-    line = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[: width + 1])
+    line = shown_line(text[: width + 1])
     return line if len(line) <= width else line[: width - 1] + "…"

@@ -32,9 +32,9 @@ def print_reports(reports: Sequence[Report], spec: CheckedSpec) -> None:
 
     Every F comes with cause, window and spec line; every I with what is still owed.
     """
-    from rich.console import Console
+    from rvmon.report.terminal import Terminal
 
-    console = Console(highlight=False)
+    console = Terminal()
     for report in reports:
         print_report(report, spec, console)
     if len(reports) > 1:
@@ -65,7 +65,7 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     if report.goals:
         console.print(_goals_text(report.goals))
     for line in health_lines(report.health):
-        console.print(line, markup=False)  # columns have names such as `speed [m/s]`
+        console.print(line)
 
 
 def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
