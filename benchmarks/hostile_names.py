@@ -99,7 +99,7 @@ class Documents:
 
     def terminal(self) -> bool:
         """Reports on a terminal."""
-        return _calm(_printed(lambda: print_reports([self.report] * 2, self.spec)))
+        return _calm(_printed(lambda: print_reports([self.report], self.spec)))
 
     def junit(self) -> bool:
         """JUnit XML."""

@@ -20,8 +20,7 @@ def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^"
         arrow: leads to the file's name; other places of the same finding take `:::`.
         mark: the character to underline with.
 
-    >>> from rvmon.diagnostics.shown import shown_line
-    from rvmon.diagnostics.span import Source
+    >>> from rvmon.diagnostics.span import Source
     >>> print(snippet(Span(Source("a.rv", "upon sensd"), 5, 10)))
       --> a.rv:1:6
        |
