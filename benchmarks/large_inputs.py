@@ -204,6 +204,7 @@ def windowed(count: int) -> str:
 def linked(folder: Path, ending: str) -> str:
     """A link to /dev/zero that is named as a recording."""
     link = folder / f"zero.{ending}"
+    link.unlink(missing_ok=True)
     link.symlink_to("/dev/zero")
     return str(link)
 
