@@ -65,7 +65,13 @@ def build_monitor(
         return compiled_monitor(compiled, chosen, settle, given)
     for requirement in chosen:
         requirement.engine(engine)
-    is_generated = engine in _GENERATED and len(chosen) <= _MOST_GENERATED
+    is_few = len(chosen) <= _MOST_GENERATED
+    if engine == "python" and not is_few:
+        raise RvmonError(
+            f"error: {len(chosen)} requirements are more than the {_MOST_GENERATED} that generated "
+            "code judges at once: use the engine `auto`, or several monitors (`only`)"
+        )
+    is_generated = engine in _GENERATED and is_few
     if not is_generated or not any(can_feed(one) for one in chosen):
         return Monitor(compiled, chosen, engine, settle, given, keep)
     key = (tuple(one.requirement.id for one in chosen), given)
