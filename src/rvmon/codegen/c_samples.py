@@ -160,6 +160,7 @@ def _take_signal(plan: Plan, names: Names, name: str, source: Source) -> Iterato
     yield f"    const uint8_t state = {source.signal.format(n=number)};"
     yield f"    const double value = (state == {prefix}_YES) ? {given} : unknown_value();"
     yield "    const bool known = value == value;"
+    yield "    (void)known;"
     ignores = plan.spec.signals[name].ignores_nan
     yield f"    if ({'known' if ignores else f'state != {prefix}_NOTHING'}) {{"
     if stale_after is not None:
