@@ -212,5 +212,6 @@ def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGINT)
     _, told = process.communicate(timeout=120)
-    assert process.returncode in (0, 130)
+    # CPython ends by the signal itself, 130 to a shell, if it came within an `exec` of an import.
+    assert process.returncode in (0, 130, -signal.SIGINT)
     assert "Traceback" not in told
