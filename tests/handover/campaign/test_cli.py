@@ -197,7 +197,7 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
     assert "Partial: interrupted" in (tmp_path / "report.html").read_text()
 
 
-@pytest.mark.parametrize("seconds", [0.5, 0.9])
+@pytest.mark.parametrize("seconds", [0.3, 0.5, 0.9])
 def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
     """Whenever it comes, also while the workers start: no traceback, and 130 (or all was done)."""
     words = ["run", "--strategy", "constrained", "--tests", "40", "--jobs", "2"]
@@ -212,6 +212,5 @@ def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGINT)
     _, told = process.communicate(timeout=120)
-    # CPython ends by the signal itself, 130 to a shell, if it came within an `exec` of an import.
-    assert process.returncode in (0, 130, -signal.SIGINT)
+    assert process.returncode in (0, 130)
     assert "Traceback" not in told
