@@ -16,15 +16,19 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from itertools import count
+from typing import TYPE_CHECKING
 
 from benchmarks import columns
+from rvmon.children import interrupted_by_sigterm, workers
 from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
+
+if TYPE_CHECKING:
+    from concurrent.futures import ProcessPoolExecutor
 
 PART = 10
 """Specifications that a worker takes at a time."""
@@ -104,11 +108,11 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--form", choices=FORMS, nargs="+", default=FORMS, metavar="FORM")
     options = parser.parse_args(argv)
     wrong = 0
-    with tempfile.TemporaryDirectory() as cache:
+    with interrupted_by_sigterm(), tempfile.TemporaryDirectory() as cache:
         os.environ["XDG_CACHE_HOME"] = cache  # nobody runs these monitors again
         for form in options.form:
             began = time.perf_counter()
-            with ProcessPoolExecutor(options.workers) as pool:
+            with workers(options.workers) as pool:
                 found = judge_form(FORMS[form](options.each), options, pool)
             figures = ", ".join(f"{name} {found[name]}" for name in FIGURES)
             print(f"{form:16} {figures}, {time.perf_counter() - began:.0f} s", flush=True)

@@ -14,11 +14,11 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from rvmon.children import workers
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled import ENGINES
 from rvmon.spec.checked import TimeModel
@@ -103,8 +103,7 @@ def main(argv: list[str]) -> int:
     with contextlib.ExitStack() as stack:
         each: Iterable[Campaign] = map(work, parts)
         if options.workers > 1:
-            pool = stack.enter_context(ProcessPoolExecutor(options.workers))
-            stack.callback(pool.shutdown, cancel_futures=True)
+            pool = stack.enter_context(workers(options.workers))
             each = pool.map(work, parts)
         for part in each:
             total.add(part)

@@ -8,14 +8,17 @@ PACKAGE = Path(__file__).resolve().parent.parent / "src" / "rvmon"
 
 _FORMULAS = ("formula/*.py",)
 _INPUTS = tuple(
-    f"dataflow/{name}.py" for name in ("flow", "graph", "inputs", "leaves", "numbers", "since")
+    f"dataflow/{name}.py"
+    for name in ("flow", "graph", "hidden", "inputs", "leaves", "numbers", "since")
 )
 _ATTEMPTS = tuple(
     f"monitor/{name}.py"
     for name in (
         "bench",
         "build",
+        "captive",
         "compiled",
+        "episode",
         "health",
         "instances",
         "judge",

@@ -34,6 +34,7 @@ from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
 
+from rvmon.children import interrupted_by_sigterm, run
 from rvmon.monitor.compiled import ENGINES as SWITCHABLE
 from rvmon.testing.forms import INTERRUPT, NEXT
 
@@ -57,7 +58,7 @@ def main(argv: Sequence[str]) -> int:
     files = paths or files_of(options.engine)
     changes = [m for m in _changes(files, options) if options.only in m.change]
     drawn = draw((m for m in changes if m.change not in EQUIVALENT), options)
-    with tempfile.TemporaryDirectory() as directory:
+    with interrupted_by_sigterm(), tempfile.TemporaryDirectory() as directory:
         trial = Trial(Path(directory), options)
         left = drawn
         for stage in stages_of(options.engine, files, options.pairs):
@@ -228,13 +229,10 @@ class Trial:
     def _run(self, stage: Stage | Tests, most: float) -> tuple[str, list[str]]:
         """The test on the copy: `survived`, `killed` or `hung`; how many specs were refused."""
         try:
-            done = subprocess.run(
+            done = run(
                 [sys.executable, *_command(self.options, stage)],
                 cwd=ROOT,
                 env=self.environment,
-                check=False,
-                capture_output=True,
-                text=True,
                 timeout=most,
                 preexec_fn=_bound_memory,
             )

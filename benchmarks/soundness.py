@@ -13,9 +13,9 @@ import random
 import sys
 from collections import Counter
 from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 
+from rvmon.children import workers
 from rvmon.testing.differential import case_of
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
@@ -52,7 +52,7 @@ def main(argv: list[str]) -> int:
     parts = [seeds[start : start + 50] for start in range(0, len(seeds), 50)]
     verdicts: Counter[str] = Counter()
     found: list[str] = []
-    with ProcessPoolExecutor(options.workers) as pool:
+    with workers(options.workers) as pool:
         for counted, overturning in pool.map(partial(run_part, options), parts):
             verdicts += counted
             found += overturning

@@ -2,7 +2,7 @@
 
 Exit codes: 0 the campaign completed (a replay: no requirement failed), 1 with `--strict` a
 requirement failed, was inconclusive or never triggered (a replay: one failed), 2 wrong input,
-3 internal error, 130 interrupted.
+3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 """
 
 from __future__ import annotations

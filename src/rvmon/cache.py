@@ -1,21 +1,40 @@
 """The user's cache folder: data that can be worked out again, whole or not at all.
 
 It holds specifications as data, and with the engine `c` what a C compiler made of our source, which
-is run: so a folder that anyone else can write to is passed over. Whatever is wrong with it, it can
-be done without; it can be deleted at any time, and used by several processes at once.
-`RVMON_CACHE=off` switches it off.
+is run: so a folder or a file that anyone else can write to is passed over, and so is what differs
+from its checksum. Whatever is wrong with it, it can be done without; it can be deleted at any time,
+and used by several processes at once. `RVMON_CACHE=off` switches it off; `RVMON_CACHE_MB` says how
+large it may become.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-_MOST = 256
-"""So many files of one kind are kept: those used last."""
+from rvmon.writing import PREFIX, SUFFIX, place_whole
+
+_MOST_MB = 256
+"""Megabytes that are kept, if nothing else is said."""
+
+_IN_USE_S = 60.0
+"""Seconds in which a file that was used is not deleted: a process may be about to load it."""
+
+_ABANDONED_S = 3_600.0
+"""Seconds after which nobody writes any more what is not finished."""
+
+_TIDY_S = 60.0
+"""Seconds between two looks through the folder, which take their time if it holds thousands."""
+
+_TIDIED = "tidied"
+"""The file whose time of change says when the last look was."""
+
+_NAMES = rf"(?P<unfinished>tmp\w{{8}}|{PREFIX}\w{{8}}{SUFFIX})|(\w+-)?[0-9a-f]{{40,}}[-.].+"
+"""The names of all that rvmon puts there; a folder may by mistake hold other things."""
 
 
 def cache_folder() -> Path | None:
@@ -45,11 +64,18 @@ def made_folder() -> Path:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether nobody else can write there, as far as the system can tell."""
+    """Whether it is a file or folder that nobody else can change, as far as the system can tell.
+
+    Raises:
+        OSError: there is none.
+    """
+    found = path.stat()
+    if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+        return False
     if not hasattr(os, "getuid"):
         return True
-    found = path.stat()
-    return found.st_uid == os.getuid() and not found.st_mode & 0o022
+    owners = {found.st_uid, path.lstat().st_uid}  # of the file, and of a link to it
+    return owners == {os.getuid()} and not found.st_mode & 0o022
 
 
 def files_told(folder: str) -> Iterator[tuple[str, int, int]]:
@@ -67,37 +93,104 @@ def files_told(folder: str) -> Iterator[tuple[str, int, int]]:
 
 def read_kept(path: Path) -> bytes | None:
     """What was written there; `None` if that is nothing, not ours, or not whole."""
-    try:
-        if not is_ours(path):
-            return None
-        checksum, _, body = path.read_bytes().partition(b"\n")
-        os.utime(path)
-    except OSError:
-        return None
-    return body if hashlib.sha256(body).hexdigest().encode() == checksum else None
+    checksum, _, body = (_read(path) or b"").partition(b"\n")
+    return body if _checksum(body).encode() == checksum else None
 
 
 def keep(path: Path, body: bytes) -> None:
     """Write a file so that others see it whole or not at all; if that fails, never mind."""
-    import tempfile
-
-    name = ""
     with suppress(OSError):
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            name = file.name
-            file.write(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
-        Path(name).replace(path)
-        _prune(path)
+        _place(path, f"{_checksum(body)}\n".encode() + body, 0o600)
+        _tidy(path.parent)
+
+
+def keep_binary(path: Path, body: bytes) -> Path:
+    """Write a file that is loaded or run as it is, and so has its checksum in its name.
+
+    Args:
+        path: the rest of the name.
+        body: what it holds.
+
+    Returns:
+        Where it is, for `is_whole`.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    named = path.with_name(f"{path.name.partition('.')[0]}-{_checksum(body)}{_suffix(path)}")
+    _place(named, body, 0o700)
+    return named
+
+
+def is_whole(path: Path) -> bool:
+    """Whether a file is ours and still what `keep_binary` wrote."""
+    body = _read(path)
+    return body is not None and _checksum(body) == path.name.partition(".")[0].rpartition("-")[2]
+
+
+def _place(path: Path, body: bytes, mode: int) -> None:
+    if path.is_dir():
+        import shutil
+
+        shutil.rmtree(path)
+    place_whole(path, body, mode=mode, synced=True)
+
+
+def _suffix(path: Path) -> str:
+    return "".join(path.name.partition(".")[1:])
+
+
+def _checksum(body: bytes) -> str:
+    return hashlib.sha256(body).hexdigest()
+
+
+def _read(path: Path) -> bytes | None:
+    """The bytes of a file of ours, which is used now; `None` if there is none."""
+    try:
+        if not is_ours(path):
+            return None
+        body = path.read_bytes()
+        os.utime(path)
+    except OSError:
+        return None
+    return body
+
+
+def _tidy(folder: Path) -> None:
+    """Delete what killed processes left, and of too much what was not used for longest."""
+    import re
+    import shutil
+    import time
+
+    now = time.time()
+    with suppress(FileNotFoundError):
+        if now - (folder / _TIDIED).stat().st_mtime < _TIDY_S:
+            return
+    (folder / _TIDIED).touch(mode=0o600)
+    found: list[tuple[float, int, str]] = []
+    for entry in os.scandir(folder):
+        named = re.fullmatch(_NAMES, entry.name)
+        if named is None:
+            continue
+        with suppress(FileNotFoundError):  # another process tidies as well
+            about = entry.stat(follow_symlinks=False)
+            if not named["unfinished"]:
+                found.append((about.st_mtime, about.st_size, entry.path))
+            elif now - about.st_mtime > _ABANDONED_S:
+                remove = shutil.rmtree if entry.is_dir(follow_symlinks=False) else os.unlink
+                remove(entry.path)
+    most = _most()
+    size = sum(bytes_ for _, bytes_, _ in found)
+    if size <= most:
         return
-    if name:
-        Path(name).unlink(missing_ok=True)
+    for used, bytes_, path in sorted(found):
+        if size <= most // 2 or now - used < _IN_USE_S:
+            break
+        Path(path).unlink(missing_ok=True)
+        size -= bytes_
 
 
-def _prune(path: Path) -> None:
-    """Delete the files of its kind that were not used for longest, when there are too many."""
-    kind = path.name.partition("-")[0]
-    found = list(path.parent.glob(f"{kind}-*{path.suffix}"))
-    if len(found) > _MOST:
-        found.sort(key=lambda one: one.stat().st_mtime)
-        for one in found[: len(found) - _MOST // 2]:
-            one.unlink(missing_ok=True)
+def _most() -> int:
+    """Bytes that are kept; what `RVMON_CACHE_MB` says is passed over if it is no number."""
+    said = os.environ.get("RVMON_CACHE_MB", "")
+    return 1_000_000 * int(said if said.isascii() and said.isdecimal() else _MOST_MB)

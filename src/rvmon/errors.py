@@ -16,6 +16,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rvmon.diagnostics.shown import shown
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -23,7 +25,10 @@ if TYPE_CHECKING:
 
 
 class RvmonError(Exception):
-    """Anything that rvmon raises on purpose."""
+    """Anything that rvmon raises on purpose; as text, nothing in it steers a terminal."""
+
+    def __str__(self) -> str:
+        return shown(super().__str__())
 
 
 class DiagnosedError(RvmonError, ValueError):
@@ -62,7 +67,7 @@ class UnknownNameError(RvmonError, KeyError):
     """A name that does not exist was asked for; the message lists those that do."""
 
     def __str__(self) -> str:
-        return str(self.args[0]) if self.args else ""
+        return shown(str(self.args[0])) if self.args else ""
 
 
 class SnapshotError(RvmonError, ValueError):

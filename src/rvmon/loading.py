@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
 from rvmon.session import Spec
 
@@ -27,7 +28,7 @@ def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
             told = f"error: {path}: a recording by its name; a specification (.rv) is expected here"
             raise SpecError((), told)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = text_of_file(path)
     except OSError as error:
         raise SpecError((), f"error: {path}: {error.strerror or error}") from None
     except UnicodeDecodeError:

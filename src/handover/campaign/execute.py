@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -17,6 +16,7 @@ from itertools import groupby
 from handover.campaign.outcome import Outcome, Results
 from handover.campaign.plan import Job, Plan
 from handover.campaign.play import Chunk, Played, play
+from rvmon.children import workers
 
 CHUNK = 25
 """Tests per chunk at most: the start of a chunk costs about as much as one test."""
@@ -45,18 +45,18 @@ def execute(
         progress: told as tests are finished.
     """
     started = time.perf_counter()
-    workers = jobs or os.cpu_count() or 1
-    outcomes, cut_short = _execute(plan, plan.jobs(), workers, progress)
+    count = jobs or os.cpu_count() or 1
+    outcomes, cut_short = _execute(plan, plan.jobs(), count, progress)
     repeated: list[Outcome] = []
     if unfitted and not cut_short:
         lost = [replace(one.job, startup_loss=False) for one in outcomes if not one.connected]
-        repeated, cut_short = _execute(plan, lost, workers, None)
+        repeated, cut_short = _execute(plan, lost, count, None)
     seconds = time.perf_counter() - started
     return Results(plan, tuple(outcomes), tuple(repeated), seconds, cut_short)
 
 
 def _execute(
-    plan: Plan, jobs: Sequence[Job], workers: int, progress: Progress | None
+    plan: Plan, jobs: Sequence[Job], count: int, progress: Progress | None
 ) -> tuple[list[Outcome], str]:
     played: list[Played] = []
 
@@ -65,15 +65,15 @@ def _execute(
         if progress is not None:
             progress(len(one.outcomes))
 
-    chunks = _chunks(plan, jobs, workers)
-    run = _here if workers == 1 or len(chunks) < 2 else _in_workers
-    cut_short = run(chunks, workers, keep)
+    chunks = _chunks(plan, jobs, count)
+    run = _here if count == 1 or len(chunks) < 2 else _in_workers
+    cut_short = run(chunks, count, keep)
     played.sort(key=lambda one: one.chunk.start)
     return [outcome for one in played for outcome in one.outcomes], cut_short
 
 
-def _chunks(plan: Plan, jobs: Sequence[Job], workers: int) -> list[Chunk]:
-    size = max(1, min(CHUNK, len(jobs) // (workers * CHUNKS_PER_WORKER)))
+def _chunks(plan: Plan, jobs: Sequence[Job], count: int) -> list[Chunk]:
+    size = max(1, min(CHUNK, len(jobs) // (count * CHUNKS_PER_WORKER)))
     chunks: list[Chunk] = []
     start = 0
     for robot, group in groupby(jobs, key=lambda job: job.robot):
@@ -85,7 +85,7 @@ def _chunks(plan: Plan, jobs: Sequence[Job], workers: int) -> list[Chunk]:
     return chunks
 
 
-def _here(chunks: Sequence[Chunk], _workers: int, keep: Callable[[Played], None]) -> str:
+def _here(chunks: Sequence[Chunk], _count: int, keep: Callable[[Played], None]) -> str:
     try:
         for chunk in chunks:
             one = play(chunk)
@@ -97,26 +97,23 @@ def _here(chunks: Sequence[Chunk], _workers: int, keep: Callable[[Played], None]
     return ""
 
 
-def _in_workers(chunks: Sequence[Chunk], workers: int, keep: Callable[[Played], None]) -> str:
+def _in_workers(chunks: Sequence[Chunk], count: int, keep: Callable[[Played], None]) -> str:
     # Workers that are spawned inherit no threads and no state, on every platform.
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(workers, len(chunks)), mp_context=context)
-    with _without_interrupts():
-        waiting: set[Future[Played]] = {pool.submit(play, chunk) for chunk in chunks}
-    try:
-        for future in as_completed(tuple(waiting)):
-            waiting.remove(future)
-            keep(future.result())
-    except KeyboardInterrupt:
-        # After a second one, what is not here by now is lost.
-        with suppress(KeyboardInterrupt, BrokenProcessPool):
-            for future in [one for one in waiting if not one.cancel()]:
-                keep(future.result())  # a worker has it already
-        return INTERRUPTED
-    except BrokenProcessPool:
-        return WORKER_DIED
-    finally:
-        pool.shutdown(cancel_futures=True)
+    with workers(min(count, len(chunks)), "spawn") as pool:
+        with _without_interrupts():
+            waiting: set[Future[Played]] = {pool.submit(play, chunk) for chunk in chunks}
+        try:
+            for future in as_completed(tuple(waiting)):
+                waiting.remove(future)
+                keep(future.result())
+        except KeyboardInterrupt:
+            # After a second one, what is not here by now is lost.
+            with suppress(KeyboardInterrupt, BrokenProcessPool):
+                for future in [one for one in waiting if not one.cancel()]:
+                    keep(future.result())  # a worker has it already
+            return INTERRUPTED
+        except BrokenProcessPool:
+            return WORKER_DIED
     return ""
 
 

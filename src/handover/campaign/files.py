@@ -15,6 +15,7 @@ from handover.generator.files import save
 from handover.generator.model_based import save_templates
 from rvmon.report.table_csv import tables_csv
 from rvmon.report.table_latex import table_latex
+from rvmon.writing import write_whole
 
 TESTS = "tests"
 TEMPLATES = "templates"
@@ -30,11 +31,11 @@ def write_tables(folder: Path, summary: CampaignSummary) -> None:
     tables = all_tables(summary)
     latex = "\n".join(table_latex(table) for table in tables.values())
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "table.txt").write_text(_plain_text(summary), encoding="utf-8")
-    (folder / "table.csv").write_text(tables_csv(tables, key="robot"), encoding="utf-8")
-    (folder / "table.tex").write_text(latex, encoding="utf-8")
-    (folder / "table.json").write_bytes(to_json(table_document(summary)))
-    (folder / "coverage.json").write_bytes(to_json(coverage_document(summary)))
+    write_whole(folder / "table.txt", _plain_text(summary))
+    write_whole(folder / "table.csv", tables_csv(tables, key="robot"))
+    write_whole(folder / "table.tex", latex)
+    write_whole(folder / "table.json", to_json(table_document(summary)))
+    write_whole(folder / "coverage.json", to_json(coverage_document(summary)))
 
 
 def write_tests(folder: Path, results: Results) -> None:

@@ -21,6 +21,7 @@ from rvmon.report.folder import made
 from rvmon.session import Spec
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from rvmon.writing import write_whole
 
 
 def run_replay(arguments: argparse.Namespace) -> int:
@@ -63,8 +64,8 @@ def play_again(
 def _write(target: Path, run: Run, page: str) -> None:
     """Write the page, and the bus messages as JSON lines, which `rvmon run` reads."""
     lines = [json.dumps({"t_ns": t_ns, **values}) + "\n" for t_ns, values in run.samples]
-    target.with_name(f"{target.name}.html").write_text(page, encoding="utf-8")
-    target.with_name(f"{target.name}.jsonl").write_text("".join(lines), encoding="utf-8")
+    write_whole(target.with_name(f"{target.name}.html"), page)
+    write_whole(target.with_name(f"{target.name}.jsonl"), "".join(lines))
 
 
 def _show(form: str, spec: Spec, run: Run, report: Report) -> None:

@@ -19,6 +19,7 @@ from rvmon.report.run_page import JudgedRun
 from rvmon.session import Spec
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from rvmon.writing import write_whole
 
 REPORT = "report.html"
 
@@ -58,7 +59,7 @@ def write_pages(
             back=f"../{REPORT}",
         )
         address = f"{RUNS}/{job.robot}-{job.test.name}.html"
-        (folder / address).write_text(text, encoding="utf-8")
+        write_whole(folder / address, text)
         addresses[job.robot, job.test.name] = address
     cells = {
         cell: f"{addresses[job.robot, job.test.name]}#{cell[2]}"
@@ -66,7 +67,7 @@ def write_pages(
     }
     path = folder / REPORT
     page = report_page(summary, command=command, examples=cells, tests=addresses)
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
     return path
 
 

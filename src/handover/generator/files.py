@@ -9,6 +9,7 @@ import msgspec
 
 from handover.generator.abstract_test import AbstractTest
 from rvmon.errors import RvmonError
+from rvmon.writing import write_whole
 
 
 class AbstractTestError(RvmonError, ValueError):
@@ -60,7 +61,7 @@ def load(path: str | Path) -> AbstractTest:
 def save(test: AbstractTest, folder: str | Path) -> Path:
     """Write a test to `folder/<name>.json` and return that path."""
     path = Path(folder) / f"{test.name}.json"
-    path.write_bytes(to_json(test))
+    write_whole(path, to_json(test))
     return path
 
 

@@ -9,6 +9,7 @@ import msgspec
 
 from handover.generator.abstract_test import Action
 from handover.generator.files import AbstractTestError
+from rvmon.writing import write_whole
 
 PolicyName = Literal["shortest", "fastest", "likely"]
 """How a witness is chosen among several."""
@@ -90,5 +91,5 @@ def load_template(path: str | Path) -> Template:
 def save_template(template: Template, folder: str | Path) -> Path:
     """Write a template to `folder/<name>.json` and return that path."""
     path = Path(folder) / f"{template.name}.json"
-    path.write_bytes(template_to_json(template))
+    write_whole(path, template_to_json(template))
     return path

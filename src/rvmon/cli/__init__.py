@@ -1,7 +1,7 @@
 """The command `rvmon`: one file per subcommand, each with `add_parser` and `run`.
 
 Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
-3 internal error, 130 interrupted.
+3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 """
 
 from __future__ import annotations
@@ -16,7 +16,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
+from rvmon.children import interrupted_by_sigterm
+from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
+from rvmon.cli.say import warn
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -49,7 +52,8 @@ def program() -> int:
     try:
         from rvmon.cli.at_once import judged_at_once
 
-        code = judged_at_once(sys.argv[1:])
+        with interrupted_by_sigterm():
+            code = judged_at_once(sys.argv[1:])
     except KeyboardInterrupt:
         return _interrupted()
     if code is None:
@@ -83,12 +87,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def guarded(namespace: argparse.Namespace) -> int:
     """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
     try:
-        code = namespace.run(namespace)
-        sys.stdout.flush()
+        with interrupted_by_sigterm(), at_most(getattr(namespace, "most_megabytes", None)):
+            code = namespace.run(namespace)
+            sys.stdout.flush()
     except RvmonError as error:
         text = str(error)
         rendered = text.startswith(("error", "warning"))  # diagnostics bring their own heading
-        print(text if rendered else f"error: {text}", file=sys.stderr)
+        warn(text if rendered else f"error: {text}")
         return 2
     except KeyboardInterrupt:
         return _interrupted()
@@ -98,15 +103,14 @@ def guarded(namespace: argparse.Namespace) -> int:
         return 0
     except Exception as error:
         if isinstance(error, OSError) and error.errno == errno.ENOSPC:
-            print(f"error: the output cannot be written: {error.strerror}", file=sys.stderr)
+            warn(f"error: the output cannot be written: {error.strerror}")
             _drop_output()
             return 2
         if os.environ.get("RVMON_TRACEBACK"):
             raise
-        print(
+        warn(
             f"internal error: {type(error).__name__}: {error}\n"
-            "This is a bug in rvmon. RVMON_TRACEBACK=1 shows where it happened.",
-            file=sys.stderr,
+            "This is a bug in rvmon. RVMON_TRACEBACK=1 shows where it happened."
         )
         return 3
     return int(code)
@@ -118,17 +122,19 @@ def _drop_output() -> None:
 
 
 def _interrupted() -> int:
-    print("interrupted", file=sys.stderr)
+    warn("interrupted")
+    # An interrupt that passed through an `exec` of text, as dataclasses do when they are made,
+    # stays noted in the interpreter: `python -m` would end by the signal. The next one forgets it.
+    exec("")  # noqa: S102 - nothing is run
     return 130
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """The parser with the named subcommand only, or with all for help and for errors."""
-    import argparse
-
+    from rvmon.cli.parser import Parser
     from rvmon.verdict.verdict import LAW
 
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="rvmon",
         description="Temporal requirements in, verdicts about robots out.",
         epilog="example: rvmon run specs/handover.rv recording.csv",

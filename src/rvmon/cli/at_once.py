@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import signal
 import stat
 import sys
 from collections.abc import Sequence
@@ -17,7 +18,8 @@ from itertools import islice
 from pathlib import Path
 
 from rvmon import __version__
-from rvmon.cache import cache_folder, files_told, is_ours, keep, read_kept
+from rvmon.cache import cache_folder, files_told, is_whole, keep, read_kept
+from rvmon.diagnostics.text_file import text_of_file
 from rvmon.readers.steps import FEWEST, LONG_STEP, LOOKED_AT, median_step
 
 _VALUED = ("--only", "--const", "--engine", "--format")
@@ -42,9 +44,7 @@ def judged_at_once(words: Sequence[str]) -> int | None:
     if folder is None or not _is_plain_file(trace):
         return None
     try:
-        if not stat.S_ISREG(os.stat(spec).st_mode):
-            return None
-        text = Path(spec).read_text(encoding="utf-8")
+        text = text_of_file(spec)
     except (OSError, UnicodeDecodeError):
         return None
     if "import" in text:  # of what is imported, too, it would depend
@@ -124,8 +124,8 @@ def _known(path: Path) -> _Found | None:
     try:
         name, warnings, read = json.loads(body)
         program = path.parent / name
-        return (program, warnings, read) if is_ours(program) else None
-    except (ValueError, TypeError, OSError):
+        return (program, warnings, read) if is_whole(program) else None
+    except (ValueError, TypeError):
         return None
 
 
@@ -159,14 +159,19 @@ def _made(path: Path, spec: str, text: str, options: dict[str, list[str]]) -> _F
 
 
 def _judged(program: Path, warnings: str, trace: str) -> int | None:
-    """Have the program judge."""
+    """Have the program judge; it does not outlive this process."""
     quiet = [(os.POSIX_SPAWN_OPEN, 2, os.devnull, os.O_WRONLY, 0)]
-    words = [str(program), "--exactly", trace]
+    words = [str(program), "--exactly", str(os.getpid()), trace]
     try:
         child = os.posix_spawn(program, words, os.environ, file_actions=quiet)
     except OSError:  # it is gone, or of another machine that shares the folder
         return None
-    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    try:
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    except KeyboardInterrupt:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        raise
     if code not in _JUDGED:
         return None
     if warnings:

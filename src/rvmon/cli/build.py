@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import shutil
+import os
 
 from rvmon.errors import RvmonError
+from rvmon.writing import write_whole
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -38,8 +39,10 @@ def run(arguments: argparse.Namespace) -> int:
         ids = [name.strip() for name in arguments.only.split(",") if name.strip()]
     path = built_program(spec.plan(only=ids))
     try:
-        shutil.copyfile(path, arguments.output)
-        shutil.copymode(path, arguments.output)
+        write_whole(arguments.output, path.read_bytes())
+        if os.path.isfile(arguments.output):  # whoever may read it may run it
+            mode = os.stat(arguments.output).st_mode
+            os.chmod(arguments.output, mode | (mode & 0o444) >> 2)
     except OSError as error:
         raise RvmonError(f"cannot write {arguments.output}: {error.strerror}") from None
     return 0

@@ -8,7 +8,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
+from rvmon.cli.say import say, say_json, warn
+from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
@@ -49,6 +52,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file"
     )
+    add_max_memory(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -61,10 +65,10 @@ def run(arguments: argparse.Namespace) -> int:
     unreadable = broken = 0
     for name in arguments.specs:
         try:
-            text = sys.stdin.read() if name == "-" else Path(name).read_text(encoding="utf-8")
+            text = text_of_input() if name == "-" else text_of_file(name)
         except (OSError, UnicodeDecodeError) as error:
             reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
-            print(f"error: {name}: {reason}", file=sys.stderr)
+            warn(f"error: {name}: {reason}")
             unreadable += 1
             continue
         checked, found = _checked(text, name, constants)
@@ -80,9 +84,9 @@ def run(arguments: argparse.Namespace) -> int:
     _show(arguments.format, findings)
     if arguments.format == "text":
         if remarks:
-            print("\n".join(["", *remarks] if findings else remarks))
+            say("\n".join(["", *remarks] if findings else remarks))
         if findings or not (unreadable or broken):
-            print(_summary(len(arguments.specs) - unreadable, findings))
+            say(_summary(len(arguments.specs) - unreadable, findings))
     if unreadable or broken:
         return 2
     return int(arguments.strict and bool(findings))
@@ -131,12 +135,13 @@ def _show(form: str, findings: list[Diagnostic]) -> None:
 
     match form:
         case "json":
-            print(render_json(findings))
+            say_json(render_json(findings))
         case "concise" if findings:
-            print(render_concise(findings), file=sys.stderr)
+            warn(render_concise(findings))
         case "text" if findings:
             text = render_full(findings)
-            print(coloured(text) if wants_colour(sys.stderr) else text, file=sys.stderr)
+            # Nothing of others is left in it that could steer a terminal.
+            sys.stderr.write(f"{coloured(text) if wants_colour(sys.stderr) else text}\n")
 
 
 def _summary(files: int, findings: list[Diagnostic]) -> str:

@@ -8,7 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.say import say
+from rvmon.diagnostics.shown import shown_json
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -70,8 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
-            (folder / name).write_text(text, encoding="utf-8")
-            print(folder / name)
+            write_whole(folder / name, text)
+            say(str(folder / name))
     except OSError as error:
         raise RvmonError(f"cannot write to {folder}: {error.strerror}") from None
     return 0
@@ -101,7 +104,7 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
         from rvmon.export.automaton_json import automaton_json
 
         found = [automaton_json(one, spec.checked) for one in chosen]
-        return msgspec.json.format(msgspec.json.encode(found), indent=1).decode() + "\n"
+        return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
     from rvmon.explain.graph import graph_of
     from rvmon.explain.graph_text import graph_dot
 
@@ -119,6 +122,6 @@ def _write_or_print(text: str, output: str | None) -> None:
         sys.stdout.write(text)
         return
     try:
-        Path(output).write_text(text, encoding="utf-8")
+        write_whole(output, text)
     except OSError as error:
         raise RvmonError(f"cannot write {output}: {error.strerror}") from None

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
 from rvmon.cli.reading import add_time
+from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -77,13 +77,13 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             answers[path] = _compare(network, path, stamps, labels, chosen, until, tolerance)
         except TraceError as error:
-            print(f"error: {error}", file=sys.stderr)
+            warn(f"error: {error}")
             broken = True
             continue
         if arguments.format == "text":
             _print(path, answers[path])
     if arguments.format == "json":
-        print(json.dumps({path: _data(answer) for path, answer in answers.items()}, indent=2))
+        say_json(json.dumps({path: _data(answer) for path, answer in answers.items()}, indent=2))
     return 2 if broken else int(any(not answer.conforms for answer in answers.values()))
 
 
@@ -122,7 +122,7 @@ def _compare(
     later = sum(action.t > end for action in actions)
     if later:
         what = "1 later action is" if later == 1 else f"{later} later actions are"
-        print(f"{path}: {what} not looked at, because of --until", file=sys.stderr)
+        warn(f"{path}: {what} not looked at, because of --until")
     actions = [action for action in actions if action.t <= end]
     return conform(network, actions, observed=chosen, end=end, tolerance=tolerance)
 
@@ -147,15 +147,15 @@ def _print(path: str, answer: Conformance) -> None:
     divergence = answer.divergence
     if divergence is None:
         word = f"not decided: {answer.undecided}" if answer.undecided else "conforms"
-        print(f"{path}: {word}; {count}")
+        say(f"{path}: {word}; {count}")
         return
     what = f"`{divergence.label}`" if divergence.label else "nothing more happens"
-    print(f"{path}: diverges at {divergence.at / 1e9:g} s, {count} before: {what}")
-    print("  no run of the model does that; here it could do:")
+    say(f"{path}: diverges at {divergence.at / 1e9:g} s, {count} before: {what}")
+    say("  no run of the model does that; here it could do:")
     for allowed in divergence.allowed:
-        print(f"    {_allowed_text(allowed)}")
+        say(f"    {_allowed_text(allowed)}")
     if not divergence.allowed:
-        print("    nothing")
+        say("    nothing")
 
 
 def _allowed_text(allowed: Allowed) -> str:

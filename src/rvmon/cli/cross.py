@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import add_reading, opened, reading_spec
+from rvmon.cli.say import say, say_json
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -89,13 +90,13 @@ def run(arguments: argparse.Namespace) -> int:
         peers = {name: stack.enter_context(peer) for name, peer in _peers(arguments.peers)}
         found = list(crossings(case, peers))
     if arguments.format == "json":
-        print(_json(arguments, found, 0 if late is None else late[0], recording.health()))
+        say_json(_json(arguments, found, 0 if late is None else late[0], recording.health()))
     else:
         _print(arguments, found)
         for line in health_lines(recording.health()):
-            print(line)
+            say(line)
         if late is not None:
-            print(f"  left out as `rvmon run` does, later than `max delay`: {_late_text(*late)}")
+            say(f"  left out as `rvmon run` does, later than `max delay`: {_late_text(*late)}")
     judged = all(crossing.report is not None for crossing in found)
     return 0 if judged and all(crossing.agrees for crossing in found) else 1
 
@@ -168,14 +169,14 @@ def _json(
 
 def _print(arguments: argparse.Namespace, found: Sequence[Crossing]) -> None:
     from rich import box
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
     from rvmon.report.style import verdict_text
+    from rvmon.report.terminal import Terminal
     from rvmon.testing.cross import BASELINE
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Terminal(soft_wrap=True)
     console.print(f"{arguments.trace}  by {arguments.spec}; compared with the engine `{BASELINE}`")
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("")

@@ -7,8 +7,11 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import positive
+from rvmon.cli.say import say
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled import CompiledSpec
@@ -40,6 +43,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
     )
+    add_max_memory(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -49,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         from rvmon.explain.model_codes import model_page
 
         code = arguments.subject
-        print(code_list() if code == "codes" else model_page(code) or page_of(code), end="")
+        say(code_list() if code == "codes" else model_page(code) or page_of(code), end="")
         return 0
     from rvmon.cli.constants import constants_of
     from rvmon.loading import load
@@ -78,12 +82,12 @@ def _ids(named: list[str], spec: Spec) -> list[str]:
 
 
 def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: int) -> None:
-    from rich.console import Console
 
     from rvmon.explain.example import Budget
     from rvmon.report.explain_text import difference_explained, explained
+    from rvmon.report.terminal import Terminal
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Terminal(soft_wrap=True)
     budget = Budget(runs=runs)
     if difference:
         for part in difference_explained(compiled, ids[0], ids[1], budget):
@@ -107,11 +111,11 @@ def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace)
             raise RvmonError(f"error: {name} has no automaton to draw: {one.refusal}")
         graph = graph_of(one, one.automaton, compiled.checked)
         if arguments.dot:
-            print(graph_dot(graph, name), end="")
+            say(graph_dot(graph, name), end="")
         if arguments.svg:
             if len(ids) > 1:
                 raise RvmonError("error: --svg draws one requirement: name it after the file")
             try:
-                Path(arguments.svg).write_text(graph_svg(graph, name), encoding="utf-8")
+                write_whole(arguments.svg, graph_svg(graph, name))
             except OSError as error:
                 raise RvmonError(f"error: {arguments.svg}: {error.strerror or error}") from None

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
+
+from rvmon.cli.say import say, warn
+from rvmon.writing import write_whole
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -24,29 +26,30 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Lay out, and return the exit code."""
+    from rvmon.diagnostics.text_file import text_of_file, text_of_input
     from rvmon.errors import SpecError
     from rvmon.spec.formatter import format_text
 
     changed = wrong = 0
     for name in arguments.specs:
         try:
-            text = sys.stdin.read() if name == "-" else Path(name).read_text(encoding="utf-8")
+            text = text_of_input() if name == "-" else text_of_file(name)
             laid_out = format_text(text, name=name)
             if name != "-" and laid_out != text and not arguments.check:
-                Path(name).write_text(laid_out, encoding="utf-8")
+                write_whole(name, laid_out)
         except SpecError as error:
-            print(error, file=sys.stderr)
+            warn(str(error))
             wrong += 1
             continue
         except (OSError, UnicodeDecodeError) as error:
             reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
-            print(f"error: {name}: {reason}", file=sys.stderr)
+            warn(f"error: {name}: {reason}")
             wrong += 1
             continue
         if name == "-" and not arguments.check:
-            print(laid_out, end="")
+            sys.stdout.write(laid_out)
         elif laid_out != text:
-            print(f"{'would change' if arguments.check else 'changed'}: {name}")
+            say(f"{'would change' if arguments.check else 'changed'}: {name}")
         changed += laid_out != text
     if wrong:
         return 2

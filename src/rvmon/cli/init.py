@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import add_time, time_words
+from rvmon.cli.say import say
 from rvmon.errors import RvmonError
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.starter.column import Profile
@@ -48,12 +50,12 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.write(text)
         return 0
     try:
-        Path(output).write_text(text, encoding="utf-8")
+        write_whole(output, text)
     except OSError as error:
         raise RvmonError(f"error: {output}: {error.strerror or error}") from None
-    print(f"wrote {output}: {_contents(profile)}")
+    say(f"wrote {output}: {_contents(profile)}")
     words = ["rvmon", "run", output, arguments.data, *time_words(arguments)]
-    print(f"try:   {shlex.join(words)}")
+    say(f"try:   {shlex.join(words)}")
     return 0
 
 

@@ -10,6 +10,7 @@ from functools import partial
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
+from rvmon.children import workers
 from rvmon.cli.progress import shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.cli.second_look import can_be_read_again, second_look
@@ -88,9 +89,7 @@ def judge_all(
         jobs: processes; 1 judges here.
     """
     if jobs > 1 and len(traces) > 1:
-        from concurrent.futures import ProcessPoolExecutor
-
-        with ProcessPoolExecutor(min(jobs, len(traces))) as pool:
+        with workers(min(jobs, len(traces))) as pool:
             yield from pool.map(partial(_load_and_judge, path, constants, options), traces)
     else:
         for trace in traces:

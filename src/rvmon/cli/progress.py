@@ -34,10 +34,11 @@ def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:
             break
     else:
         return
-    from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as progress:
+    from rvmon.report.terminal import Terminal
+
+    with Progress(console=Terminal(stderr=True), transient=True) as progress:
         task = progress.add_task(recording.path, total=1.0)
         for count, sample in enumerate(samples):
             yield sample

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import shlex
-import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import instant, positive
 from rvmon.cli.reading import (
     add_allow_missing,
@@ -19,10 +19,12 @@ from rvmon.cli.reading import (
     reading_spec,
     reading_words,
 )
+from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
+from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
@@ -91,6 +93,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="columns that are missing or not declared are errors",
     )
+    add_max_memory(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -126,7 +129,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.require_triggered is not None:
         silent = _never_triggered(reports, must_trigger)
         for name in silent:
-            print(f"{name} was triggered in no recording", file=sys.stderr)
+            warn(f"{name} was triggered in no recording")
         failed |= bool(silent)
     return int(failed)
 
@@ -150,25 +153,25 @@ def _show_warnings(spec: Spec) -> None:
     if spec.warnings:
         from rvmon.diagnostics.render import render_full
 
-        print(render_full(spec.warnings), file=sys.stderr)
+        warn(render_full(spec.warnings))
     if not spec.requirements and not spec.checked.covers:
-        print(f"{spec.checked.name} has no requirement: nothing is judged", file=sys.stderr)
+        warn(f"{spec.checked.name} has no requirement: nothing is judged")
 
 
 def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
     for one in judged:
         if one.error:
-            print(f"error: {one.error}", file=sys.stderr)
+            warn(f"error: {one.error}")
             for line in _before_lines(one.before):
-                print(f"  judged before that: {line}", file=sys.stderr)
+                warn(f"  judged before that: {line}")
         if one.missing:
             names = ", ".join(f"`{name}`" for name in one.missing)
             told = f"{one.trace} has no column for {names}: what reads that is inconclusive"
-            print(f"warning: {told}", file=sys.stderr)
+            warn(f"warning: {told}")
     if form == "json":
         _show_doubts(judged)
         texts = [_json(one) for one in judged]
-        print(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
+        say_json(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
 
@@ -180,7 +183,7 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
     for one in judged:
         for health in () if one.report is None else one.report.health:
             if health.kind is HealthKind.UNIT:
-                print(f"warning: {one.trace}: `{health.name}`: {health.remark}", file=sys.stderr)
+                warn(f"warning: {one.trace}: `{health.name}`: {health.remark}")
 
 
 def _json(one: Judged) -> str:
@@ -215,9 +218,7 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
 
         broken = [(one.trace, one.error) for one in judged if one.report is None]
         try:
-            Path(arguments.junit).write_text(
-                junit_xml(reports, spec.checked, broken), encoding="utf-8"
-            )
+            write_whole(arguments.junit, junit_xml(reports, spec.checked, broken))
         except OSError as error:
             raise RvmonError(f"cannot write {arguments.junit}: {error.strerror or error}") from None
     if arguments.report:

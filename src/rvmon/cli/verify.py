@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration, positive
+from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -125,7 +126,7 @@ def _warn_of_queries(network: Network, path: str) -> None:
     if path.lower().endswith(".xml"):
         for query in left_out(network):
             name = f"`{query.id}`: " if query.id else ""
-            print(f"warning: not a query of UPPAAL, left out: {name}{query.text}", file=sys.stderr)
+            warn(f"warning: not a query of UPPAAL, left out: {name}{query.text}")
 
 
 def _refuse_unused(arguments: argparse.Namespace) -> None:
@@ -172,7 +173,7 @@ def _show_warnings(network: Network) -> None:
     if network.warnings:
         from rvmon.diagnostics.render import render_full
 
-        print(render_full(network.warnings), file=sys.stderr)
+        warn(render_full(network.warnings))
 
 
 def _print_outcome(network: Network, outcome: Outcome) -> None:
@@ -181,24 +182,24 @@ def _print_outcome(network: Network, outcome: Outcome) -> None:
     word = {True: "holds", False: "does not hold", None: "not decided"}[outcome.holds]
     name = f"{outcome.query.id}: " if outcome.query.id else ""
     statistics = outcome.statistics
-    print(f"{name}{word}: {' '.join(outcome.query.text.split())}")
+    say(f"{name}{word}: {' '.join(outcome.query.text.split())}")
     if outcome.query.remark:
-        print(f'    "{outcome.query.remark}"')
-    print(f"    {statistics.visited:,} states, {statistics.seconds:.2f} s", end="")
-    print(f"; {outcome.remark}" if outcome.remark else "")
+        say(f'    "{outcome.query.remark}"')
+    say(f"    {statistics.visited:,} states, {statistics.seconds:.2f} s", end="")
+    say(f"; {outcome.remark}" if outcome.remark else "")
     if outcome.run is not None:
         kind = "witness" if outcome.holds else "counterexample"
         policy = f", {outcome.policy}" if outcome.policy is not None else ""
-        print(f"    {kind}{policy}:")
+        say(f"    {kind}{policy}:")
         for line in run_lines(network, outcome.run):
-            print(f"      {line}")
-    print(flush=True)
+            say(f"      {line}")
+    say(flush=True)
 
 
 def _print_json(network: Network, outcomes: Sequence[Outcome]) -> None:
     from rvmon.timed.describe import outcome_data
 
-    print(json.dumps({"queries": [outcome_data(network, o) for o in outcomes]}, indent=2))
+    say_json(json.dumps({"queries": [outcome_data(network, o) for o in outcomes]}, indent=2))
 
 
 # Suites and simulation.
@@ -212,18 +213,18 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
     with _shown() as watch:
         suite = build_suite(network, criterion, budget=budget, watch=watch)
     if arguments.format == "json":
-        print(json.dumps(suite_data(network, suite), indent=2))
+        say_json(json.dumps(suite_data(network, suite), indent=2))
         return int(bool(suite.stopped))
     for number, (shown, items) in enumerate(suite.runs, start=1):
-        print(f"run {number}, {len(items)} new:")
+        say(f"run {number}, {len(items)} new:")
         for line in run_lines(network, shown):
-            print(f"  {line}")
+            say(f"  {line}")
     total = suite.covered + len(suite.missing)
-    print(f"{len(suite.runs)} runs go through {suite.covered} of {total} {criterion}")
+    say(f"{len(suite.runs)} runs go through {suite.covered} of {total} {criterion}")
     for item in suite.missing:
-        print(f"  not reached: {item_text(network, item, criterion)}")
+        say(f"  not reached: {item_text(network, item, criterion)}")
     if suite.stopped:
-        print(f"  the search was cut short: {suite.stopped}")
+        say(f"  the search was cut short: {suite.stopped}")
     return int(bool(suite.stopped))
 
 
@@ -239,11 +240,11 @@ def _simulate(network: Network, arguments: argparse.Namespace) -> int:
         answers.append({"query": query.text, "share": found.share, "low": found.low,
                         "high": found.high, "runs": found.runs})  # fmt: skip
         if arguments.format == "text":
-            print(" ".join(query.text.split()))
-            print(f"    {found.share:.4f} of {found.runs:,} simulated runs; ", end="")
-            print(f"with 95 % confidence from {found.low:.4f} to {found.high:.4f}")
+            say(" ".join(query.text.split()))
+            say(f"    {found.share:.4f} of {found.runs:,} simulated runs; ", end="")
+            say(f"with 95 % confidence from {found.low:.4f} to {found.high:.4f}")
     if arguments.format == "json":
-        print(json.dumps({"simulated": answers}, indent=2))
+        say_json(json.dumps({"simulated": answers}, indent=2))
     return 0
 
 
@@ -253,9 +254,9 @@ def _shown() -> Iterator[Watch | None]:
     if not sys.stderr.isatty():
         yield None
         return
-    from rich.console import Console
+    from rvmon.report.terminal import Terminal
 
-    with Console(stderr=True).status("starting") as status:
+    with Terminal(stderr=True).status("starting") as status:
         yield lambda progress: status.update(
             f"{progress.visited:,} states, {progress.waiting:,} waiting, {progress.seconds:.0f} s"
         )

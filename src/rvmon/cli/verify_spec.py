@@ -6,6 +6,7 @@ import argparse
 import json
 from typing import TYPE_CHECKING
 
+from rvmon.cli.say import say, say_json
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -35,7 +36,9 @@ def check_spec(
         if arguments.format == "text":
             _print_observation(one, spec)
     if arguments.format == "json":
-        print(json.dumps({"requirements": [observation_data(o) for o in observations]}, indent=2))
+        say_json(
+            json.dumps({"requirements": [observation_data(o) for o in observations]}, indent=2)
+        )
     return int(any(not one.holds for one in observations))
 
 
@@ -53,21 +56,21 @@ def _print_observation(one: Observation, spec: Spec) -> None:
     word = {True: "holds on all runs", False: "fails on some run", None: ""}[one.holds]
     if one.remark == UNDECIDED_IN_THE_END:
         word = "holds on all finite runs"
-    print(f"{one.requirement}: {'; '.join(filter(None, (word, one.remark)))}")
+    say(f"{one.requirement}: {'; '.join(filter(None, (word, one.remark)))}")
     if one.text:
-        print(f'    "{one.text}"')
-    print(f"    {one.statistics.visited:,} states, {one.statistics.seconds:.2f} s")
+        say(f'    "{one.text}"')
+    say(f"    {one.statistics.visited:,} states, {one.statistics.seconds:.2f} s")
     named = (("triggered", one.triggered), ("passes", one.passing), ("fails", one.failing))
     for name, shown in named:
         if shown is None:
             continue
-        print(f"    {name}:")
+        say(f"    {name}:")
         for line in run_lines(one.network, shown):
-            print(f"      {line}")
+            say(f"      {line}")
         if name != "triggered":
             for line in _timeline(one, shown, spec):
-                print(f"      {line}")
-    print(flush=True)
+                say(f"      {line}")
+    say(flush=True)
 
 
 def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:

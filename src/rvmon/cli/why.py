@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import instant
 from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
+from rvmon.cli.say import say_json
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -85,13 +86,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.format == "json":
         import msgspec
 
-        print(msgspec.json.encode(anatomy).decode())
+        say_json(msgspec.json.encode(anatomy).decode())
         return 0
-    from rich.console import Console
 
+    from rvmon.report.terminal import Terminal
     from rvmon.report.why_text import why_lines
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Terminal(soft_wrap=True)
     for line in why_lines(anatomy, spec.requirements[name]):
         console.print(line)
     return 0

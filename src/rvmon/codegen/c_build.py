@@ -7,15 +7,19 @@ import os
 import platform
 import shlex
 import shutil
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from rvmon.cache import is_ours, made_folder
+from rvmon.cache import is_ours, is_whole, keep, keep_binary, made_folder, read_kept
+from rvmon.children import run
 from rvmon.errors import RvmonError
+from rvmon.writing import PREFIX, SUFFIX
+
+if TYPE_CHECKING:
+    from subprocess import CompletedProcess
 
 Loaded = TypeVar("Loaded")
 
@@ -101,14 +105,18 @@ def built(
     command = [*compiler(), *FLAGS, *flags]
     machine = processor() if NATIVE in flags else sys.platform
     key = hashlib.sha256(repr((sorted(texts.items()), command, machine)).encode()).hexdigest()
-    target = cache_directory() / f"{key[:40]}{suffix}"
-    if target.exists():
-        return target
+    folder = cache_directory()
+    record = folder / f"built-{key[:40]}.json"
+    known = read_kept(record)
+    if known is not None and is_whole(path := folder / known.decode()):
+        return path
     try:
-        _make(target, texts, [*command, *sources], libraries)
+        made = _made(folder, texts, [*command, *sources], libraries)
+        path = keep_binary(folder / f"{key[:40]}{suffix}", made)
     except OSError as error:
-        raise _not_kept(target.parent, error) from None
-    return target
+        raise _not_kept(folder, error) from None
+    keep(record, path.name.encode())
+    return path
 
 
 def loaded(
@@ -145,10 +153,14 @@ def loaded(
         ) from None
 
 
-def _make(
-    target: Path, texts: Mapping[str, str], command: Sequence[str], libraries: Sequence[str]
-) -> None:
-    with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
+def _made(
+    folder: Path,
+    texts: Mapping[str, str],
+    command: Sequence[str],
+    libraries: Sequence[str],
+) -> bytes:
+    """What the compiler makes, in a folder of its own within another."""
+    with tempfile.TemporaryDirectory(suffix=SUFFIX, prefix=PREFIX, dir=folder) as scratch:
         for name, text in texts.items():
             (Path(scratch) / name).write_text(text, encoding="utf-8")
         made = Path(scratch) / "made"
@@ -159,8 +171,9 @@ def _make(
             done = _run(words, scratch)
         if done.returncode:
             raise RvmonError(f"the C compiler failed: {' '.join(words)}\n{done.stderr}")
-        made.replace(target)  # atomic: others see the whole file or none
+        return made.read_bytes()
 
 
-def _run(words: Sequence[str], folder: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)  # noqa: S603
+def _run(words: Sequence[str], folder: str) -> CompletedProcess[str]:
+    """Have the compiler work in a folder, where it also has what it deletes at its end."""
+    return run(words, cwd=folder, env={**os.environ, "TMPDIR": folder})

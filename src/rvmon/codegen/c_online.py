@@ -21,7 +21,8 @@ from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array
-from rvmon.codegen.c_text import comment, filled, template
+from rvmon.codegen.c_text import filled, template
+from rvmon.codegen.comment import comment
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type

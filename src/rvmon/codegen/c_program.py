@@ -9,15 +9,19 @@ from rvmon.codegen.c_build import built
 from rvmon.codegen.c_exact import EXACT, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
-from rvmon.codegen.c_text import comment, filled, template
+from rvmon.codegen.c_text import filled, template
+from rvmon.codegen.comment import comment
 from rvmon.codegen.plan import Plan
+from rvmon.diagnostics.shown import shown_json
 from rvmon.spec.checked import Type
 from rvmon.spec.reads import names_of_requirement
 from rvmon.trace.schema import Kind
+from rvmon.verdict.attempt_json import encoded
 from rvmon.verdict.verdict import LAW
 
 _PARTS = (
     "program_head.c.in",
+    "program_words.c.in",
     "program_text.c.in",
     "program_numbers.c.in",
     "program_samples.c.in",
@@ -105,10 +109,13 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
     if not things:
         yield '    {"", 0, -1, KIND_BOOL, false, false, false, NULL, NULL, 0.0},'
     yield "};"
+    order = sorted(range(len(things)), key=lambda place: things[place][0].encode())
+    yield f"static const int32_t by_name[] = {{{', '.join(map(str, order or [0]))}}};"
     yield f"#define ENTRY_COUNT {max(len(things), 1)}"
     yield ""
-    ids = ", ".join(c_string(rule.requirement.id) for rule in plan.rules)
-    yield f"static const char *const requirements[] = {{{ids}}};"
+    # As JSON, which the program prints as it is.
+    ids = [shown_json(encoded(rule.requirement.id)) for rule in plan.rules]
+    yield f"static const char *const requirements[] = {{{', '.join(map(c_string, ids))}}};"
 
 
 def _labels(place: int, labels: Sequence[str], names: Names) -> Iterator[str]:
@@ -129,7 +136,7 @@ def c_string(text: str) -> str:
         plain = chr(byte)
         if plain in '"\\?':
             made += "\\" + plain
-        elif 0x20 <= byte < 0x7F:
+        elif 0x20 <= byte < 0x7F and plain != "@":  # which marks places of the templates
             made += plain
         else:
             made += f"\\{byte:03o}"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rvmon.codegen.c_leaves import leaf_value
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_nodes import group_count, groups_of
-from rvmon.codegen.c_text import comment
+from rvmon.codegen.comment import comment
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import signals_of
@@ -158,10 +158,11 @@ def _take_signal(plan: Plan, names: Names, name: str, source: Source) -> Iterato
     given = source.value.format(n=number, kind=value_type(plan, name))
     yield "{" + f" /* {comment(name)} */"
     yield f"    const uint8_t state = {source.signal.format(n=number)};"
-    yield f"    const bool known = state == {prefix}_YES;"
-    yield f"    const double value = known ? {given} : unknown_value();"
+    yield f"    const double value = (state == {prefix}_YES) ? {given} : unknown_value();"
+    yield "    const bool known = value == value;"
+    yield "    (void)known;"
     ignores = plan.spec.signals[name].ignores_nan
-    yield f"    if ({'value == value' if ignores else f'state != {prefix}_NOTHING'}) {{"
+    yield f"    if ({'known' if ignores else f'state != {prefix}_NOTHING'}) {{"
     if stale_after is not None:
         yield f"        m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
         # The update may change no value: then nothing else has the timer seen to.

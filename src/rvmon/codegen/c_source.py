@@ -22,7 +22,8 @@ from rvmon.codegen.c_nodes import (
 from rvmon.codegen.c_rows import rows_source
 from rvmon.codegen.c_samples import SAMPLE, take_source
 from rvmon.codegen.c_tables import array, automata_source, lists, repeats
-from rvmon.codegen.c_text import called, comment, filled, template
+from rvmon.codegen.c_text import called, filled, template
+from rvmon.codegen.comment import comment
 from rvmon.codegen.plan import Plan
 from rvmon.errors import RvmonError
 from rvmon.formula.state import StateOp

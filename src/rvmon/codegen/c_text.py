@@ -6,11 +6,6 @@ from collections.abc import Iterator
 from importlib.resources import files
 
 
-def comment(text: str) -> str:
-    """A text that cannot end a comment."""
-    return ascii(text)[1:-1].replace("*/", "* /").replace("/*", "/ *").replace("\\", "/")
-
-
 def template(name: str) -> str:
     """The text of a file of this package's folder `c`."""
     return files("rvmon.codegen").joinpath("c", name).read_text(encoding="utf-8")

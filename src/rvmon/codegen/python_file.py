@@ -6,8 +6,9 @@ import re
 from importlib.resources import files
 
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, outcomes
+from rvmon.codegen.comment import comment
 from rvmon.codegen.plan import Plan, PlannedRule
-from rvmon.codegen.python_source import unit_source
+from rvmon.codegen.python_source import judges, unit_source
 from rvmon.codegen.tables import tables_of
 from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type
@@ -49,11 +50,11 @@ def python_file(plan: Plan) -> str:
     Raises:
         RvmonError: a requirement has no automaton.
     """
-    parts = [_HEAD.format(spec=ascii(plan.spec.name)[1:-1])]
+    parts = [_HEAD.format(spec=comment(plan.spec.name))]
     parts += [_body(name) for name in _RUNTIME]
     parts.append(unit_source(plan))
     parts.append("\n\nclass SpecMonitor(Monitor):\n")
-    parts.append(f'    """Judges {", ".join(rule.requirement.id for rule in plan.rules)}."""\n\n')
+    parts.append(f'    """{judges(plan)}"""\n\n')
     parts.append("    UNIT = Generated\n")
     parts.append(f"    NAMES = {tuple(rule.requirement.id for rule in plan.rules)!r}\n")
     parts.append(f"    KINDS = {_kinds(plan)}\n")
@@ -94,7 +95,7 @@ def _tables(rule: PlannedRule) -> str:
         ("at the end", data.end_clauses),
     )
     lines = [f"            {value!r},  # {title}\n" for title, value in fields]
-    return f"        (  # {rule.requirement.id}\n{''.join(lines)}        ),\n"
+    return f"        (  # {comment(rule.requirement.id)}\n{''.join(lines)}        ),\n"
 
 
 def _outcomes(rule: PlannedRule) -> tuple[tuple[str, str], ...]:

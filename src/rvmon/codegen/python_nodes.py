@@ -54,13 +54,14 @@ def roles_of(plan: Plan) -> Roles:
     letters = [0 for _ in graph.nodes]
     triggers = [0 for _ in graph.nodes]
     asked = 0
-    for index, rule in enumerate(plan.judged):
+    judged = plan.judged
+    for index, rule in enumerate(judged):
         for state in rule.alphabet.propositions:
             letters[graph.index[state]] |= 1 << index
         if rule.trigger is not None:
             triggers[graph.index[rule.trigger]] |= 1 << index
         if rule.again is not None:
-            triggers[graph.index[rule.again]] |= 1 << index + len(plan.judged)
+            triggers[graph.index[rule.again]] |= 1 << index + len(judged)
         for named in (rule.unborn, rule.told):
             asked |= 0 if named is None else 1 << graph.index[named]
     kept = 0

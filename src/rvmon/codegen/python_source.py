@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from rvmon.codegen.comment import comment
 from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.python_cones import ConeWriter
 from rvmon.codegen.python_intake import IntakeWriter
@@ -29,14 +30,19 @@ _TABULATED = 5
 def unit_source(plan: Plan, arriving: frozenset[str] | None = None) -> str:
     """The source of a class `Generated(Unit)`.
 
-    All that comes from the specification stands in it as a literal of `repr`, as a number, or as
-    an operator of a fixed list.
+    All that comes from the specification stands in it as a literal of `repr`, as a number, as an
+    operator of a fixed list, or in a comment that it cannot end.
 
     Args:
         plan: what to judge.
         arriving: the names that have a source; default all.
     """
     return "\n".join(_Writer(plan, arriving).lines()) + "\n"
+
+
+def judges(plan: Plan) -> str:
+    """A sentence for the docstring of what is generated."""
+    return comment(f"Judges {', '.join(rule.requirement.id for rule in plan.rules)}.")
 
 
 class _Writer:
@@ -61,7 +67,7 @@ class _Writer:
         yield from self._letters()
         yield from self.intake.functions()
         yield "class Generated(Unit):"
-        yield f'    """Judges {", ".join(rule.requirement.id for rule in self.plan.rules)}."""'
+        yield f'    """{judges(self.plan)}"""'
         yield ""
         held = (f"last{signal}" for signal in range(len(self.plan.signals)))
         yield f"    __slots__ = {tuple(held)!r}"
@@ -78,7 +84,7 @@ class _Writer:
         """What the numbers of the nodes that are read off the input stand for."""
         for place, state in enumerate(self.plan.graph.nodes):
             if isinstance(state.leaf, SignalAtom | Compare | ProbeAtom):
-                yield f"# {place}: {ascii(format_formula(state.leaf))[1:-1]}"
+                yield f"# {place}: {comment(format_formula(state.leaf))}"
         yield ""
 
     def _letters(self) -> Iterator[str]:
@@ -152,7 +158,7 @@ class _Writer:
         for index, (rule, judge) in enumerate(zip(plan.judged, self.judges, strict=True)):
             hidden = index >= len(plan.rules)
             trigger = self._trigger(rule, hidden)
-            yield f"    ({judge}, letters{index}, {trigger}),  # {rule.requirement.id}"
+            yield f"    ({judge}, letters{index}, {trigger}),  # {comment(rule.requirement.id)}"
         yield ")"
         yield f"HIDDEN_OF = {plan.hidden_of!r}"
         told = [self._place(rule.told) for rule in plan.rules]

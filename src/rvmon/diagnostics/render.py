@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Label
-from rvmon.diagnostics.snippet import printable, snippet
+from rvmon.diagnostics.shown import shown_line
+from rvmon.diagnostics.snippet import snippet
 from rvmon.diagnostics.span import Source, Span
 
 
@@ -49,14 +50,13 @@ def _concise(diagnostic: Diagnostic) -> str:
     place = ""
     if diagnostic.spans:
         span = diagnostic.spans[0].span
-        place = f"{printable(span.source.name)}:{span.line}:{span.column}: "
+        place = f"{shown_line(span.source.name)}:{span.line}:{span.column}: "
     mend = f" (help: {_one_line(diagnostic.help)})" if diagnostic.help else ""
     return f"{place}{_heading(diagnostic)}{mend}"
 
 
 def _one_line(text: str) -> str:
-    """Fit for one line of a terminal: what does not print there could steer it."""
-    return printable(" ".join(text.split("\n")))
+    return shown_line(text.replace("\n", " "))
 
 
 def _plain(diagnostic: Diagnostic) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 
+from rvmon.diagnostics.shown import shown_line
 from rvmon.diagnostics.span import Span
 
 WIDEST = 100
@@ -42,24 +43,16 @@ def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^"
     underline = " " * _width(head) + mark * max(_width(body), 1)
     return "\n".join(
         (
-            f"{gutter}{arrow} {printable(span.source.name)}:{number}:{span.column}",
+            f"{gutter}{arrow} {shown_line(span.source.name)}:{number}:{span.column}",
             f"{gutter} |",
             f"{number:>{width}} | {head}{body}{tail}".rstrip(),
-            f"{gutter} | {underline}{' ' + remark if remark else ''}",
+            f"{gutter} | {underline}{' ' + shown_line(remark) if remark else ''}",
         )
     )
 
 
-def printable(text: str) -> str:
-    """The text with tabs as spaces, and the replacement character for what does not print."""
-    return "".join(
-        " " if char in "\t " else char if char.isprintable() else "\N{REPLACEMENT CHARACTER}"
-        for char in text
-    )
-
-
 def _shown(text: str) -> str:
-    return printable(text.rstrip("\r"))
+    return shown_line(text.rstrip("\r").replace("\t", " "))
 
 
 def _width(text: str) -> int:

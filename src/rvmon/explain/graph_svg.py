@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
 from math import dist
 
+from rvmon.diagnostics.shown import shown
 from rvmon.explain.graph import Edge, Graph, Place
 from rvmon.explain.graph_text import ENDS, label_of
 
@@ -49,7 +50,7 @@ def graph_svg(graph: Graph, title: str) -> str:
             "role": "img",
         },
     )
-    ET.SubElement(svg, "title").text = f"Automaton of {title}"
+    ET.SubElement(svg, "title").text = shown(f"Automaton of {title}")
     _background(svg)
     badges: list[Point] = []
     for path, curve in drawn:
@@ -60,9 +61,11 @@ def graph_svg(graph: Graph, title: str) -> str:
         _badge(svg, badge, number)
     for place in graph.places:
         _place(svg, place, at[place.name])
-    for row, line in enumerate(legend):
+    for row, line in enumerate(map(shown, legend)):
         y = height + LINE * (row + 1)
-        ET.SubElement(svg, "text", {"x": str(MARGIN), "y": f"{y:g}", "fill": "#222"}).text = line
+        ET.SubElement(svg, "text", {"x": str(MARGIN), "y": f"{y:g}", "fill": "#222"}).text = shown(
+            line
+        )
     ET.indent(svg)
     return ET.tostring(svg, encoding="unicode") + "\n"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator
 
+from rvmon.diagnostics.shown import shown
 from rvmon.explain.graph import Edge, Graph, Place
 
 WIDTH = 80
@@ -48,17 +49,22 @@ def label_of(edge: Edge) -> str:
 
 def graph_dot(graph: Graph, title: str) -> str:
     """The automaton as DOT, for Graphviz."""
-    lines = [f"digraph {_quoted(title)} {{", "  rankdir=LR;", '  node [fontname="sans-serif"];']
+    lines = [f"digraph {quoted(title)} {{", "  rankdir=LR;", '  node [fontname="sans-serif"];']
     for place in graph.places:
         shape = "doublecircle" if place.name in ENDS else "box"
         text = place.name if place.name in ENDS else f"{place.name}\n{place.owed}"
-        lines.append(f"  {_quoted(place.name)} [shape={shape}, label={_quoted(text)}];")
+        lines.append(f"  {quoted(place.name)} [shape={shape}, label={quoted(text)}];")
     for edge in graph.edges:
         text = "\n".join(filter(None, (label_of(edge), edge.sets)))
-        lines.append(f"  {_quoted(edge.source)} -> {_quoted(edge.target)} [label={_quoted(text)}];")
+        lines.append(f"  {quoted(edge.source)} -> {quoted(edge.target)} [label={quoted(text)}];")
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def _quoted(text: str) -> str:
-    plain = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+def quoted(text: str) -> str:
+    r"""A string of DOT or HOA.
+
+    >>> print(quoted('say "\\x1b"'))
+    "say \"\\x1b\""
+    """
+    plain = shown(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
     return f'"{plain}"'

@@ -13,7 +13,8 @@ _ABOUT = {
     "TA003": "Two things of one scope have the same name: rename one.",
     "TA004": "A name stands for something else than what is wanted there: a clock for a number, "
     "an array without index, a variable that is set though it is constant.",
-    "TA005": "An int needs a range, `int[0,5] n`, so that there are finitely many states.",
+    "TA005": "An int needs a range, `int[0,5] n`, so that there are finitely many states; "
+    "a range of more than 65,536 values gets a warning: there may be too many.",
     "TA006": "Bounds, sizes and values of constants are worked out before the search: only numbers "
     "and constants can stand there.",
     "TA007": "A value lies outside what it is for: an index beyond an array, a clock set to a "

@@ -13,6 +13,7 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.errors import RvmonError
 from rvmon.explain.graph import proposition_texts
+from rvmon.explain.graph_text import quoted
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.compiled import CompiledRequirement
 
@@ -62,13 +63,13 @@ class _Writer:
 
     def text(self) -> str:
         texts = proposition_texts(self.compiled)
-        names = [_quoted(texts[state]) for state in self.automaton.alphabet.propositions]
+        names = [quoted(texts[state]) for state in self.automaton.alphabet.propositions]
         requirement = self.compiled.requirement
         number = {state: place for place, state in enumerate(self.order)}
         lines = [
             "HOA: v1",
-            f"name: {_quoted(': '.join(filter(None, (requirement.id, requirement.text))))}",
-            f'tool: "rvmon" {_quoted(__version__)}',
+            f"name: {quoted(': '.join(filter(None, (requirement.id, requirement.text))))}",
+            f'tool: "rvmon" {quoted(__version__)}',
             f"States: {len(self.order)}",
             "Start: 0",
             " ".join(["AP:", str(len(names)), *names]),
@@ -122,8 +123,3 @@ def _conjunction(cube: Cube) -> str:
         if wanted is not None
     ]
     return "&".join(parts) or "t"
-
-
-def _quoted(text: str) -> str:
-    plain = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{plain}"'

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rvmon.explain.graph_text import quoted
 from rvmon.export.names import Names
 from rvmon.export.uppaal import condition_text, sync_text, updates_text
 from rvmon.timed.model import Automaton, Network
@@ -23,12 +24,12 @@ def network_dot(network: Network) -> str:
 
 def _cluster(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
     yield f"  subgraph cluster_{index} {{"
-    yield f"    label={_quoted(automaton.name)};"
+    yield f"    label={quoted(automaton.name)};"
     for place, location in enumerate(automaton.locations):
         invariant = condition_text(names, location.invariant)
         text = _MARKS[location.kind] + location.name + (f"\n{invariant}" if invariant else "")
         bold = ", penwidth=2" if place == automaton.initial else ""
-        yield f"    l{index}_{place} [label={_quoted(text)}{bold}];"
+        yield f"    l{index}_{place} [label={quoted(text)}{bold}];"
     for edge in automaton.edges:
         parts = [
             condition_text(names, edge.guard),
@@ -37,10 +38,5 @@ def _cluster(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
             f"weight {edge.weight}" if edge.weight != 1 else "",
         ]
         text = "\n".join(filter(None, parts))
-        yield f"    l{index}_{edge.source} -> l{index}_{edge.target} [label={_quoted(text)}];"
+        yield f"    l{index}_{edge.source} -> l{index}_{edge.target} [label={quoted(text)}];"
     yield "  }"
-
-
-def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-    return f'"{escaped}"'

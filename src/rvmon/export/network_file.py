@@ -10,6 +10,7 @@ from rvmon.errors import RvmonError
 from rvmon.export.network_dot import network_dot
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.model import Network
+from rvmon.writing import write_whole
 
 PATIENCE_S = 120
 """Seconds that a drawing may take."""
@@ -32,7 +33,7 @@ def write_network(network: Network, path: str | Path) -> None:
         case _:
             raise RvmonError(f"{path}: end the name in .xml (for UPPAAL), .dot or .svg")
     try:
-        Path(path).write_text(text, encoding="utf-8")
+        write_whole(path, text)
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror or error}") from None
 

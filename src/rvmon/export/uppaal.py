@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
+from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.names import Names, Thing
 from rvmon.timed.model import (
     Automaton,
@@ -41,7 +42,7 @@ _GRID = (200, 150)
 def uppaal_xml(network: Network) -> str:
     """The network as the text of an XML file."""
     names = Names(network)
-    lines = [f"  <declaration>{escape(_declarations(network, names))}</declaration>"]
+    lines = [f"  <declaration>{_text(_declarations(network, names))}</declaration>"]
     for index, automaton in enumerate(network.automata):
         lines += _template(names, index, automaton)
     lines.append(f"  <system>system {', '.join(names.automata)};</system>")
@@ -59,7 +60,7 @@ def left_out(network: Network) -> list[Query]:
 
 
 def _declarations(network: Network, names: Names) -> str:
-    lines = [f'// network {network.name} "{network.title}"']
+    lines = [shown_line(f'// network {network.name} "{network.title}"')]
     if network.unit is not None:
         unit = max((u for u, t in TICKS_PER_UNIT.items() if network.unit % t == 0),
                    key=lambda name: TICKS_PER_UNIT[name])  # fmt: skip
@@ -100,7 +101,7 @@ def _template(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
         yield f'    <location id="id{index}_{place}" x="{x}" y="{y}">'
         yield f'      <name x="{x - 10}" y="{y - 30}">{names.location(index, place)}</name>'
         if condition := condition_text(names, location.invariant):
-            yield f'      <label kind="invariant" x="{x}" y="{y + 15}">{escape(condition)}</label>'
+            yield f'      <label kind="invariant" x="{x}" y="{y + 15}">{_text(condition)}</label>'
         if location.kind is not LocationKind.NORMAL:
             yield f"      <{location.kind}/>"
         yield "    </location>"
@@ -123,7 +124,7 @@ def _edge(names: Names, index: int, edge: Edge) -> Iterator[str]:
     labels["comments"] = "\n".join([*comments, *([f"as {edge.label}"] if edge.label else [])])
     for kind, text in labels.items():
         if text:
-            yield f'      <label kind="{kind}">{escape(text)}</label>'
+            yield f'      <label kind="{kind}">{_text(text)}</label>'
     yield "    </transition>"
 
 
@@ -162,8 +163,8 @@ def _query(names: Names, query: Query) -> Iterator[str]:
     if query.id:
         comment = f"query {query.id}\n{comment}".strip()
     yield "    <query>"
-    yield f"      <formula>{escape(formula)}</formula>"
-    yield f"      <comment>{escape(comment)}</comment>"
+    yield f"      <formula>{_text(formula)}</formula>"
+    yield f"      <comment>{_text(comment)}</comment>"
     yield "    </query>"
 
 
@@ -176,3 +177,8 @@ def _formula(names: Names, formula: Expression | LeadsToFormula) -> str:
             return names.expression(formula)
         case _:
             return ""
+
+
+def _text(text: str) -> str:
+    """The text as XML can hold it."""
+    return escape(shown(text))

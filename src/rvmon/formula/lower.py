@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import assert_never
 
@@ -14,7 +14,6 @@ from rvmon.formula.four import Four, Reader
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp, Unborn
 from rvmon.spec.checked import (
-    Atom,
     Binary,
     BinaryOp,
     Bound,
@@ -31,6 +30,7 @@ from rvmon.spec.checked import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.tense import subformulas
 
 _FUTURE = {
     UnaryOp.NEXT,
@@ -174,22 +174,11 @@ def _may_be_unknown(state: State) -> bool:
 def _unborn(consequent: Formula, factory: Factory) -> State | None:
     """Where something that a consequent reads had no value yet; `None` if it reads no signal."""
     found: dict[str, bool] = {}
-    for atom in _atoms(consequent):
+    for atom in subformulas(consequent):
         if isinstance(atom, SignalAtom | Compare):
             for name, moved in signals_of(atom).items():
                 found[name] = found.get(name, False) or moved
     return factory.leaf(Unborn(tuple(sorted(found.items())))) if found else None
-
-
-def _atoms(formula: Formula) -> Iterator[Atom]:
-    match formula:
-        case Unary(operand=operand):
-            yield from _atoms(operand)
-        case Binary(left=left, right=right):
-            yield from _atoms(left)
-            yield from _atoms(right)
-        case atom:
-            yield atom
 
 
 def _looks_back(core: Core) -> bool:

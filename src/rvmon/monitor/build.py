@@ -13,6 +13,9 @@ from rvmon.spec.asked import requirements_asked
 
 _GENERATED = ("auto", "python")
 
+_MOST_GENERATED = 2000
+"""For more requirements no code is generated: it has a bit for each in numbers that it names."""
+
 
 def build_monitor(
     compiled: CompiledSpec,
@@ -62,7 +65,14 @@ def build_monitor(
         return compiled_monitor(compiled, chosen, settle, given)
     for requirement in chosen:
         requirement.engine(engine)
-    if engine not in _GENERATED or not any(can_feed(one) for one in chosen):
+    is_few = len(chosen) <= _MOST_GENERATED
+    if engine == "python" and not is_few:
+        raise RvmonError(
+            f"error: {len(chosen)} requirements are more than the {_MOST_GENERATED} that generated "
+            "code judges at once: use the engine `auto`, or several monitors (`only`)"
+        )
+    is_generated = engine in _GENERATED and is_few
+    if not is_generated or not any(can_feed(one) for one in chosen):
         return Monitor(compiled, chosen, engine, settle, given, keep)
     key = (tuple(one.requirement.id for one in chosen), given)
     forms = compiled.forms.get(key)

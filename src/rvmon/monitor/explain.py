@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rvmon.automaton.location import FAILED, PASSED
@@ -99,25 +100,33 @@ def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) 
         now: twice the instant that time has come to, one more if its letter is known.
         end: the last instant of the trace, if it has ended.
     """
-    token = attempt.token if attempt.token[0] != FAILED else attempt.better
-    if token is None or token[0] <= PASSED:
+    worse, better = _by_now(judge, attempt, (now + 1) // 2)
+    token = worse if worse[0] != FAILED else better
+    if token[0] <= PASSED:
         return Explanation(f"left open by the input: {attempt.doubt}")
     location, anchors = token
     residual = after(judge.machine.residual(location), [now // 2 - anchor for anchor in anchors])
     owed = judge.compiled.words.owed(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
     reason = f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}{unborn(judge, end)}"
-    return Explanation(reason, owed, deadline=_deadline(judge, attempt))
+    alone = (_alone(judge.machine, worse), _alone(judge.machine, better))
+    return Explanation(reason, owed, deadline=earlier(attempt, *alone))
 
 
-def _deadline(judge: Judge, attempt: Open) -> int | None:
-    """The last instant before time alone decides an attempt."""
+def _by_now(judge: Judge, attempt: Open, t: int) -> Iterator[Token]:
+    """The tokens of both runs before the position `t`: they are taken on only when that is due."""
+    for token, letter in zip(
+        (attempt.token, attempt.better or attempt.token), judge.letters, strict=True
+    ):
+        if token[0] > PASSED:
+            yield just_before(judge.machine, token, letter, judge.position, t, judge.flow.gap)
+        else:
+            yield token
 
-    def alone(token: Token) -> tuple[int, bool] | None:
-        undecided = token[0] > PASSED
-        return settled_alone(judge.machine.residual(token[0]), token[1]) if undecided else None
 
-    return earlier(attempt, alone(attempt.token), alone(attempt.better or attempt.token))
+def _alone(machine: Machine, token: Token) -> tuple[int, bool] | None:
+    """What time alone makes of a run, and the last instant before that."""
+    return settled_alone(machine.residual(token[0]), token[1]) if token[0] > PASSED else None
 
 
 def earlier(

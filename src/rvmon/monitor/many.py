@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import lru_cache, partial
 from typing import Any
 
+from rvmon.children import workers
 from rvmon.monitor.compiled import CompiledSpec, compile_spec
 from rvmon.monitor.finished import evaluate_trace
 from rvmon.readers.reading import Reading
@@ -38,7 +38,7 @@ def evaluate_traces(
             yield evaluate_trace(compiled, trace, reading, only=only, engine=engine)
         return
     sent = pickle.dumps((compiled.checked, reading))
-    with ProcessPoolExecutor(jobs) as pool:
+    with workers(jobs) as pool:
         yield from pool.map(partial(_evaluate_here, sent, only, engine), traces)
 
 

@@ -6,14 +6,13 @@ import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import suppress
 from typing import Any
 
 import msgspec
 
 from rvmon.errors import TraceError
 from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
-from rvmon.readers.values import DESCRIPTION, as_declared, fits, shorten
+from rvmon.readers.values import DESCRIPTION, as_declared, double_of, fits, shorten
 from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind, Schema
@@ -22,7 +21,7 @@ from rvmon.trace.time import TIME_LIMIT
 
 _MISSING = object()
 
-_NAN = re.compile(r"\bNaN\b")
+_NOT_FINITE = re.compile(r"\b(NaN|Infinity)\b")
 
 _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 """The first half of an escaped surrogate pair without the second."""
@@ -70,13 +69,17 @@ def jsonl_samples(
 
 
 def _decoded(line: str, decode: Callable[[str], Any]) -> Any:
-    """The value of a line; JSON has no NaN, but many that write JSON do."""
+    """The value of a line; JSON has no NaN and no infinity, but many that write JSON do."""
     try:
         return decode(line)
     except msgspec.DecodeError:
-        if _NAN.search(line):
-            with suppress(ValueError):
-                return json.loads(line)
+        if _NOT_FINITE.search(line):
+            try:
+                return json.loads(line, parse_float=double_of)
+            except TraceError:
+                raise
+            except ValueError:  # what was wrong with it first is told
+                pass
         raise
 
 

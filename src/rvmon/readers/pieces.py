@@ -3,12 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
+from typing import TextIO
 
+from rvmon.errors import TraceError
 from rvmon.readers.blocks import NotPlainError
 
 BLOCK = 1 << 20
 """Bytes of a piece."""
+
+
+LONGEST_LINE = 1 << 26
+"""Characters of a line; longer ones are refused."""
+
+
+def bounded_lines(text: TextIO) -> Iterator[str]:
+    """The lines of a text, which never fill the memory.
+
+    Raises:
+        TraceError: a line is too long.
+    """
+    for number, line in enumerate(iter(partial(text.readline, LONGEST_LINE + 1), ""), 1):
+        if len(line) > LONGEST_LINE:
+            raise TraceError(
+                f"line {number}: longer than {LONGEST_LINE:,} characters: is this a recording? "
+                "Put each sample on a line of its own"
+            )
+        yield line
 
 
 def whole_lines(path: str | Path, size: int) -> Iterator[bytes]:

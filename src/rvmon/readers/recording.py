@@ -13,6 +13,7 @@ from typing import TextIO
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
+from rvmon.readers.pieces import bounded_lines
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.health import Health, HealthKind
@@ -59,7 +60,7 @@ class FileRecording:
         self.names: frozenset[str] | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
-                layout = self._layout(split_lines(text))
+                layout = self._layout(split_lines(bounded_lines(text)))
             self._take_names(layout)
         elif self._format == "parquet":
             from rvmon.readers.parquet import parquet_layout
@@ -86,14 +87,15 @@ class FileRecording:
             return
         with self._text() as text:
             self._open_text = text
+            lines = bounded_lines(text)
             if self._format == "csv":
-                rows = split_lines(text)
+                rows = split_lines(lines)
                 yield from self._merged(csv_samples(rows, self._layout(rows)))
             else:
                 from rvmon.readers.jsonl_rows import jsonl_samples
 
-                lines = jsonl_samples(self._seeing_unit(text), self._schema, self.ignored)
-                yield from self._merged(lines)
+                seen = self._seeing_unit(lines)
+                yield from self._merged(jsonl_samples(seen, self._schema, self.ignored))
 
     def _seeing_unit(self, lines: Iterable[str]) -> Iterator[str]:
         """The same lines; the first one says what the stamps are, if nobody did."""

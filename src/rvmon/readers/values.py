@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 from contextlib import suppress
+from math import isinf
 from typing import Any, assert_never
 
+from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
@@ -36,9 +38,13 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
                 return False
         case Kind.INT | Kind.REAL:
             # Python reads 1_000 as a number; no recording means it.
-            with suppress(ValueError):
+            try:
                 if "_" not in text:
-                    return int(text) if kind is Kind.INT else float(text)
+                    return int(text) if kind is Kind.INT else double_of(text)
+            except TraceError:
+                raise
+            except ValueError:  # it may be NaN
+                pass
             if kind is Kind.INT and is_whole(text):
                 most = sys.get_int_max_str_digits()
                 raise TraceError(f"`{shorten(text)}` has more than {most} digits: is it a number?")
@@ -54,6 +60,22 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
         if fits(made, kind):
             return made  # type: ignore[no-any-return]
     raise TraceError(f"`{shorten(text)}` is not {DESCRIPTION[kind]}")
+
+
+def double_of(text: str) -> float:
+    """A number as a double; infinite only if it is called so.
+
+    Raises:
+        ValueError: the text is no number.
+        TraceError: it is a number that is too large.
+
+    >>> double_of("2.5"), double_of("-inf")
+    (2.5, -inf)
+    """
+    number = float(text)
+    if isinf(number) and any(map(str.isdigit, text)):
+        raise TraceError(f"`{shorten(text)}` is too large for a number: at most 1.7e308")
+    return number
 
 
 _CLASSES = {Kind.BOOL: bool, Kind.INT: int, Kind.REAL: float, Kind.LABEL: str}
@@ -121,10 +143,10 @@ DESCRIPTION = {
 
 
 def shorten(text: str, width: int = 40) -> str:
-    """The text on one line, cut to `width` characters, with unprintable ones escaped.
+    """The text on one line, cut to `width` characters, with what would steer a terminal shown.
 
     >>> shorten("a" * 50, 5)
     'aaaa…'
     """
-    line = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[: width + 1])
+    line = shown_line(text[: width + 1])
     return line if len(line) <= width else line[: width - 1] + "…"

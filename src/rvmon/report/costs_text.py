@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from rvmon.diagnostics.shown import shown_line
 from rvmon.monitor.compiled import CompileReport
 from rvmon.spec.printer import format_duration
 
@@ -26,6 +27,7 @@ def costs_text(reports: Mapping[str, CompileReport]) -> str:
 
 
 def _row(name: str, report: CompileReport) -> tuple[str, ...]:
+    name = shown_line(name)
     reach = "any time" if report.horizon is None else format_duration(report.horizon)
     letters = f"{report.letters:,}"
     if not report.locations:

@@ -18,9 +18,11 @@ def headline(run: str, panel: Panel, origin: int) -> str:
 
     >>> from rvmon.report.view import View
     >>> from rvmon.verdict.attempt import Attempt
+    >>> from rvmon.verdict.verdict import Verdict
     >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
     >>> view = View(0, 20_000_000_000)
-    >>> headline("test 17", Panel("R2-1", "R2", failed, failed.verdict, view, (), None), 0)
+    >>> panel = Panel("R2-1", "R2", failed, failed.verdict, view, (), None)
+    >>> headline("test 17", panel, 0)
     'R2 failed, test 17, 14.25 s: `released` too soon'
     """
     attempt = panel.attempt

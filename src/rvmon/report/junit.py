@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from rvmon.diagnostics.shown import shown
 from rvmon.report.afterword import full_reason, without_attempts
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.report import Report
@@ -14,8 +14,6 @@ from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.spec.checked import CheckedSpec
-
-_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def junit_xml(
@@ -31,14 +29,14 @@ def junit_xml(
         spec: that they were judged by.
         broken: the other recordings, each with what is wrong with it.
     """
-    root = ET.Element("testsuites", name=_clean(spec.name))
+    root = ET.Element("testsuites", name=shown(spec.name))
     for report in reports:
         verdicts = list(report.verdicts.values())
         skipped = verdicts.count(Verdict.NOT_TRIGGERED) + verdicts.count(Verdict.INCONCLUSIVE)
         suite = ET.SubElement(
             root,
             "testsuite",
-            name=_clean(report.trace or spec.name),
+            name=shown(report.trace or spec.name),
             tests=str(len(verdicts)),
             failures=str(verdicts.count(Verdict.FAIL)),
             errors="0",
@@ -47,12 +45,12 @@ def junit_xml(
         for name, verdict in report.verdicts.items():
             _add_case(suite, report, name, verdict, spec.requirements[name].text)
     for trace, message in broken:
-        name = _clean(trace)
+        name = shown(trace)
         suite = ET.SubElement(
             root, "testsuite", name=name, tests="1", failures="0", errors="1", skipped="0"
         )
         case = ET.SubElement(suite, "testcase", name="recording", classname=name)
-        ET.SubElement(case, "error", message=_clean(message))
+        ET.SubElement(case, "error", message=shown(message))
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
@@ -60,18 +58,18 @@ def junit_xml(
 def _add_case(
     suite: ET.Element, report: Report, name: str, verdict: Verdict, requirement: str
 ) -> None:
-    case = ET.SubElement(suite, "testcase", name=_clean(name), classname=suite.get("name", ""))
+    case = ET.SubElement(suite, "testcase", name=shown(name), classname=suite.get("name", ""))
     if requirement:
         properties = ET.SubElement(case, "properties")
-        ET.SubElement(properties, "property", name="requirement", value=_clean(requirement))
+        ET.SubElement(properties, "property", name="requirement", value=shown(requirement))
     if verdict is Verdict.PASS:
         return
     if report.is_silent(name):
         why = without_attempts(verdict, report.misses.get(name, ""))
-        ET.SubElement(case, "skipped", message=_clean(f"{verdict}: {why}"))
+        ET.SubElement(case, "skipped", message=shown(f"{verdict}: {why}"))
         return
     reasons = [
-        _clean(
+        shown(
             f"attempt {attempt.numbered}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
         )
         for attempt in report.of(name, verdict)
@@ -83,8 +81,3 @@ def _add_case(
 
 def _when(decided: int | None) -> str:
     return "undecided" if decided is None else format_ticks(decided)
-
-
-def _clean(text: str) -> str:
-    """Text without the characters that XML cannot hold."""
-    return _NOT_IN_XML.sub("�", text)

@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
 from importlib import resources
 
+from rvmon.diagnostics.shown import shown
 from rvmon.report.style import verdict_colours
 
 Child = ET.Element | str | None
@@ -44,10 +45,12 @@ def extend(element: ET.Element, children: Iterable[Child]) -> None:
             continue
         if isinstance(child, ET.Element):
             element.append(child)
-        elif len(element):
-            element[-1].tail = (element[-1].tail or "") + child
+            continue
+        text = shown(child.expandtabs(4))
+        if len(element):
+            element[-1].tail = (element[-1].tail or "") + text
         else:
-            element.text = (element.text or "") + child
+            element.text = (element.text or "") + text
 
 
 def to_html(element: ET.Element) -> str:

@@ -15,6 +15,7 @@ from rvmon.spec.checked import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from rvmon.writing import write_whole
 
 COMPARED = 10
 """Recordings at most in which a nearest passing attempt is looked for: they are read again."""
@@ -63,11 +64,11 @@ def write_run_pages(
             back=INDEX if several else "",
         )
         path = folder / name
-        path.write_text(run_page(content), encoding="utf-8")
+        write_whole(path, run_page(content))
         written.append(path)
     if several:
         path = folder / INDEX
-        path.write_text(_index(spec, reports, names), encoding="utf-8")
+        write_whole(path, _index(spec, reports, names))
         written.append(path)
     return written
 

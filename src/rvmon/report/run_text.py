@@ -32,9 +32,9 @@ def print_reports(reports: Sequence[Report], spec: CheckedSpec) -> None:
 
     Every F comes with cause, window and spec line; every I with what is still owed.
     """
-    from rich.console import Console
+    from rvmon.report.terminal import Terminal
 
-    console = Console(highlight=False)
+    console = Terminal()
     for report in reports:
         print_report(report, spec, console)
     if len(reports) > 1:
@@ -65,7 +65,7 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
     if report.goals:
         console.print(_goals_text(report.goals))
     for line in health_lines(report.health):
-        console.print(line, markup=False)  # columns have names such as `speed [m/s]`
+        console.print(line)
 
 
 def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
@@ -167,9 +167,10 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
     """What was not known of the input, or noticed while reading it, a line each."""
     if found:
         yield "input health:"
-    ignored = [health for health in found if health.kind is HealthKind.IGNORED]
+    ignored: dict[str, list[str]] = {}
     for health in found:
-        if health in ignored:
+        if health.kind is HealthKind.IGNORED:
+            ignored.setdefault(health.remark, []).append(health.name)
             continue
         if health.kind is HealthKind.UNIT:
             yield f"  {health.name}  warning: {health.remark}"
@@ -179,6 +180,5 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
         readers = f"  ({', '.join(health.requirements)})" if health.requirements else ""
         remark = f": {health.remark}" if health.remark else ""
         yield f"  {health.name}  {health.kind.value} {times}{first}{remark}{readers}"
-    for remark in dict.fromkeys(health.remark for health in ignored):
-        names = ", ".join(health.name for health in ignored if health.remark == remark)
-        yield f"  ignored{f', {remark}' if remark else ''}: {names}"
+    for remark, names in ignored.items():
+        yield f"  ignored{f', {remark}' if remark else ''}: {', '.join(names)}"

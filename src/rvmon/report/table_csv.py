@@ -6,12 +6,15 @@ import csv
 import io
 from collections.abc import Mapping
 
+from rvmon.diagnostics.shown import shown_line
 from rvmon.report.table import VerdictTable
 from rvmon.verdict.verdict import Verdict
 
+_FORMULA = ("=", "+", "-", "@")
+
 
 def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str:
-    """Several tables as one CSV text.
+    """Several tables as one CSV text; a name that would be a formula begins with an apostrophe.
 
     Args:
         tables: by what the first column calls them.
@@ -24,5 +27,13 @@ def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str
         for group in table.groups:
             for requirement, counts in group.counts.items():
                 figures = (counts.get(verdict, 0) for verdict in Verdict)
-                writer.writerow([name, group.name, requirement, group.runs, *figures])
+                names = map(_plain, (name, group.name, requirement))
+                writer.writerow([*names, group.runs, *figures])
     return text.getvalue()
+
+
+def _plain(name: str) -> str:
+    """A name that no spreadsheet takes for a formula: before such a one stands an apostrophe."""
+    # Written out, a TAB or an end of line is neither the start of a formula nor the end of a row.
+    text = shown_line(name)
+    return f"'{text}" if text.startswith(_FORMULA) else text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rvmon.diagnostics.shown import shown_line
 from rvmon.report.table import VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
 
@@ -16,6 +17,11 @@ _SPECIAL = {
     "}": r"\}",
     "~": r"\textasciitilde{}",
     "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    "[": "{[}",  # behind the end of a row, these two would be its options
+    "*": "{*}",
     "–": "--",
     "·": r"\textperiodcentered{}",
 }
@@ -62,7 +68,7 @@ def escape(text: str) -> str:
     >>> escape("50 % of hand_distance")
     '50 \\% of hand\\_distance'
     """
-    return "".join(_SPECIAL.get(character, character) for character in text)
+    return "".join(_SPECIAL.get(character, character) for character in shown_line(text))
 
 
 def _cells(table: VerdictTable, name: str) -> list[str]:

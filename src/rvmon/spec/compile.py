@@ -58,9 +58,10 @@ def compile_text(
         if not files[0].items and not findings.found:
             findings.add(empty_file(Span(source, 0, 0)))
     found = sorted(findings.found, key=lambda finding: _place(finding, source))
-    if len(found) >= MOST:
-        found.append(too_many(MOST))
-    if checked is None or _errors(found):
+    broken = _errors(found)
+    if findings.more:
+        found.append(too_many(MOST, broken=broken))
+    if checked is None or broken:
         raise SpecError(found, render_full(found))
     return checked, tuple(found)
 

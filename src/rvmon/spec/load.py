@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from importlib import resources
-from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from rvmon.diagnostics.span import Source
+from rvmon.diagnostics.text_file import text_of_file
 from rvmon.spec.findings import Findings
 from rvmon.spec.items import ImportItem, ParsedSpec
 from rvmon.spec.parse import parse_spec
 from rvmon.spec.rules import imports as rules
 from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.tree import Tree, tree_of
 
 LIBRARIES = ("patterns",)
 """Folders of this package with specifications that can be imported by name."""
@@ -30,15 +31,16 @@ def load_files(source: Source, directory: Path | None, findings: Findings) -> li
     Returns:
         The main file, then the imported ones in the order of their first import.
     """
-    loader = _Loader(findings)
+    loader = _Loader(findings, tree_of(directory or Path()))
     loader.read(source, directory or Path(), _key(Path(source.name)), ())
     return loader.files
 
 
 class _Loader:
-    def __init__(self, findings: Findings) -> None:
+    def __init__(self, findings: Findings, tree: Tree) -> None:
         self.files: list[ParsedSpec] = []
         self._findings = findings
+        self._tree = tree
         self._seen: set[str] = set()
 
     def read(
@@ -56,7 +58,7 @@ class _Loader:
         self, item: ImportItem, directory: Path, path: tuple[tuple[str, ImportItem], ...]
     ) -> None:
         try:
-            for source, folder, key in _sources(item, directory):
+            for source, folder, key in _sources(item, directory, self._tree):
                 circle = [step for _, step in path[_index(path, key) :]]
                 if circle:
                     self._findings.add(rules.circle(item.span, circle[0].span))
@@ -73,11 +75,11 @@ def _index(path: tuple[tuple[str, ImportItem], ...], key: str) -> int:
     return keys.index(key) if key in keys else len(keys)
 
 
-def _sources(item: ImportItem, directory: Path) -> Iterator[tuple[Source, Path, str]]:
+def _sources(item: ImportItem, directory: Path, tree: Tree) -> Iterator[tuple[Source, Path, str]]:
     """The texts that an import means, each with its folder and a key of its own."""
     if not item.library:
         path = directory / item.target
-        yield Source(str(path), _text(path, item)), path.parent, _key(path)
+        yield Source(str(path), _text(path, item, tree)), path.parent, _key(path)
         return
     if item.target not in LIBRARIES:
         raise Refusal(rules.unknown_library(item.span, item.target, LIBRARIES))
@@ -85,12 +87,15 @@ def _sources(item: ImportItem, directory: Path) -> Iterator[tuple[Source, Path, 
     for file in sorted(folder.iterdir(), key=lambda entry: entry.name):
         if file.name.endswith(".rv"):
             name = f"{item.target}/{file.name}"
-            yield Source(name, _text(file, item)), Path(), f"library {name}"
+            text = file.read_text(encoding="utf-8")
+            yield Source(name, text), Path(), f"library {name}"
 
 
-def _text(file: Traversable, item: ImportItem) -> str:
+def _text(file: Path, item: ImportItem, tree: Tree) -> str:
     try:
-        return file.read_text(encoding="utf-8")
+        if not tree.holds(file):
+            raise Refusal(rules.outside(item.span, item.target, str(tree.root)))
+        return text_of_file(file)
     except OSError as error:
         reason = error.strerror or str(error)
     except UnicodeDecodeError:

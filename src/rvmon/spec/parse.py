@@ -14,6 +14,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.build import Builder
+from rvmon.spec.effort import LARGEST
 from rvmon.spec.expected import explain_unexpected
 from rvmon.spec.findings import Findings
 from rvmon.spec.grammar_cache import parser_of
@@ -27,6 +28,9 @@ from rvmon.spec.words import ITEM_WORDS, NOT_UNITS, RESERVED
 
 DEEPEST = 100
 """Expressions nested more deeply are refused."""
+
+_NO_CODE = re.compile(r'"[^"\n]*"|`[^`\n]*`|#[^\n]*')
+_OPERATOR = re.compile(r"(?<![\w.])(?:and|or|xor|implies|iff)(?![\w.])|&&?|\|\|?|[+*]")
 
 Parsed = tuple[Any, list[Diagnostic]]
 
@@ -67,6 +71,9 @@ def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic
 
 
 def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
+    if _operators(source.text[start:end]) > LARGEST:
+        place = Span(source, start, start + len(source.text[start:end].rstrip()))
+        return None, [rules.too_large(place, LARGEST)]
     builder = Builder(source, start)
     try:
         tree = grammar().parse(source.text[start:end], start=rule)
@@ -80,6 +87,11 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
         if isinstance(error.orig_exc, Refusal):
             return None, [error.orig_exc.finding]
         raise
+
+
+def _operators(text: str) -> int:
+    """How many operators of chains a text has at least: counted before it costs anything."""
+    return 0 if len(text) < LARGEST else len(_OPERATOR.findall(_NO_CODE.sub("", text)))
 
 
 @cache

@@ -12,6 +12,7 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
+from rvmon.readers.pieces import bounded_lines
 from rvmon.readers.recording import FORMATS
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS
 from rvmon.starter.column import Shape, Shapes
@@ -104,7 +105,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     try:
         with open(path, encoding="utf-8-sig", newline="") as text:
             look = _of_csv if FORMATS[suffix] == "csv" else _of_json
-            return look(text, path, stamps)
+            return look(bounded_lines(text), path, stamps)
     except OSError as error:
         raise TraceError(f"{path}: {error.strerror or error}") from None
     except UnicodeDecodeError:

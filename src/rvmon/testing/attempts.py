@@ -304,12 +304,13 @@ def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
     Where the field is not known, it is not known whether the event occurs for the value, nor what
     it says then.
     """
+    whole = letter.events[field.event]
     kept = tuple(
         replace(occurrence, truth=Truth.UNKNOWN, payload={}) if found is None else occurrence
-        for occurrence in letter.events[field.event].occurrences
+        for occurrence in whole.occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )
-    state = EventState(updated=bool(kept), occurrences=kept)
+    state = EventState(updated=whole.updated and bool(kept), occurrences=kept)
     return replace(letter, events={**letter.events, field.event: state})
 
 

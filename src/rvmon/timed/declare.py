@@ -13,7 +13,7 @@ from rvmon.errors import ModelError
 from rvmon.timed import syntax
 from rvmon.timed.model import Channel, Clock, Slot, Variable
 from rvmon.timed.resolve import MAX_VALUES, Resolver, values_of
-from rvmon.timed.rules import model_error, refusal
+from rvmon.timed.rules import finding, model_error, refusal
 from rvmon.timed.scope import (
     ChannelSymbol,
     ClockSymbol,
@@ -35,6 +35,9 @@ MAX_CLOCKS = 255
 
 MAX_PARTS = 100_000
 """The most variables, and the most channels, of a network with all elements of its arrays."""
+
+WIDE = 1 << 16
+"""A variable with more values gets a warning; UPPAAL's `int` has so many."""
 
 Part = TypeVar("Part", Clock, Variable, Channel)
 Read = TypeVar("Read")
@@ -108,7 +111,18 @@ def declare(
         with findings.collect():
             refuse_double(item.name, item.span, scope)
             scope.places[item.name] = item.span
+            before = len(parts.variables)
             scope.symbols[item.name] = _symbol(item, scope, parts, resolver)
+            if len(parts.variables) > before:
+                _warn_of_range(parts.variables[before], item, findings)
+
+
+def _warn_of_range(variable: Variable, item: syntax.Declared, findings: Findings) -> None:
+    count = variable.high - variable.low + 1
+    if count > WIDE:
+        message = f"`{item.name}` has {count:,} values: each that it takes makes states of its own"
+        mend = "give it the range that it needs, such as int[0, 10]"
+        findings.add(finding("TA005", message, item.span, mend, severity=Severity.WARNING))
 
 
 def refuse_double(name: str, span: Span, scope: Scope) -> None:

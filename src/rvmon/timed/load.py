@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.diagnostics import Source
+from rvmon.diagnostics.text_file import text_of_file
 from rvmon.timed.elaborate import elaborate
 from rvmon.timed.model import Network
 from rvmon.timed.parse import parse_document
@@ -25,7 +26,7 @@ def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None
         ModelError: the file cannot be read, or is no model; it has all findings.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = text_of_file(path, "utf-8-sig")
     except OSError as error:
         raise model_error("TA022", f"{path}: {error.strerror}", None) from None
     except UnicodeDecodeError:

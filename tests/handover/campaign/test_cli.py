@@ -197,7 +197,7 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
     assert "Partial: interrupted" in (tmp_path / "report.html").read_text()
 
 
-@pytest.mark.parametrize("seconds", [0.5, 0.9])
+@pytest.mark.parametrize("seconds", [0.3, 0.5, 0.9])
 def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
     """Whenever it comes, also while the workers start: no traceback, and 130 (or all was done)."""
     words = ["run", "--strategy", "constrained", "--tests", "40", "--jobs", "2"]

@@ -190,3 +190,15 @@ def test_what_there_is_to_say_of_a_recording_is_left_to_the_ordinary_way(folder,
     (folder / "x.csv").write_text(text)
     assert judged_at_once(command("x.csv")) is None
     assert not capfd.readouterr().out
+
+
+def test_a_damaged_program_is_made_anew(folder, capfd, monkeypatch):
+    """It is looked at before it is run."""
+    (folder / "x.csv").write_text(PLAIN)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
+    code = judged_at_once(command("x.csv"))
+    (program,) = (folder / "rvmon").glob("*.program")
+    whole = program.read_bytes()
+    program.write_bytes(b"#!/bin/sh\nexit 0\n")
+    assert judged_at_once(command("x.csv")) == code == 1
+    assert program.read_bytes() == whole

@@ -85,3 +85,26 @@ def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(folder):
     words = ["run", "door.rv", os.fsdecode(name), "--format", "json"]
     done = rvmon(folder, *words, stdout=subprocess.PIPE)
     assert json.loads(done.stdout)["trace"].endswith("n\ufffd.jsonl")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are not kept elsewhere")
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_command_takes_no_more_memory_than_it_may(folder, jobs):
+    """Where that is not enough there is a message, from workers, too."""
+    (folder / "big.jsonl").write_text('{"t":0,"x":[1' + ",1" * 30_000_000 + "]}\n")
+    words = ("--max-memory", "256", "--jobs", jobs, "door.rv", "run.jsonl", "big.jsonl")
+    done = rvmon(folder, "run", *words, stdout=subprocess.PIPE)
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr == b"error: the memory is not enough, of 256 MB: raise --max-memory\n"
+    done = rvmon(folder, "run", "--max-memory", "5", "door.rv", "run.jsonl")
+    assert done.returncode == 2
+    assert b"at least 256 MB" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["zero.csv", "zero.jsonl"])
+def test_no_line_fills_the_memory(folder, name):
+    """A device that never ends a line is left, with the place and the reason."""
+    (folder / name).symlink_to("/dev/zero")
+    done = rvmon(folder, "run", "door.rv", name, stdout=subprocess.PIPE)
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert b"line 1: longer than 67,108,864 characters" in done.stderr

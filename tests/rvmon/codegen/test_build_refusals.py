@@ -114,7 +114,7 @@ def test_a_repeated_line_has_a_time_of_json(program):
         '{"t":1,"pick":[{"id":1},{"id":2}]}',
         '{"t":1,"open_door":1.0}',
         '{"t":1,"parts":2.0}',
-        '{"t":1,"arm":{"speed":NaN}}',
+        '{"t":1,"parts":NaN}',
         '{"t":1,"halt":1}',
         '{"t":1}\r{"t":2}',
     ],
@@ -170,3 +170,22 @@ def test_wrong_layouts_are_refused(program, tmp_path, packed, message):
     done = program.judge(str(tmp_path / "a.bin"))
     assert (done.returncode, done.stdout) == (2, "")
     assert message in done.stderr
+
+
+def test_no_line_fills_the_memory(program, tmp_path):
+    """A file without an end of a line is left at once, with the place and the reason."""
+    for name in ("zero.csv", "zero.jsonl"):
+        (tmp_path / name).symlink_to("/dev/zero")
+        done = program.judge(str(tmp_path / name))
+        assert (done.returncode, done.stdout) == (2, "")
+        assert "line 1: a line of more than 67,108,864 bytes" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["halt", "more"])
+def test_one_name_twice_among_many_columns(program, tmp_path, name):
+    """A name that stands twice is refused, declared or not, wherever it stands."""
+    many = ",".join(f"c{number}" for number in range(1000))
+    (tmp_path / "a.csv").write_text(f"t,{name},{many},{name}\n0" + ",1" * 1002 + "\n")
+    done = program.judge(str(tmp_path / "a.csv"))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"a column stands twice in the header, leave one: `{name}`" in done.stderr

@@ -2,12 +2,14 @@
 
 import os
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
 import pytest
 
 import rvmon
+from rvmon.children import run
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 
@@ -20,18 +22,29 @@ def verdicts() -> dict[str, str]:
     return dict(rvmon.loads(SPEC).evaluate(TRACE, engine="c").verdicts)
 
 
-def test_a_file_that_was_cut_off_is_made_anew(tmp_path, monkeypatch):
-    """A library that cannot be loaded is compiled once more."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "first"))
+@pytest.mark.parametrize("harm", ["cut off", "bits flipped", "of others", "a folder"])
+def test_what_is_damaged_or_foreign_is_made_anew(harm, tmp_path, monkeypatch):
+    """A library is looked at before it is loaded: a damaged one would end the process."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    told = f"rvmon.loads({SPEC!r}).evaluate({TRACE}, engine='c').verdicts['R1'].value"
     assert verdicts() == {"R1": "F"}
-    (whole,) = (tmp_path / "first" / "rvmon").glob("*.so")
-    # Elsewhere: a process that has loaded a file does not look at it again.
-    broken = tmp_path / "second" / "rvmon" / whole.name
-    broken.parent.mkdir(parents=True, mode=0o700)
-    broken.write_bytes(whole.read_bytes()[:50])
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "second"))
-    assert verdicts() == {"R1": "F"}
-    assert broken.stat().st_size == whole.stat().st_size
+    (path,) = (tmp_path / "rvmon").glob("*.so")
+    whole = path.read_bytes()
+    if harm == "cut off":
+        os.truncate(path, len(whole) // 2)
+    elif harm == "bits flipped":
+        path.write_bytes(bytes(byte ^ 0x55 for byte in whole))
+    elif harm == "of others":
+        path.chmod(0o777)
+    else:
+        path.unlink()
+        path.mkdir()
+        (path / "within").touch()
+    done = run([sys.executable, "-c", f"import rvmon; print({told})"])
+    assert (done.returncode, done.stdout) == (0, "F\n"), done.stderr
+    made = [one for one in (tmp_path / "rvmon").glob("*.so") if one.is_file()]
+    assert [one.read_bytes() for one in made] == [whole]
+    assert made[0].stat().st_mode & 0o777 == 0o700
 
 
 def test_what_cannot_be_loaded_is_told(tmp_path, monkeypatch):

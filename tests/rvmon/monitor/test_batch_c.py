@@ -154,3 +154,19 @@ def test_lengths_of_vectors_are_those_of_python():
     spec = spec_of("signal x, y : real", "upon start\n  then within 1 s hypot(x, y) > 5")
     for engine in ("automaton", "c"):
         assert spec.evaluate(unknown, engine=engine).verdicts == {"R1": "I"}
+
+
+def test_a_signal_is_not_born_by_nan():
+    """What passed before all that it speaks of had a value is inconclusive."""
+    declared = "time sampled\nsignal p, q : bool\nsignal x, y : real"
+    spec = spec_of(declared, "whenever q then F[3 ns, 6 ns] ((y >= x) U[0 ns, 3 ns] p)")
+    trace = {
+        "t_ns": np.array([0, 6, 10]),
+        "p": np.array([True, True, True]),
+        "q": np.array([True, False, False]),
+        "x": np.array([math.nan, math.nan, 1.0]),
+        "y": np.array([1.0, 0.0, 0.0]),
+    }
+    for engine in ("auto", "c"):
+        (attempt,) = spec.evaluate(trace, engine=engine).attempts
+        assert (attempt.verdict, attempt.decided) == ("I", None), engine

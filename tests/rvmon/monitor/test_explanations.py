@@ -249,3 +249,16 @@ def test_a_name_without_a_source_is_said_to_have_none():
         monitor.step(0, {"go": True})
         [left] = monitor.finish().attempts
         assert left.reason == "left open by the input: `near` has no source"
+
+
+@pytest.mark.parametrize("engine", ["python", "automaton", "progression"])
+def test_what_is_owed_in_a_loop_is_that_of_now(engine):
+    """Positions at which the same is owed again are passed over: the window moves all the same."""
+    text = "requirement R\nupon start\nthen eventually always[1 ns, 1 ns] start"
+    monitor = rvmon.loads(f"spec s\ntime sampled every 1 ns\n{text}\n").monitor(engine=engine)
+    monitor.step_ns(0, {})
+    for now in range(1, 6):
+        monitor.advance_ns(now)
+        [left] = monitor.open
+        assert left.owed.startswith(f"`always[1 ns, 1 ns] start` until {now} ns, or ")
+        assert left.deadline == now

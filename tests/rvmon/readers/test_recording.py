@@ -178,3 +178,27 @@ def test_missing_file_is_named(tmp_path):
     """A file that does not exist is an error of ours with its path."""
     with pytest.raises(TraceError, match=r"gone\.csv: No such file"):
         FileRecording(tmp_path / "gone.csv", SCHEMA)
+
+
+@pytest.mark.parametrize("number", ["1e400", "-1e400", "9" * 400])
+@pytest.mark.parametrize("form", ["a.csv", "a.jsonl", "b.jsonl"])
+def test_a_number_too_large_for_a_double_is_refused(tmp_path, number, form):
+    """It is not taken for infinity, whatever holds it; NaN beside it changes nothing."""
+    text = {
+        "a.csv": f"t,x\n0,{number}\n",
+        "a.jsonl": f'{{"t":0,"x":{number}}}\n',
+        "b.jsonl": f'{{"t":0,"x":{number},"y":NaN}}\n',
+    }[form]
+    (tmp_path / form).write_text(text)
+    with pytest.raises(TraceError, match=r"line [12]: "):
+        list(FileRecording(tmp_path / form, Schema({"x": Kind.REAL}, {})))
+
+
+@pytest.mark.parametrize(("cell", "word"), [("inf", "Infinity"), ("-inf", "-Infinity")])
+def test_what_is_called_infinite_is(tmp_path, cell, word):
+    """CSV and JSON lines agree."""
+    (tmp_path / "a.csv").write_text(f"t,x\n0,{cell}\n")
+    (tmp_path / "a.jsonl").write_text(f'{{"t":0,"x":{word}}}\n')
+    for name in ("a.csv", "a.jsonl"):
+        (sample,) = FileRecording(tmp_path / name, Schema({"x": Kind.REAL}, {}))
+        assert sample.values == {"x": float(cell)}

@@ -239,3 +239,18 @@ def test_byte_order_mark_is_ignored():
     spec, _ = compile_text("\ufeffspec demo\nsignal a : bool\nrequirement R always a")
     assert spec.name == "demo"
     assert compile_text("\ufeff# comment\r\nspec demo\r\n")[0].name == "demo"
+
+
+@pytest.mark.parametrize("sign", ["and", "or", "&&", "+"])
+def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
+    """One plain finding, however long the chain is."""
+    chain = f" {sign} ".join(["p"] * 100_000)
+    with pytest.raises(SpecError, match="more than 5,000 operators") as caught:
+        compile_text(f"signal p : bool\nrequirement R\n  always ({chain})\n")
+    assert [finding.code for finding in caught.value.diagnostics] == ["RV005"]
+
+
+def test_words_in_texts_and_comments_are_no_operators():
+    """A long comment stands in no one's way."""
+    text = 'signal p : bool\nrequirement R "' + "and " * 3000 + '"\n  always p  # ' + "or " * 3000
+    compile_text(text)

@@ -1,7 +1,10 @@
 """Imports: relative to the file, each file once, circles and double names with both places."""
 
+import os
+
 import pytest
 
+from rvmon import load
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 
@@ -100,3 +103,52 @@ def test_time_may_stand_in_an_imported_file_once(compile_file):
     assert spec.time == "sampled"
     with pytest.raises(SpecError, match="RV011"):
         compile_file(main='time held\nimport "one.rv"', one="time sampled")
+
+
+@pytest.mark.parametrize("target", ["/dev/zero", "/etc/passwd", "../secret.rv", "link.rv"])
+def test_nothing_outside_the_project_is_read(compile_file, tmp_path, target):
+    """What lies outside, or where a link leads outside, is refused; not a line of it is shown."""
+    folder = tmp_path.parent / "secret.rv"
+    folder.write_text("password")
+    (tmp_path / "link.rv").symlink_to(folder)
+    with pytest.raises(SpecError, match="outside") as caught:
+        compile_file(main=f'import "{target}"')
+    assert [finding.code for finding in caught.value.diagnostics] == ["RV016"]
+    assert "password" not in str(caught.value)
+    assert "root:" not in str(caught.value)
+
+
+@pytest.mark.parametrize("mark", [".git", "pyproject.toml"])
+def test_a_project_shares_its_specifications(tmp_path, mark):
+    """Imports may lead anywhere within the project's root."""
+    (tmp_path / mark).touch()
+    (tmp_path / "common").mkdir()
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "common" / "x.rv").write_text("signal a : bool")
+    text = 'import "../common/x.rv"\nrequirement R always a'
+    spec, _ = compile_text(text, directory=tmp_path / "robot")
+    assert set(spec.signals) == {"a"}
+
+
+def test_a_folder_that_is_named_may_be_imported_from(tmp_path, monkeypatch):
+    """RVMON_ALLOW_IMPORTS names folders outside the project."""
+    (tmp_path / "common").mkdir()
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "common" / "x.rv").write_text("signal a : bool")
+    monkeypatch.setenv("RVMON_ALLOW_IMPORTS", str(tmp_path / "common"))
+    text = 'import "../common/x.rv"\nrequirement R always a'
+    spec, _ = compile_text(text, directory=tmp_path / "robot")
+    assert set(spec.signals) == {"a"}
+
+
+def test_pipes_and_large_files_are_no_specifications(compile_file, tmp_path, monkeypatch):
+    """Only regular files of a bounded size are read; nobody waits for a pipe."""
+    os.mkfifo(tmp_path / "pipe.rv")
+    with pytest.raises(SpecError, match="a regular file is expected"):
+        compile_file(main='import "pipe.rv"')
+    with pytest.raises(SpecError, match="a regular file is expected"):
+        load(tmp_path / "pipe.rv")
+    monkeypatch.setenv("RVMON_MAX_TEXT", "1")
+    (tmp_path / "large.rv").write_text("# large\n" * (1 << 18))
+    with pytest.raises(SpecError, match="larger than 1 MB"):
+        load(tmp_path / "large.rv")

@@ -40,3 +40,12 @@ def test_imported_names_may_be_unused(tmp_path):
     (tmp_path / "names.rv").write_text("event a, b, c\nconst T = 3 s\nconst D = 1 s\n")
     text = 'import "names.rv"\nrequirement R\n  upon a\n  then within T b\n'
     assert compile_text(text, directory=tmp_path)[1] == ()
+
+
+def test_many_warnings_stop_nothing():
+    """A hundred of them are kept, and the rest is said to be left out; the file can be used."""
+    names = ", ".join(f"s{number}" for number in range(300))
+    spec, findings = compile_text(f"signal {names} : bool\nrequirement R always s0")
+    assert len(spec.signals) == 300
+    assert {found.severity for found in findings} == {"warning"}
+    assert [found.code for found in findings] == ["RV046"] * 100 + ["RV006"]

@@ -96,3 +96,11 @@ def test_a_byte_order_mark_is_passed_over(tmp_path):
     path = tmp_path / "model.ta"
     path.write_bytes(b"\xef\xbb\xbf" + A.encode())
     assert len(load_network(path).automata) == 1
+
+
+def test_a_wide_range_is_warned_of():
+    """The model is read; why it may have too many states is said at the variable."""
+    text = "int[0, 1000000000] n\nint[0, 10] m\nautomaton a { location l start l }"
+    (warning,) = loads_network(text).warnings
+    assert (warning.code, warning.severity) == ("TA005", "warning")
+    assert "`n` has 1,000,000,001 values" in warning.message

@@ -15,9 +15,11 @@ IMPORT = Rule(
     "RV016",
     "import",
     Severity.ERROR,
-    "An imported file cannot be read, or files import each other in a circle.",
-    "Imports are looked up beside the file they stand in; `import patterns` without quotes takes "
-    "the library.",
+    "An imported file cannot be read, lies outside the project, or imports itself in a circle.",
+    "Imports are looked up beside the file they stand in, within the project: the nearest folder "
+    "above the main file that holds `.git` or `pyproject.toml`, else the main file's own. Folders "
+    "that `RVMON_ALLOW_IMPORTS` names count, too. `import patterns` without quotes takes the "
+    "library.",
     """spec demo
 import "no_such_file.rv"
 """,
@@ -40,6 +42,16 @@ def unreadable(span: Span, target: str, reason: str) -> Diagnostic:
         f"cannot read `{target}`: {reason}",
         span,
         mend="the path is relative to the file that imports",
+    )
+
+
+def outside(span: Span, target: str, root: str) -> Diagnostic:
+    """A file that does not belong to the project."""
+    return finding(
+        IMPORT,
+        f"cannot read `{target}`: it lies outside {root}, the folder of the project",
+        span,
+        mend="copy it into the project, or name its folder in RVMON_ALLOW_IMPORTS",
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
@@ -239,9 +241,11 @@ def empty_file(span: Span) -> Diagnostic:
     )
 
 
-def too_many(most: int) -> Diagnostic:
-    """The end of a long list of findings."""
-    return finding(TOO_MANY, f"only the first {most} findings are shown", mend="mend these first")
+def too_many(most: int, *, broken: bool) -> Diagnostic:
+    """The end of a long list of findings: an error where one of them is."""
+    message = f"only the first {most} findings are shown"
+    made = finding(TOO_MANY, message, mend="mend these first")
+    return made if broken else replace(made, severity=Severity.WARNING)
 
 
 def short(text: str, most: int = 60) -> str:

@@ -1,0 +1,299 @@
+"""Hostile names and cells through every output, each parsed again: nothing is forged or obeyed.
+
+    python -m benchmarks.hostile_names --names 100000 --through-commands 1000
+
+Every writer gets all names, as ids, texts, columns, reasons and names of files; the commands and
+the C programs get so many of them, in specifications and recordings. Prints by output how many
+names came through, and those at which something else came out than of harmless names.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import csv
+import io
+import json
+import re
+import subprocess
+import tempfile
+import time
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import rvmon
+from rvmon.cli import main as command
+from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
+from rvmon.diagnostics.render import render_concise, render_full, render_json
+from rvmon.diagnostics.shown import shown, shown_json, shown_line
+from rvmon.diagnostics.span import Source, Span
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.explain.graph_text import quoted
+from rvmon.export.uppaal import uppaal_xml
+from rvmon.report.junit import junit_xml
+from rvmon.report.markup import e, page
+from rvmon.report.run_text import print_reports
+from rvmon.report.table import RunGroup, VerdictTable
+from rvmon.report.table_csv import tables_csv
+from rvmon.report.table_html import table_html
+from rvmon.report.table_latex import table_latex
+from rvmon.spec.checked import CheckedSpec
+from rvmon.testing.hostile import STEERING, hostile_names
+from rvmon.timed.load import loads_network
+from rvmon.trace.health import Health, HealthKind
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+BATCH = 1000
+"""Names in one document."""
+
+Names = Sequence[str]
+
+_STRING = re.compile(r'"(?:[^"\\\n]|\\.)*"')
+_LATEX = re.compile(r"\\text[a-z]+\{\}|\\[&%$#_{}]|\{[\[*]\}|[^\\&%$#_{}~^\[*\x00-\x1f]")
+_NETWORK = """automaton A {
+  location l
+  start l
+}
+query q: A[] not deadlock
+"""
+
+
+class Documents:
+    """What each writer makes of names.
+
+    Args:
+        names: at most some thousands.
+    """
+
+    def __init__(self, names: Names) -> None:
+        base = rvmon.loads("spec s\nsignal b : bool\nrequirement R\n  always b\n")
+        judged = base.evaluate([(0.0, {"b": True}), (1.0, {"b": False})])
+        attempt, requirement = judged.attempts[0], base.requirements["R"]
+        self.names = names
+        self.spec: CheckedSpec = replace(
+            base.checked,
+            name=names[0],
+            requirements={n: replace(requirement, id=n, text=n) for n in names},
+        )
+        self.report: Report = report_of(
+            tuple(names),
+            [replace(attempt, requirement=n, reason=f"`{n}` was false") for n in names],
+            health=[Health(HealthKind.IGNORED, n, 1, None, (), n) for n in names],
+            trace=names[-1],
+            end=judged.end,
+        )
+        counts = {name: dict.fromkeys(Verdict, 1) for name in names}
+        groups = tuple(RunGroup(name, 4, counts) for name in names[:3])
+        self.table = VerdictTable(names[0], dict(zip(names, names, strict=True)), groups)
+
+    def json(self) -> bool:
+        """Reports as JSON."""
+        text = shown_json(self.report.to_json())
+        return _calm(text) and list(json.loads(text)["requirements"]) == list(self.names)
+
+    def terminal(self) -> bool:
+        """Reports on a terminal."""
+        return _calm(_printed(lambda: print_reports([self.report], self.spec)))
+
+    def junit(self) -> bool:
+        """JUnit XML."""
+        text = junit_xml([self.report], self.spec, [(name, name) for name in self.names])
+        root = ET.fromstring(text.encode())  # noqa: S314 - written by our own writer a line above
+        cases = [case.get("name") for case in root.iter("testcase")]
+        ids = [shown(name) for name in self.names]
+        return _calm(text) and cases == ids + ["recording"] * len(ids)
+
+    def csv(self) -> bool:
+        """Tables as CSV, of which no cell is a formula."""
+        rows = list(csv.reader(io.StringIO(tables_csv({self.names[0]: self.table}), newline="")))
+        ids = [row[2] for row in rows[1 : len(self.names) + 1]]
+        texts = [shown_line(name) for name in self.names]
+        formulas = [cell for row in rows for cell in row if cell.startswith(tuple("=+-@\t\r"))]
+        return not formulas and ids == [f"'{one}" if one[0] in "=+-@" else one for one in texts]
+
+    def latex(self) -> bool:
+        """Tables as LaTeX: a name is escapes and harmless signs, a row has its cells."""
+        rows = [line for line in table_latex(self.table).split("\n") if line.endswith(r" \\")]
+        ids = [row.split(" & 1")[0] for row in rows[2:]]
+        return len(ids) == len(self.names) and not any(_LATEX.sub("", text) for text in ids)
+
+    def html(self) -> bool:
+        """Pages: the tags, and the names of their attributes, are those of harmless names."""
+        return _outline(self.html_page()) == _outline(Documents(_harmless(self.names)).html_page())
+
+    def html_page(self) -> str:
+        """A page with the table, texts and attributes."""
+        texts = (e("p", {"title": name}, name) for name in self.names)
+        return page(self.names[0], [table_html(self.table), *texts], styles=(), scripts=())
+
+    def strings(self) -> bool:
+        """Strings of DOT and HOA."""
+        found = [quoted(name) for name in self.names]
+        return _calm("".join(found)) and all(map(_STRING.fullmatch, found))
+
+    def uppaal(self) -> bool:
+        """Networks as XML."""
+        network = loads_network(
+            "automaton A {\n location l\n start l\n}\nquery q: A[] not deadlock\n"
+        )
+        queries = [replace(network.queries[0], id="", remark=name) for name in self.names]
+        text = uppaal_xml(replace(network, title=self.names[0], queries=tuple(queries)))
+        root = ET.fromstring(text.encode())  # noqa: S314 - written by our own writer a line above
+        found = [comment.text for comment in root.iter("comment")]
+        return _calm(text) and found == [shown(name) for name in self.names]
+
+    def messages(self) -> bool:
+        """Errors, and findings in all their forms."""
+        found = [
+            Diagnostic("RV001", "syntax", Severity.ERROR, n, (Label(Span(Source(n, n), 0, 2), n),))
+            for n in self.names
+        ]
+        errors = [str(kind(name)) for kind in (RvmonError, UnknownNameError) for name in self.names]
+        texts = [render_full(found), render_concise(found), shown_json(render_json(found)), *errors]
+        read = [one["file"] for one in json.loads(texts[2])]
+        lines = len(texts[1].split("\n"))
+        return _calm("".join(texts)) and read == list(self.names) and lines == len(self.names)
+
+
+WRITERS: tuple[Callable[[Documents], bool], ...] = (
+    Documents.json,
+    Documents.terminal,
+    Documents.junit,
+    Documents.csv,
+    Documents.latex,
+    Documents.html,
+    Documents.strings,
+    Documents.uppaal,
+    Documents.messages,
+)
+
+
+class _Outline(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[object] = []
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        """Keep the tag with the names of its attributes."""
+        self.found.append((tag, *(name for name, _ in attributes)))
+
+    def handle_comment(self, _: str) -> None:
+        """Keep that there is one."""
+        self.found.append("comment")
+
+
+def _outline(text: str) -> list[object]:
+    parser = _Outline()
+    parser.feed(text)
+    parser.close()
+    return parser.found
+
+
+def _harmless(names: Names) -> list[str]:
+    return [f"n{number}" for number, _ in enumerate(names)]
+
+
+def _calm(text: str) -> bool:
+    return not STEERING.search(text)
+
+
+def _printed(act: Callable[[], object]) -> str:
+    """What goes to standard output and error."""
+    told = io.StringIO()
+    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
+        act()
+    return told.getvalue()
+
+
+def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
+    """What commands and a C program make of names, each with whether all is well."""
+    ids = [name for name in names if "\r" not in name]  # files end lines there
+    cell = next(name for name in ids if name == shown_line(name) or "\x00" not in name)
+    file = re.sub(r"[/\x00]", "_", ids[-1])[:60]
+    spec, trace, broken = (str(folder / (file + end)) for end in (".rv", ".csv", ".broken.csv"))
+    items = "".join(f"requirement `{n}` {json.dumps(n)}\n  always b\n" for n in ids)
+    Path(spec).write_text(f"spec `{ids[0]}`\nsignal b : bool\n{items}", encoding="utf-8")
+    for path, value in ((trace, "0"), (broken, cell)):
+        with open(path, "w", newline="", encoding="utf-8") as out:
+            csv.writer(out).writerows([("t", "b", ids[0]), (0, 1, cell), (1, value, cell)])
+    run = ["run", spec, trace]
+    words = {
+        "run": run,
+        "run, broken": ["run", spec, broken],
+        "run, pages": [*run, trace, "--junit", str(folder / "j"), "--report", str(folder / "r")],
+        "run, unknown": [*run, "--only", "no" + ids[0]],
+        "run, options": [*run, "--no" + ids[0]],
+        "check": ["check", spec, "--engines"],
+        "check, none": ["check", str(folder / (file + "none"))],
+        "explain": ["explain", spec, ids[0], "--runs", "10"],
+        "why": ["why", spec, trace, ids[0] if "#" not in ids[0] else "x"],
+        "cross": ["cross", spec, trace, "--only", ids[0]],
+        "init": ["init", trace],
+        "compile, costs": ["compile", spec, "--to", "costs"],
+        "compile, dot": ["compile", spec, "--to", "dot"],
+        "compile, hoa": ["compile", spec, "--to", "hoa"],
+        "compile, python": ["compile", spec, "--to", "python"],
+    }
+    texts = {name: _printed(lambda given=given: command(given)) for name, given in words.items()}
+    for name, text in texts.items():
+        yield name, _calm(text) and "internal error" not in text
+    compile(texts["compile, python"], "generated", "exec")
+    for name in ("run, json", "run, engine c"):
+        engine = ["--engine", "c"] if name.endswith("c") else []
+        text = _printed(lambda engine=engine: command([*run, "--format", "json", *engine]))
+        yield name, _calm(text) and list(json.loads(text)["requirements"]) == ids
+    text = _printed(lambda: command(["compile", spec, "--to", "json"]))
+    yield "compile, json", _calm(text) and [one["requirement"] for one in json.loads(text)] == ids
+    command(["build", spec, "-o", str(folder / "judge")])
+    text, _ = _program(folder, trace)
+    yield "C program", _calm(text) and list(json.loads(text)["requirements"]) == ids
+    yield "C program, broken", _calm(_program(folder, broken)[1])
+
+
+def _program(folder: Path, trace: str) -> tuple[str, str]:
+    done = subprocess.run([folder / "judge", trace], capture_output=True, check=False)
+    return done.stdout.decode(), done.stderr.decode()
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Write, read again, print, and return 1 if anything was forged or obeyed."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--names", type=int, default=100_000)
+    parser.add_argument("--through-commands", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=0)
+    arguments = parser.parse_args(words)
+    began = time.perf_counter()
+    given: Counter[str] = Counter()
+    wrong: Counter[str] = Counter()
+    names = list(hostile_names(arguments.names, arguments.seed))
+    for first in range(0, len(names), BATCH):
+        documents = Documents(names[first : first + BATCH])
+        for writer in WRITERS:
+            given[writer.__name__] += len(documents.names)
+            if not writer(documents):
+                wrong[writer.__name__] += 1
+                print(
+                    f"{writer.__name__}: wrong among names {first} to {first + BATCH}", flush=True
+                )
+    for first in range(0, min(arguments.through_commands, len(names)), BATCH // 10):
+        part = names[first : first + BATCH // 10]
+        with tempfile.TemporaryDirectory() as folder:
+            for name, fine in through_commands(part, Path(folder)):
+                given[name] += len(part)
+                if not fine:
+                    wrong[name] += 1
+                    print(f"{name}: wrong among names {first} to {first + len(part)}", flush=True)
+    for name, count in given.items():
+        print(f"{name:18} {count:8} names, {wrong[name]} documents wrong")
+    print(f"{time.perf_counter() - began:.0f} s")
+    return int(bool(wrong))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,238 @@
+r"""Kill processes that have others work for them, at random instants: what lives on or is torn?
+
+    python -m benchmarks.kills --kills 50 --seed 1
+
+Each kind of parent is killed so often by SIGKILL and by SIGTERM, in turn. Prints how many of its
+processes live 2 s later, how many files are half written, how many bear a name that says that they
+are not finished, and how the parents ended; exits 1 if something lives or is half written. Needs
+Linux's /proc.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from rvmon.cache import is_whole, read_kept
+from rvmon.writing import SUFFIX
+
+PATIENCE_S = 2.0
+"""Seconds that processes may take to end."""
+
+LONGEST_S = 4.0
+"""Seconds after which parents are killed at the latest."""
+
+MARK = "RVMON_KILLS"
+"""The variable by which processes are found again, whoever began them."""
+
+ROOT = Path(__file__).resolve().parent.parent
+
+SPEC = """spec kills
+signal p : bool
+event e
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Parent:
+    """A command that begins others, in a folder with the inputs."""
+
+    label: str
+    words: tuple[str, ...]
+    fresh: bool
+    """Whether each has a cache of its own, so that it compiles."""
+
+
+RVMON = (sys.executable, "-m", "rvmon")
+PARENTS = (
+    Parent("rvmon run --jobs", (*RVMON, "run", "s.rv", *["t.csv"] * 6, "--jobs", "2"), fresh=False),
+    Parent(
+        "rvmon run --report", (*RVMON, "run", "s.rv", "few.csv", "--report", "out"), fresh=False
+    ),
+    Parent("rvmon build", (*RVMON, "build", "s.rv", "-o", "out/program"), fresh=True),
+    Parent(
+        "rvmon run -e c",
+        (*RVMON, "run", "s.rv", "many.csv", "--engine", "c", "--format", "json"),
+        fresh=False,
+    ),
+    Parent(
+        "handover run",
+        (
+            sys.executable,
+            "-m",
+            "handover.cli",
+            "run",
+            "--tests",
+            "16",
+            "--jobs",
+            "2",
+            "--out",
+            "out",
+        ),
+        fresh=False,
+    ),
+    Parent(
+        "differential",
+        (sys.executable, "-m", "benchmarks.differential", "--pairs", "4000", "--workers", "2"),
+        fresh=False,
+    ),
+)
+
+
+def inputs(folder: Path) -> None:
+    """Write the specification and the recordings."""
+    rules = (f"requirement R{n}\n  upon e then within {n} s p\n" for n in range(1, 9))
+    (folder / "s.rv").write_text(SPEC + "".join(rules))
+    for name, rows in (("few.csv", 300), ("t.csv", 20_000), ("many.csv", 1_500_000)):
+        with (folder / name).open("w") as file:
+            file.write("t,p,e\n")
+            file.writelines(f"{k / 100:.2f},{k // 3 % 2},{int(k % 9 == 0)}\n" for k in range(rows))
+
+
+class Trial:
+    """One folder in which parents of one kind are killed.
+
+    Args:
+        parent: the kind.
+        folder: with the inputs.
+    """
+
+    def __init__(self, parent: Parent, folder: Path) -> None:
+        self.parent = parent
+        self.folder = folder
+        began = time.perf_counter()
+        self.begun(folder / "cache", "first").wait()
+        self.begun(folder / "cache", "first").wait()
+        self.span = min((time.perf_counter() - began) / 2, LONGEST_S)
+        self.found: Counter[str] = Counter()
+
+    def begun(self, cache: Path, mark: str) -> subprocess.Popen[bytes]:
+        """A parent at work."""
+        (self.folder / "out").mkdir(exist_ok=True)
+        environment = {
+            **os.environ,
+            "XDG_CACHE_HOME": str(cache),
+            "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT}",
+            MARK: mark,
+        }
+        return subprocess.Popen(
+            self.parent.words,
+            cwd=self.folder,
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def kill(self, number: int, after: float) -> None:
+        """Begin a parent, kill it so many seconds later, and see what is left."""
+        mark = f"{os.getpid()}-{number}"
+        cache = self.folder / (f"cache{number}" if self.parent.fresh else "cache")
+        process = self.begun(cache, mark)
+        time.sleep(after)
+        kind = (signal.SIGKILL, signal.SIGTERM)[number % 2]
+        process.send_signal(kind)
+        end = time.monotonic() + PATIENCE_S
+        while (living := [*_marked(mark)]) and time.monotonic() < end:
+            process.poll()
+            time.sleep(0.05)
+        self.found[f"{kind.name} survivors"] += len(living)
+        for pid in living:
+            os.kill(pid, signal.SIGKILL)
+        self.found[f"{kind.name} ended with {process.wait()}"] += 1
+        self.found["half written"] += sum(map(_is_half_written, _files(self.folder / "out")))
+        self.found["half written"] += sum(map(_is_half_written, _files(cache)))
+        unfinished = [*self.folder.joinpath("out").rglob(f"*{SUFFIX}"), *cache.rglob(f"*{SUFFIX}")]
+        self.found[f"{kind.name} unfinished left"] += len(unfinished)
+        for path in unfinished:
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+
+
+def _marked(mark: str) -> Iterator[int]:
+    """The processes with a mark that have not ended."""
+    wanted = f"{MARK}={mark}\0".encode()
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            if wanted in (place / "environ").read_bytes():  # empty, once it has ended
+                yield int(place.name)
+        except OSError:
+            continue
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    finished = (path for path in folder.rglob("*") if SUFFIX not in str(path))
+    return (path for path in finished if path.is_file())
+
+
+def _lines(path: Path) -> None:
+    for line in path.read_text().splitlines():
+        json.loads(line)
+
+
+READERS: dict[str, Callable[[Path], object]] = {
+    ".json": lambda path: json.loads(path.read_bytes()),
+    ".jsonl": _lines,
+    ".xml": ElementTree.parse,
+}
+
+
+def _is_half_written(path: Path) -> bool:
+    body = path.read_bytes()
+    if path.parent.name == "rvmon":  # a cache, with a file that is empty
+        if not path.suffix:
+            return bool(body)
+        return read_kept(path) is None if path.suffix == ".json" else not is_whole(path)
+    if path.suffix in READERS:
+        try:
+            READERS[path.suffix](path)
+        except (ValueError, ElementTree.ParseError):
+            return True
+        return not body
+    if path.suffix == ".html":
+        return not body.rstrip().endswith(b"</html>")
+    if path.name == "program":
+        return (
+            subprocess.run([str(path), "--help"], capture_output=True, check=False).returncode != 0
+        )
+    return not body.endswith(b"\n")
+
+
+def main(argv: Sequence[str]) -> int:
+    """Kill, count and print."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--kills", type=int, default=50, help="of each kind of parent")
+    parser.add_argument("--seed", type=int, default=1)
+    labels = [parent.label for parent in PARENTS]
+    parser.add_argument("--only", choices=labels, nargs="+", default=labels, metavar="KIND")
+    options = parser.parse_args(argv)
+    bad = 0
+    for parent in PARENTS:
+        if parent.label not in options.only:
+            continue
+        dice = random.Random(f"{options.seed} {parent.label}")
+        with tempfile.TemporaryDirectory() as folder:
+            inputs(Path(folder))
+            trial = Trial(parent, Path(folder))
+            for number in range(options.kills):
+                trial.kill(number, dice.uniform(0, trial.span))
+        print(f"{parent.label}: {options.kills} kills within {trial.span:.1f} s", flush=True)
+        for what, count in sorted(trial.found.items()):
+            print(f"  {what}: {count}", flush=True)
+            bad += count * what.endswith(("survivors", "half written"))
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

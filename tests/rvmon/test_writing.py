@@ -1,0 +1,56 @@
+"""Files are written whole, and nothing is lost where they cannot be."""
+
+import errno
+import os
+import stat
+
+import pytest
+
+from rvmon.writing import write_whole
+
+
+def test_a_file_that_cannot_be_finished_stays_as_it_was(tmp_path, monkeypatch):
+    """On a full disk, what was there is still there, and nothing beside it."""
+
+    def full(_from: object, _to: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    path = tmp_path / "a.rv"
+    path.write_text("before")
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(OSError, match="No space left"):
+        write_whole(path, "after")
+    assert [one.name for one in tmp_path.iterdir()] == ["a.rv"]
+    assert path.read_text() == "before"
+
+
+def test_rights_and_links_stay(tmp_path):
+    """The file that a link leads to is written, with the rights that it had."""
+    path, link, twin = tmp_path / "a", tmp_path / "link", tmp_path / "twin"
+    path.write_text("before")
+    path.chmod(0o751)
+    link.symlink_to("a")
+    write_whole(link, "after")
+    assert link.is_symlink()
+    assert (path.read_text(), stat.S_IMODE(path.stat().st_mode)) == ("after", 0o751)
+    twin.hardlink_to(path)
+    write_whole(path, "last")
+    assert twin.read_text() == "last"
+
+
+def test_what_is_no_file_is_written_to(tmp_path):
+    """A device stays one."""
+    write_whole("/dev/null", "text")
+    assert stat.S_ISCHR(os.stat("/dev/null").st_mode)
+    with pytest.raises(IsADirectoryError):
+        write_whole(tmp_path, "text")
+
+
+def test_a_new_file_has_the_rights_of_new_files(tmp_path):
+    """As the umask says."""
+    known = os.umask(0o027)
+    try:
+        write_whole(tmp_path / "a", "text")
+    finally:
+        os.umask(known)
+    assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == 0o640
