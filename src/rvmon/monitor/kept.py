@@ -123,7 +123,7 @@ class Kept:
             if any(id(one) in gone for one in holder.attempts):
                 holder.attempts = [one for one in holder.attempts if id(one) not in gone]
         if gone:
-            lanes.let_go()
+            lanes.roster.let_go()
 
 
 def _is_lost(attempt: Open) -> bool:

@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from heapq import heappop, heappush
 
-from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs
-from rvmon.errors import TraceError
 from rvmon.monitor.bench import Bench, Holder, Open, held_by
 from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
 from rvmon.monitor.instances import Instance, seen_by, values_in
 from rvmon.monitor.judge import Judge
-from rvmon.monitor.keyed import MOST_OPEN, Keyed
+from rvmon.monitor.keyed import Keyed
 from rvmon.monitor.lane import Lane, Starter
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
+from rvmon.monitor.roster import Roster
 from rvmon.monitor.trigger import Trigger
 from rvmon.spec.checked import CheckedSpec, Mode, TimeModel
 from rvmon.trace.sample import Scalar, Value
-from rvmon.trace.time import format_ticks
 
 Captured = Mapping[str, Scalar]
 
@@ -54,6 +51,7 @@ class Lanes:
 
     Attributes:
         main: the lane of all requirements without `for each`; its inputs are those of the run.
+        roster: the lanes of those with it, an instance each.
         forgets: whether instances are let go of that are over.
     """
 
@@ -73,7 +71,7 @@ class Lanes:
         self.ledger = ledger
         self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
         self._by_id = {compiled.requirement.id: compiled for compiled in requirements}
-        self._keyed: dict[str, Keyed] = {}
+        self.roster = Roster(forgets=self.forgets, is_held=self._has_captured)
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
         shared = [one for one in requirements if one.requirement.for_each is None]
         roots = [node for compiled in shared for node in compiled.shared_graph.nodes]
@@ -82,26 +80,20 @@ class Lanes:
             self._seat(self.main, compiled, {}, None)
         self._unopened: dict[str, tuple[Lane, list[Starter], list[Start]]] = {}
         self._captured: list[tuple[Lane, Instance | None]] = []
-        self._alarms: list[tuple[int, int, Keyed, Scalar]] = []
-        """When open instances are to be looked at; `_alarm_of` says which entries still hold."""
-        self._alarm_of: dict[Lane, int] = {}
-        self._alarms_set = 0
         for compiled in requirements:
             if compiled.requirement.for_each is not None:
-                keyed = self._make_keyed(compiled)
-                self._keyed[compiled.requirement.id] = keyed
+                self.roster.keyed[compiled.requirement.id] = self._make_keyed(compiled)
         if any(self._needs_history(compiled) for compiled in requirements):
             self._history = []
+
+    def _has_captured(self, instance: Instance) -> bool:
+        return any(one is instance for _, one in self._captured)
 
     @property
     def _entries(self) -> Iterator[tuple[Lane, Instance | None]]:
         """The lanes there are now, with their instances; those of captured attempts last."""
         yield self.main, None
-        for keyed in self._keyed.values():
-            yield keyed.template, keyed.doubted
-        for keyed in self._keyed.values():
-            for value, lane in keyed.open.items():
-                yield lane, keyed.known[value]
+        yield from self.roster.entries()
         yield from self._captured
 
     @property
@@ -121,11 +113,7 @@ class Lanes:
     def through(self, limit: int) -> None:
         """Let time pass up to `limit` in all lanes, also those that are made on the way."""
         self.main.through(limit)
-        for keyed in self._keyed.values():
-            keyed.template.through(limit)
-        for keyed, value, lane in self._rung(limit):
-            lane.through(limit)
-            self._see_to(keyed, value, lane)
+        self.roster.through(limit)
         index = 0
         while index < len(self._captured):
             self._captured[index][0].through(limit)
@@ -134,81 +122,19 @@ class Lanes:
     def reach(self, t: int) -> None:
         """Let time come to `t`, of which no position is known, in all lanes."""
         self.main.reach(t)
-        for keyed in self._keyed.values():
-            keyed.template.reach(t)
-        for keyed, value, lane in self._rung(t):
-            lane.reach(t)
-            self._see_to(keyed, value, lane)
+        self.roster.reach(t)
         for lane, _ in self._captured:
             lane.reach(t)
 
-    def _rung(self, limit: int) -> list[tuple[Keyed, Scalar, Lane]]:
-        """The open instances in which something happens up to an instant."""
-        found = []
-        while self._alarms and self._alarms[0][0] <= limit:
-            at, _, keyed, value = heappop(self._alarms)
-            lane = keyed.open.get(value)
-            if lane is not None and self._alarm_of.get(lane) == at:
-                del self._alarm_of[lane]
-                found.append((keyed, value, lane))
-        return found
-
-    def _see_to(self, keyed: Keyed, value: Scalar, lane: Lane) -> None:
-        """Let go of an open instance if it is over, after something was done to it."""
-        if self.forgets and keyed.is_over(lane) and not self._has_captured(keyed, value):
-            keyed.close(value)
-            self._alarm_of.pop(lane, None)
-            return
-        alarm = lane.alarm
-        if self._alarm_of.get(lane) != alarm:
-            self._alarm_of[lane] = alarm
-            if alarm < INFINITY:
-                self._alarms_set += 1
-                heappush(self._alarms, (alarm, self._alarms_set, keyed, value))
-
-    def let_go(self) -> None:
-        """Let go of all instances that are over, after attempts were taken away."""
-        for keyed in self._keyed.values():
-            for value, lane in tuple(keyed.open.items()):
-                self._see_to(keyed, value, lane)
-
-    def _has_captured(self, keyed: Keyed, value: Scalar) -> bool:
-        instance = keyed.known[value]
-        return any(one is instance for _, one in self._captured)
-
-    def admit(self, t: int, values: Mapping[str, Value]) -> None:
-        """See that there is room for the instances that a sample asks for.
-
-        Raises:
-            TraceError: there would be too many at once.
-        """
-        for name, keyed in self._keyed.items():
-            asked = len(keyed.open) + len(keyed.values_to_open(values))
-            if asked > MOST_OPEN:
-                source = keyed.each.value
-                raise TraceError(
-                    f"sample at {format_ticks(t)}: {name} would have {asked} instances of "
-                    f"`{source.event}.{source.field}` open at once, of {MOST_OPEN} that there can "
-                    "be: an upper bound in what is owed (`within D`) lets them close, or run "
-                    "one monitor for each part of the values"
-                )
-
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Give a sample to the lanes that it concerns; time has come to `t − 1` before."""
-        for keyed in self._keyed.values():
+        for keyed in self.roster.keyed.values():
             self._open_instances(keyed, t, values)
         if self._history is not None:
             self._history.append((t, values))
         captured = tuple(self._captured)
         self.main.sample(t, values)
-        # In some, something happens at `t` by time alone; that is seen to at once as well.
-        asked = {lane: (keyed, value) for keyed, value, lane in self._rung(t)}
-        for keyed in self._keyed.values():
-            keyed.template.sample(t, seen_by(keyed.doubted, values))
-            asked |= {keyed.open[value]: (keyed, value) for value in keyed.concerned(values)}
-        for lane, (keyed, value) in asked.items():
-            lane.sample(t, seen_by(keyed.known[value], values))
-            self._see_to(keyed, value, lane)
+        self.roster.sample(t, values)
         for lane, instance in captured:
             lane.sample(t, seen_by(instance, values))
         if self._captured:
@@ -244,9 +170,9 @@ class Lanes:
         """What instances and captured attempts there are: what `rebuild` makes lanes for."""
         instances = [
             (name, [(one.rank, one.value, one.first) for one in keyed.instances()])
-            for name, keyed in self._keyed.items()
+            for name, keyed in self.roster.keyed.items()
         ]
-        templates = {keyed.template for keyed in self._keyed.values()}
+        templates = {keyed.template for keyed in self.roster.keyed.values()}
         lanes = [
             (*self._kind(lane.made_for[0]), dict(lane.made_for[1]), _value(instance), starts)
             for lane, instance in self._entries
@@ -269,23 +195,20 @@ class Lanes:
         """
         instances, lanes, unopened, _ = shape
         for name, found in instances:
-            keyed = self._keyed[name]
+            keyed = self.roster.keyed[name]
             source = keyed.each.value
             keyed.take(Instance(rank, source, value, first) for rank, value, first in found)
         for name in [name for name in self._unopened if name not in unopened]:
             _open(*self._unopened.pop(name), 0)
         for name, kind, captured, value, starts in lanes:
             compiled = self._by_id[name].judges[kind]
-            own = self._keyed.get(name)
+            own = self.roster.keyed.get(name)
             instance = None if own is None else own.doubted if value is None else own.known[value]
             graph = compiled.shared_graph if starts else compiled.consequent_graph
             lane = Lane(self._flow(graph, captured), (compiled, captured))
             if starts and own is not None:
                 self._seat(lane, compiled, captured, instance)
-                own.opened(value, lane)
-                # Its time is set when it is looked at, which it is at once.
-                self._alarm_of[lane] = -INFINITY
-                heappush(self._alarms, (-INFINITY, len(self._alarms), own, value))
+                self.roster.opened(own, value, lane)
             else:
                 self._judge(compiled, lane, captured, instance)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
@@ -464,7 +387,7 @@ class Lanes:
         """Make the lanes that a sample asks for."""
         for value in keyed.values_to_open(values):
             instance = keyed.instance(value, t)
-            keyed.opened(value, self._instance_lane(keyed, instance, t))
+            self.roster.opened(keyed, value, self._instance_lane(keyed, instance, t))
         name = keyed.compiled.requirement.id
         if name in self._unopened and None in values_in(keyed.each.value, values):
             _open(*self._unopened.pop(name), t)
@@ -508,7 +431,7 @@ class Lanes:
 
     def _needs_history(self, compiled: CompiledRequirement) -> bool:
         """Whether an instance or a captured attempt has to look at what was before it."""
-        keyed = self._keyed.get(compiled.requirement.id)
+        keyed = self.roster.keyed.get(compiled.requirement.id)
         kinds = [one for one in (compiled, compiled.hidden, compiled.doubted) if one is not None]
         return (keyed is not None and not keyed.reach.is_fresh) or (
             bool(compiled.requirement.captures)

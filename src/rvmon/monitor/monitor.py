@@ -207,7 +207,7 @@ class Monitor:
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         self._lanes.through(t - 1)
         try:
-            self._lanes.admit(t, values)
+            self._lanes.roster.admit(t, values)
         except TraceError:
             self._pass_to(t)
             raise

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
@@ -16,7 +17,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from rvmon.automaton.progression import Progression
-from rvmon.errors import SnapshotError
+from rvmon.errors import SnapshotError, TraceError
 from rvmon.monitor.build import build_monitor
 from rvmon.monitor.freeze import Freezer, Thawer
 from rvmon.monitor.judge import Judge
@@ -88,12 +89,12 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
 def _rehearse(monitor: Monitor) -> None:
     """Lead a monitor that is not needed any more to its end: what fails later, fails here."""
     _ = monitor.open, monitor.verdicts
-    checked, taken = monitor.choice.compiled.checked, monitor.choice.sources
-    names = [name for name in (*checked.signals, *checked.events) if not taken or name in taken]
     due = monitor.next_due
     later = 1 + max(monitor._last or 0, monitor._reached or 0)
-    monitor.step_ns(later, dict.fromkeys(names))
-    monitor.step_ns(max(later + 1, due or 0), {})
+    # What a monitor refuses for a reason of its own, it may refuse later.
+    with suppress(TraceError):
+        monitor.step_ns(later, dict.fromkeys(monitor.choice.compiled.checked.signals))
+        monitor.step_ns(max(later + 1, due or 0), {})
     monitor.snapshot()
     monitor.finish_ns()
 

@@ -99,7 +99,7 @@ def test_a_reason_says_from_when_on_it_knows():
 
 def test_too_many_open_at_once_are_refused(monkeypatch):
     """An instance too many is an error that says what to do, and the monitor goes on."""
-    monkeypatch.setattr("rvmon.monitor.lanes.MOST_OPEN", 3)
+    monkeypatch.setattr("rvmon.monitor.roster.MOST_OPEN", 3)
     monitor = rvmon.loads(text_of(OWED["a signal"])).monitor()
     for number in range(3):
         monitor.step(0.1 * number, {"order": {"id": number}, "ok": False})
