@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Iterator, Mapping, Sequence
-from math import prod
 from typing import assert_never
 
 from rvmon.codegen.plan import Plan
 from rvmon.errors import TraceError
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import Missing
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
@@ -18,7 +18,6 @@ from rvmon.spec.checked import (
     FieldValue,
     Literal,
     Numeric,
-    NumericOp,
     SignalValue,
     UpdateFunction,
     UpdateValue,
@@ -117,10 +116,7 @@ def _size(expression: Numeric, limit: int) -> int | None:
 
 def _size_of_result(op: NumericOp, sizes: Sequence[int | None]) -> int | None:
     whole = [size for size in sizes if size is not None]
-    if op in (NumericOp.DIV, NumericOp.SQRT, NumericOp.HYPOT) or not whole:
+    picks = op.entry.most is None  # one of its arguments, whatever the others are
+    if op.entry.largest is None or not whole or (len(whole) < len(sizes) and not picks):
         return None
-    if op in (NumericOp.MIN, NumericOp.MAX):
-        return max(whole)
-    if len(whole) < len(sizes):
-        return None
-    return prod(whole) if op is NumericOp.MUL else sum(whole)
+    return op.entry.largest(whole)

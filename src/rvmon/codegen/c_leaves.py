@@ -23,6 +23,7 @@ from rvmon.formula.state import (
     StateOp,
     Unborn,
 )
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Arithmetic,
     BoundAtom,
@@ -34,7 +35,6 @@ from rvmon.spec.checked import (
     FieldValue,
     Literal,
     Numeric,
-    NumericOp,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -43,7 +43,6 @@ from rvmon.spec.checked import (
     UpdateValue,
 )
 
-_INFIX = {NumericOp.ADD: "+", NumericOp.SUB: "-", NumericOp.MUL: "*", NumericOp.DIV: "/"}
 _COMPARISONS = {
     CompareOp.LT: "less",
     CompareOp.LE: "at_most",
@@ -55,17 +54,15 @@ _COMPARISONS = {
 TRUTHS = {FALSE: "(uint8_t)IS_FALSE", UNKNOWN: "(uint8_t)IS_UNKNOWN", TRUE: "(uint8_t)IS_TRUE"}
 """Truth values in C."""
 
-_ROOTS = {NumericOp.SQRT: "sqrt", NumericOp.HYPOT: "length"}
-"""Functions that `<math.h>` has, or that need it."""
-
 
 def uses_library(plan: Plan, names: Names) -> bool:
     """Whether some expression needs `<math.h>`."""
+    roots = [op.entry.c.partition("{")[0] for op in NumericOp if op.entry.of_mathematics]
     return any(
-        f"{name}(" in line
+        root in line
         for place in range(len(plan.graph.nodes))
         for line in node_body(plan, names, place)
-        for name in _ROOTS.values()
+        for root in roots
     )
 
 
@@ -238,19 +235,10 @@ def _update(names: Names, function: UpdateFunction, name: str) -> str:
 
 
 def _arithmetic(op: NumericOp, args: list[str]) -> str:
-    if op in _INFIX:
-        return f"finite_only({args[0]} {_INFIX[op]} {args[1]})"
-    if op in _ROOTS:
-        return f"finite_only({_ROOTS[op]}({', '.join(args)}))"
-    match op:
-        case NumericOp.NEG:
-            return f"finite_only(-{args[0]})"
-        case NumericOp.ABS:
-            return f"finite_only(magnitude({args[0]}))"
-        case NumericOp.MIN:
-            return f"finite_only({_nested('lesser', args)})"
-        case _:
-            return f"finite_only({_nested('greater', args)})"
+    whole, *rest = args
+    for arg in rest or ("",):
+        whole = op.entry.c.format(whole, arg)
+    return f"finite_only({whole})"
 
 
 def _nested(function: str, args: list[str]) -> str:

@@ -21,7 +21,6 @@ from rvmon.spec.checked import (
     FieldValue,
     Literal,
     Numeric,
-    NumericOp,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -36,19 +35,6 @@ _COMPARE = {
     CompareOp.NE: "ne",
     CompareOp.GE: "ge",
     CompareOp.GT: "gt",
-}
-
-_OPERATION = {
-    NumericOp.ADD: "add",
-    NumericOp.SUB: "sub",
-    NumericOp.MUL: "mul",
-    NumericOp.DIV: "truediv",
-    NumericOp.NEG: "neg",
-    NumericOp.ABS: "abs",
-    NumericOp.MIN: "min",
-    NumericOp.MAX: "max",
-    NumericOp.SQRT: "math.sqrt",
-    NumericOp.HYPOT: "math.hypot",
 }
 
 
@@ -172,7 +158,7 @@ def _number(plan: Plan, expression: Numeric) -> str:
             return f"self.h[{signal}].{function.value}(s[{signal}])"
         case Arithmetic(op=op, args=args):
             listed = ", ".join(_number(plan, arg) for arg in args)
-            return f"finite({_OPERATION[op]}, {listed})"
+            return f"finite({op.entry.python}, {listed})"
         case Captured():
             raise ValueError("captured values are not generated")
         case _:

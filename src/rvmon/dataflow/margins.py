@@ -10,6 +10,7 @@ from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.dataflow.numbers import COMPARE, events_of, reader
 from rvmon.dataflow.steps import INFINITE
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
+from rvmon.spec.arithmetic import UnitRule
 from rvmon.spec.checked import (
     Arithmetic,
     CheckedSpec,
@@ -18,7 +19,6 @@ from rvmon.spec.checked import (
     FieldValue,
     Literal,
     Numeric,
-    NumericOp,
     SignalValue,
     UpdateValue,
 )
@@ -140,11 +140,7 @@ def _unit(expression: Numeric, spec: CheckedSpec) -> str:
             return spec.signals[name].type.unit
         case FieldValue(event=event, field=field):
             return spec.events[event].fields[field].unit
-        case Arithmetic(op=op, args=args) if op not in (
-            NumericOp.MUL,
-            NumericOp.DIV,
-            NumericOp.SQRT,
-        ):
+        case Arithmetic(op=op, args=args) if op.entry.unit is UnitRule.SAME:
             return next((unit for arg in args if (unit := _unit(arg, spec))), "")
         case _:
             return ""

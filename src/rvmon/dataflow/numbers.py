@@ -16,7 +16,6 @@ from rvmon.spec.checked import (
     FieldValue,
     Literal,
     Numeric,
-    NumericOp,
     SignalValue,
     UpdateFunction,
     UpdateValue,
@@ -38,19 +37,6 @@ COMPARE: Mapping[CompareOp, Callable[[Any, Any], bool]] = {
     CompareOp.GT: operator.gt,
 }
 
-_BINARY: Mapping[NumericOp, Callable[..., float]] = {
-    NumericOp.ADD: operator.add,
-    NumericOp.SUB: operator.sub,
-    NumericOp.MUL: operator.mul,
-    NumericOp.DIV: operator.truediv,
-    NumericOp.MIN: min,
-    NumericOp.MAX: max,
-    NumericOp.HYPOT: math.hypot,
-    NumericOp.NEG: operator.neg,
-    NumericOp.ABS: abs,
-    NumericOp.SQRT: math.sqrt,
-}
-
 
 def reader(expression: Numeric, inputs: Inputs, captured: Mapping[str, Scalar]) -> Read:
     """A function that gives the value of an expression at the current position."""
@@ -68,7 +54,7 @@ def reader(expression: Numeric, inputs: Inputs, captured: Mapping[str, Scalar]) 
         case UpdateValue(function=function, name=name):
             return _update_reader(function, inputs.slots[name])
         case Arithmetic(op=op, args=args):
-            return _arithmetic(_BINARY[op], [reader(arg, inputs, captured) for arg in args])
+            return _arithmetic(op.entry.apply, [reader(arg, inputs, captured) for arg in args])
         case _:
             assert_never(expression)
 

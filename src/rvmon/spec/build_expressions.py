@@ -15,7 +15,8 @@ from lark.visitors import Transformer_NonRecursive, v_args
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
-from rvmon.spec.checked import BinaryOp, Bound, CompareOp, NumericOp, UnaryOp
+from rvmon.spec.arithmetic import NumericOp
+from rvmon.spec.checked import BinaryOp, Bound, CompareOp, UnaryOp
 from rvmon.spec.rules import syntax as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax import (
@@ -130,7 +131,7 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
 
     def arithmetic(self, meta: Meta, children: Children) -> Operation:
         left, op, right = children
-        return Operation(NumericOp(str(op)), (left, right), self.span(meta))
+        return Operation(NumericOp.of(str(op)), (left, right), self.span(meta))
 
     def comparison(self, meta: Meta, children: Children) -> Comparison:
         if len(children) > 3:

@@ -13,6 +13,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.span import Source, Span
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.trace.schema import Kind
 
 if TYPE_CHECKING:
@@ -127,21 +128,6 @@ class UpdateValue:
 
     function: UpdateFunction
     name: str
-
-
-class NumericOp(StrEnum):
-    """Arithmetic; `neg abs sqrt` take one argument, the others two (`min max` two or more)."""
-
-    ADD = "+"
-    SUB = "-"
-    MUL = "*"
-    DIV = "/"
-    NEG = "neg"
-    ABS = "abs"
-    MIN = "min"
-    MAX = "max"
-    SQRT = "sqrt"
-    HYPOT = "hypot"
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Interval,
-    NumericOp,
     Probe,
     ProbeAtom,
     Unary,
@@ -43,11 +43,9 @@ _ARGUMENTS = {
     "prev": 1,
     "delta": 1,
     "rate": 1,
-    "abs": 1,
-    "sqrt": 1,
-    "hypot": 2,
+    **{op.value: op.entry.least for op in NumericOp if op.entry.most is not None},
 }
-"""How many arguments a function takes; `min` and `max` take two or more."""
+"""How many arguments a function takes; those that are not here take two or more."""
 
 
 def applied(checker: Checker, call: Call, scope: Scope) -> Value:
@@ -82,7 +80,7 @@ def applied(checker: Checker, call: Call, scope: Scope) -> Value:
         case _:
             quantities = checker.quantities(call.args, scope)
             placed = zip(quantities, (arg.span for arg in call.args), strict=True)
-            return arithmetic(NumericOp(name), list(placed), call.span)
+            return arithmetic(NumericOp.of(name), list(placed), call.span)
 
 
 def _check_count(call: Call) -> None:

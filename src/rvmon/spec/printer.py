@@ -5,6 +5,7 @@ from __future__ import annotations
 from decimal import Decimal
 from typing import assert_never
 
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Arithmetic,
     Binary,
@@ -19,7 +20,6 @@ from rvmon.spec.checked import (
     Interval,
     Literal,
     Numeric,
-    NumericOp,
     ProbeAtom,
     SignalAtom,
     SignalValue,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import operator
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from rvmon.diagnostics.span import Span
-from rvmon.spec.checked import Arithmetic, Compare, CompareOp, Constant, Literal, Numeric, NumericOp
+from rvmon.spec.arithmetic import NumericOp, UnitRule
+from rvmon.spec.checked import Arithmetic, Compare, CompareOp, Constant, Literal, Numeric
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.unit import PLAIN, Unit
@@ -25,15 +25,6 @@ _COMPARE: dict[CompareOp, Callable[[Fraction, Fraction], bool]] = {
     CompareOp.NE: operator.ne,
     CompareOp.GE: operator.ge,
     CompareOp.GT: operator.gt,
-}
-_FOLD: dict[NumericOp, Callable[[list[Fraction]], Fraction]] = {
-    NumericOp.ADD: lambda values: values[0] + values[1],
-    NumericOp.SUB: lambda values: values[0] - values[1],
-    NumericOp.NEG: lambda values: -values[0],
-    NumericOp.ABS: lambda values: abs(values[0]),
-    NumericOp.MIN: min,
-    NumericOp.MAX: max,
-    NumericOp.HYPOT: lambda values: Fraction(math.hypot(*map(float, values))),
 }
 _DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
 
@@ -60,12 +51,12 @@ def arithmetic(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
         Refusal: the units do not fit, or a constant is out of range.
     """
     try:
-        match op:
-            case NumericOp.MUL | NumericOp.DIV:
+        match op.entry.unit:
+            case UnitRule.PRODUCT | UnitRule.QUOTIENT:
                 return _scale(op, args, span)
-            case NumericOp.SQRT:
-                return _root(args[0], span)
-            case _:
+            case UnitRule.ROOT:
+                return _root(op, args[0], span)
+            case UnitRule.SAME:
                 return _alike(op, args, span)
     except (ZeroDivisionError, OverflowError):
         raise Refusal(rules.out_of_range(span)) from None
@@ -85,27 +76,34 @@ def _alike(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
     unit = _common_unit(args, _DOING.get(op, "beside"), span)
     constants = [_exact(value, unit) for value, _ in args if value.constant is not None]
     if len(constants) == len(args):
-        return Quantity(constant=_bounded(_FOLD[op](constants), span), unit=unit)
+        return Quantity(constant=_folded(op, constants, span), unit=unit)
     node = Arithmetic(op, _nodes(args, unit))
-    return Quantity(node, unit=unit, integral=op is not NumericOp.HYPOT and _integral(args))
+    return Quantity(node, unit=unit, integral=_is_whole(op, args))
+
+
+def _folded(op: NumericOp, constants: Sequence[Fraction], span: Span) -> Fraction:
+    """The result for constants, which stay within what is written in a few hundred digits."""
+    value = Fraction(op.entry.apply(*constants))
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) > 4096:
+        raise Refusal(rules.out_of_range(span))
+    return value
 
 
 def _scale(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
     """Products and quotients."""
     (left, _), (right, _) = args
-    multiply = op is NumericOp.MUL
+    multiply = op.entry.unit is UnitRule.PRODUCT
     unit = (product if multiply else quotient)(left.unit, right.unit)
     if left.constant is not None and right.constant is not None:
-        both = left.constant, right.constant
-        value = both[0] * both[1] if multiply else both[0] / both[1]
-        return Quantity(constant=_bounded(value, span), unit=unit)
+        constants = (left.constant, right.constant)
+        return Quantity(constant=_folded(op, constants, span), unit=unit)
     if not multiply and right.constant == 0:
         raise Refusal(rules.out_of_range(span))
     node = Arithmetic(op, tuple(map(node_of, args)))
-    return Quantity(node, unit=unit, integral=multiply and _integral(args))
+    return Quantity(node, unit=unit, integral=_is_whole(op, args))
 
 
-def _root(placed: Placed, span: Span) -> Quantity:
+def _root(op: NumericOp, placed: Placed, span: Span) -> Quantity:
     """The square root, taken in base units, since a factor need not have an exact root."""
     value, place = placed
     unit = root(value.unit)
@@ -116,8 +114,8 @@ def _root(placed: Placed, span: Span) -> Quantity:
         exact = _exact(value, squared)
         if exact < 0:
             raise Refusal(rules.out_of_range(span))
-        return Quantity(constant=Fraction(math.sqrt(exact)), unit=unit)
-    return Quantity(Arithmetic(NumericOp.SQRT, _nodes((placed,), squared)), unit=unit)
+        return Quantity(constant=_folded(op, [exact], span), unit=unit)
+    return Quantity(Arithmetic(op, _nodes((placed,), squared)), unit=unit)
 
 
 def _common_unit(args: Sequence[Placed], doing: str, span: Span) -> Unit:
@@ -142,9 +140,9 @@ def _bare_zero(value: Quantity) -> bool:
     return value.constant == 0 and not value.unit.symbol
 
 
-def _integral(args: Sequence[Placed]) -> bool:
-    """Whether only whole numbers come in."""
-    return all(
+def _is_whole(op: NumericOp, args: Sequence[Placed]) -> bool:
+    """Whether only whole numbers come in, and go out."""
+    return op.entry.largest is not None and all(
         value.integral if value.constant is None else value.constant.denominator == 1
         for value, _ in args
     )
@@ -174,10 +172,3 @@ def _node(value: Quantity, unit: Unit, whole: bool, place: Span) -> Numeric:
         return Literal(float(exact), unit.symbol)
     except OverflowError:
         raise Refusal(rules.out_of_range(place)) from None
-
-
-def _bounded(value: Fraction, span: Span) -> Fraction:
-    """Constants stay within what is written in a few hundred digits, so that none explodes."""
-    if max(value.numerator.bit_length(), value.denominator.bit_length()) > 4096:
-        raise Refusal(rules.out_of_range(span))
-    return value

@@ -15,6 +15,7 @@ from typing import Any
 from rvmon.diagnostics import diagnostic, span
 from rvmon.diagnostics.span import Source
 from rvmon.spec import checked
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.trace import schema
 
 
@@ -25,7 +26,7 @@ def _class_named(name: str) -> type | None:
 
 @cache
 def _classes() -> Mapping[str, type]:
-    return dict(_own_classes(checked, span, diagnostic, schema))
+    return {"NumericOp": NumericOp, **dict(_own_classes(checked, span, diagnostic, schema))}
 
 
 @cache

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from rvmon.diagnostics.span import Span
-from rvmon.spec.checked import BinaryOp, Bound, CompareOp, NumericOp, UnaryOp
+from rvmon.spec.arithmetic import NumericOp
+from rvmon.spec.checked import BinaryOp, Bound, CompareOp, UnaryOp
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from rvmon.spec.arithmetic import NumericOp
+
 ITEM_WORDS = (
     "spec",
     "time",
@@ -46,6 +48,7 @@ NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output"
 """Words that do not count as the unit of a number before them."""
 
 FORMULA_FUNCTIONS = ("rise", "fall", "changed", "held", "known", "updated")
-NUMBER_FUNCTIONS = ("age", "abs", "min", "max", "sqrt", "hypot", "prev", "delta", "rate")
+OPERATIONS = tuple(op.value for op in NumericOp if op.is_function)
+NUMBER_FUNCTIONS = ("age", *OPERATIONS, "prev", "delta", "rate")
 FUNCTIONS = frozenset((*FORMULA_FUNCTIONS, *NUMBER_FUNCTIONS))
 """Functions that are built in."""

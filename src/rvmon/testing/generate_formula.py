@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Arithmetic,
     Binary,
@@ -20,7 +21,6 @@ from rvmon.spec.checked import (
     Interval,
     Literal,
     Numeric,
-    NumericOp,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -132,7 +132,7 @@ def arithmetic(dice: Dice, shape: Shape) -> Numeric:
         return UpdateValue(pick(dice, tuple(UpdateFunction)), pick(dice, NUMBERS))
     op = pick(dice, tuple(NumericOp))
     first = _input(dice, shape)
-    if op in (NumericOp.NEG, NumericOp.ABS, NumericOp.SQRT):
+    if op.entry.most == 1:
         return Arithmetic(op, (first,))
     second = Literal(dice.randint(0, 2)) if chance(dice, 40) else _input(dice, shape)
     return Arithmetic(op, (second, first) if chance(dice, 40) else (first, second))

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from itertools import product
 from typing import assert_never
 
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
@@ -15,7 +16,6 @@ from rvmon.spec.checked import (
     FieldValue,
     Literal,
     Numeric,
-    NumericOp,
     SignalValue,
     UpdateFunction,
     UpdateValue,

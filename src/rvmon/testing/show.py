@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import assert_never
 
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Arithmetic,
     Binary,
@@ -20,7 +21,6 @@ from rvmon.spec.checked import (
     Interval,
     Literal,
     Numeric,
-    NumericOp,
     ProbeAtom,
     Requirement,
     Signal,

@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 
 from rvmon.errors import TimeOrderError, TraceError
+from rvmon.spec.arithmetic import NumericOp
 from rvmon.spec.checked import (
     Arithmetic,
     Formula,
     Literal,
     Numeric,
-    NumericOp,
     SignalValue,
     TimeModel,
     UpdateFunction,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
+from rvmon.spec.arithmetic import Operation
 from rvmon.spec.checked import (
     Arithmetic,
     Captured,
@@ -18,7 +18,6 @@ from rvmon.spec.checked import (
     FieldValue,
     Literal,
     Numeric,
-    NumericOp,
     SignalValue,
     UpdateValue,
 )
@@ -92,18 +91,6 @@ _COMPARE = {
     CompareOp.GT: np.greater,
 }
 
-_ARITHMETIC = {
-    NumericOp.ADD: np.add,
-    NumericOp.SUB: np.subtract,
-    NumericOp.MUL: np.multiply,
-    NumericOp.DIV: np.divide,
-    NumericOp.NEG: np.negative,
-    NumericOp.ABS: np.abs,
-    NumericOp.MIN: np.minimum,
-    NumericOp.MAX: np.maximum,
-    NumericOp.SQRT: np.sqrt,
-}
-
 
 def compared(leaf: Compare, columns: Columns, rows: int) -> Truth:
     """The truth of a comparison of numbers per row.
@@ -149,12 +136,7 @@ def _number(expression: Numeric, columns: Columns) -> Any:
             values = [_number(arg, columns) for arg in args]
             if any(getattr(value, "dtype", np.dtype(float)).kind != "f" for value in values):
                 raise NotByColumnsError  # integers of Python do not overflow
-            if op is NumericOp.HYPOT:
-                made = _hypot(values)
-            elif len(values) > 1:
-                made = reduce(_ARITHMETIC[op], values)
-            else:
-                made = _ARITHMETIC[op](values[0])
+            made = _applied(op.entry, values)
             return np.where(np.isfinite(made), made, np.nan)
         case FieldValue() | Captured() | UpdateValue():
             raise NotByColumnsError
@@ -162,10 +144,12 @@ def _number(expression: Numeric, columns: Columns) -> Any:
             assert_never(expression)
 
 
-def _hypot(values: Sequence[Any]) -> NDArray[np.float64]:
-    """The length of vectors by `math.hypot`, from which NumPy's differs in the last digit."""
-    sides = [side.tolist() for side in np.broadcast_arrays(*map(np.atleast_1d, values))]
-    return np.array(list(map(math.hypot, *sides)))
+def _applied(entry: Operation, values: Sequence[Any]) -> Any:
+    if entry.numpy is None:
+        rows = [one.tolist() for one in np.broadcast_arrays(*map(np.atleast_1d, values))]
+        return np.array(list(map(entry.apply, *rows)))
+    ufunc = getattr(np, entry.numpy)
+    return reduce(ufunc, values) if len(values) > 1 else ufunc(values[0])
 
 
 def _as_python_compares(values: NDArray[Any]) -> NDArray[Any]:

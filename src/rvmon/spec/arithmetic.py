@@ -1,0 +1,136 @@
+"""The operations on numbers: one entry for each, which checker, engines and generators read.
+
+The oracle has readings of its own, of which this is to be found right.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum, StrEnum, auto
+
+
+class UnitRule(Enum):
+    """What becomes of the units of the arguments."""
+
+    SAME = auto()
+    PRODUCT = auto()
+    QUOTIENT = auto()
+    ROOT = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """What is to be known of an operation.
+
+    Attributes:
+        least: so many arguments at least.
+        most: so many at most; `None`: any number, folded from the left.
+        unit: of the result.
+        apply: yields the result, of exact fractions too; an error of arithmetic is unknown.
+        numpy: the name of its ufunc, if that has the digits of `apply`.
+        c: the text of a call, its arguments by number, with the functions of the C templates.
+        largest: the greatest magnitude of a result by those of whole arguments; `None`: the result
+            of whole numbers is none.
+        doc: its value in a few words.
+    """
+
+    least: int
+    most: int | None
+    unit: UnitRule
+    apply: Callable[..., float]
+    numpy: str | None
+    c: str
+    largest: Callable[[Sequence[int]], int] | None
+    doc: str
+
+    @property
+    def python(self) -> str:
+        """What generated Python calls."""
+        prefix = "math." if self.of_mathematics else ""
+        return f"{prefix}{self.apply.__name__}"
+
+    @property
+    def of_mathematics(self) -> bool:
+        """Whether the libraries of Python and C have it in their `math`."""
+        return self.apply.__module__ == "math"
+
+
+class NumericOp(StrEnum):
+    """The operations by their signs, or the names of functions.
+
+    >>> NumericOp.of("hypot").entry.apply(3, 4)
+    5.0
+    """
+
+    entry: Operation
+
+    def __new__(cls, sign: str, entry: Operation) -> NumericOp:
+        """A member: the text that it is written as, with its entry."""
+        made = str.__new__(cls, sign)
+        made._value_ = sign
+        made.entry = entry
+        return made
+
+    @classmethod
+    def of(cls, sign: str) -> NumericOp:
+        """The one that is written so."""
+        return next(one for one in cls if one.value == sign)
+
+    ADD = (
+        "+",
+        Operation(2, 2, UnitRule.SAME, operator.add, "add", "{0} + {1}", sum, "the sum"),
+    )
+    SUB = (
+        "-",
+        Operation(2, 2, UnitRule.SAME, operator.sub, "subtract", "{0} - {1}", sum, "a difference"),
+    )
+    MUL = (
+        "*",
+        Operation(
+            *(2, 2, UnitRule.PRODUCT, operator.mul, "multiply", "{0} * {1}", math.prod),
+            "the product",
+        ),
+    )
+    DIV = (
+        "/",
+        Operation(
+            *(2, 2, UnitRule.QUOTIENT, operator.truediv, "divide", "{0} / {1}", None),
+            "the quotient",
+        ),
+    )
+    NEG = (
+        "neg",
+        Operation(1, 1, UnitRule.SAME, operator.neg, "negative", "-{0}", sum, "the opposite"),
+    )
+    ABS = (
+        "abs",
+        Operation(1, 1, UnitRule.SAME, abs, "abs", "magnitude({0})", sum, "the magnitude"),
+    )
+    MIN = (
+        "min",
+        Operation(2, None, UnitRule.SAME, min, "minimum", "lesser({0}, {1})", max, "the least"),
+    )
+    MAX = (
+        "max",
+        Operation(2, None, UnitRule.SAME, max, "maximum", "greater({0}, {1})", max, "the greatest"),
+    )
+    SQRT = (
+        "sqrt",
+        Operation(1, 1, UnitRule.ROOT, math.sqrt, "sqrt", "sqrt({0})", None, "the square root"),
+    )
+    # NumPy's differs from Python's in the last digit.
+    HYPOT = (
+        "hypot",
+        Operation(
+            *(2, 2, UnitRule.SAME, math.hypot, None, "length({0}, {1})", None),
+            "the length of a vector of two sides",
+        ),
+    )
+
+    @property
+    def is_function(self) -> bool:
+        """Whether it is called by its name in a specification."""
+        return self.isalpha() and self is not NumericOp.NEG
