@@ -3,7 +3,6 @@ from pathlib import Path
 import pytest
 
 import rvmon
-
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.recording import FileRecording
 from rvmon.trace.health import HealthKind
@@ -215,5 +214,5 @@ def test_a_row_of_quoted_lines_is_bounded(tmp_path, monkeypatch):
     with pytest.raises(rvmon.TraceError, match=r"line 3: a row of more than 1,000 .* quotes"):
         list(spec.recording(path))
     path.write_text("t,p\n0,1\n" + '1,"' + "\n" * 200_000)
-    with pytest.raises(rvmon.TraceError, match="begins on line 3|begins here: close its quotes"):
+    with pytest.raises(rvmon.TraceError, match=r"begins on line 3|begins here: close its quotes"):
         list(spec.recording(path))
