@@ -18,6 +18,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.explain.late import Known
     from rvmon.readers.changes import Changes
+    from rvmon.spec.checked import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -91,7 +92,7 @@ def second_look(
 
 def _missed(
     spec: Spec, report: Report
-) -> dict[str, tuple[frozenset[str] | None, Sequence[Attempt]]]:
+) -> Mapping[str, tuple[frozenset[str] | None, Sequence[Attempt]]]:
     """By requirement, of the first failures, those that awaited something, and what that reads."""
     failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
     if not failed:
@@ -103,13 +104,13 @@ def _missed(
     found = {}
     for name in failed:
         requirement = spec.requirements[name]
-        attempts = []
-        formulas = {}
+        attempts: list[Attempt] = []
+        formulas: set[Formula] = set()
         for attempt in islice(report.of(name, Verdict.FAIL), most):
             formula = awaited(requirement, attempt)
             if formula is not None:
                 attempts.append(attempt)
-                formulas[formula] = None
+                formulas.add(formula)
         if attempts:
             found[name] = values_read(spec.checked, requirement, formulas), attempts
     return found
@@ -131,7 +132,7 @@ def _late(
     read: Callable[[frozenset[str] | None], Sequence[Sample]],
     end: int,
     sources: frozenset[str] | None,
-) -> dict[str, Mapping[int, int]]:
+) -> Mapping[str, Mapping[int, int]]:
     """What came after its deadline; requirements that read the same are looked up together."""
     if not missed:
         return {}
