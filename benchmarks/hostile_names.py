@@ -35,7 +35,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.explain.graph_text import quoted
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.report.junit import junit_xml
-from rvmon.report.markup import e, page
+from rvmon.report.markup import data, e, page, to_html
 from rvmon.report.run_text import print_reports
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.report.table_csv import tables_csv
@@ -125,7 +125,16 @@ class Documents:
 
     def html(self) -> bool:
         """Pages: the tags, and the names of their attributes, are those of harmless names."""
-        return _outline(self.html_page()) == _outline(Documents(_harmless(self.names)).html_page())
+        text, harmless = self.html_page(), Documents(_harmless(self.names)).html_page()
+        return _calm(text) and _outline(text) == _outline(harmless)
+
+    def script_data(self) -> bool:
+        """Data for the script of a page: it reads back as what the page shows."""
+        text = to_html(data("run", {"panels": {name: [name] for name in self.names}}))
+        read = json.loads(text[text.index(">") + 1 : text.rindex("<")])
+        return _calm(text) and read == {
+            "panels": {shown(name): [shown(name)] for name in self.names}
+        }
 
     def html_page(self) -> str:
         """A page with the table, texts and attributes."""
@@ -168,6 +177,7 @@ WRITERS: tuple[Callable[[Documents], bool], ...] = (
     Documents.csv,
     Documents.latex,
     Documents.html,
+    Documents.script_data,
     Documents.strings,
     Documents.uppaal,
     Documents.messages,

@@ -14,6 +14,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from rvmon.errors import WorkerLostError
+
 if TYPE_CHECKING:
     import subprocess
     from concurrent.futures import ProcessPoolExecutor
@@ -94,9 +96,13 @@ def workers(count: int, method: str | None = None) -> Iterator[ProcessPoolExecut
     Args:
         count: processes at most.
         method: how they are begun, as `multiprocessing` names it; default: as the system does.
+
+    Raises:
+        WorkerLostError: one was ended from outside, and its work is lost.
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
 
     context = multiprocessing.get_context(method)
     watched, held = context.Pipe(duplex=False)
@@ -109,6 +115,11 @@ def workers(count: int, method: str | None = None) -> Iterator[ProcessPoolExecut
     )
     try:
         yield pool
+    except BrokenProcessPool:
+        raise WorkerLostError(
+            "a process that shared the work was ended from outside, as systems do when memory runs "
+            "out: use fewer processes (jobs)"
+        ) from None
     except Exception:
         raise
     except BaseException:  # interrupted, or nobody wants the rest

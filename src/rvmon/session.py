@@ -308,6 +308,7 @@ class Spec:
 
         Raises:
             TraceError: a trace cannot be read; the reports before it have been given out.
+            WorkerLostError: a process was ended from outside; the same.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")

@@ -1,10 +1,15 @@
 """The cache folder: whose it is, what is kept in it, and for how long."""
 
+import errno
 import os
+import shutil
 import stat
+import subprocess
+import sys
 
 import pytest
 
+import rvmon
 from rvmon.cache import cache_folder, is_whole, keep, keep_binary, read_kept
 
 
@@ -119,3 +124,66 @@ def test_a_link_of_someone_else_is_not_followed(folder, monkeypatch):
     else:
         os.lchown(folder, foreign, -1)
     assert cache_folder() is None
+
+
+SPEC = "spec s\nsignal p : bool\nevent e\nrequirement R\n  upon e then within 2 s p\n"
+TRACE = [(0.0, {"p": False, "e": True}), (1.0, {"p": True})]
+COMPILE = """
+import sys, rvmon
+
+print("ready", flush=True)
+sys.stdin.readline()
+trace = [(0.0, {"p": False, "e": True}), (1.0, {"p": True})]
+print(rvmon.load(sys.argv[1]).evaluate(trace, engine=sys.argv[2]).to_json())
+"""
+
+
+def full(*_):
+    """What the system says when the disk is full."""
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def opened(path, flags, *more, real=os.open, **where):
+    """The same for new files only."""
+    return full() if flags & os.O_CREAT else real(path, flags, *more, **where)
+
+
+@pytest.mark.parametrize(("call", "fails"), [("open", opened), ("fsync", full), ("replace", full)])
+def test_a_full_disk_costs_only_what_would_be_kept(folder, tmp_path, monkeypatch, call, fails):
+    """A spec judges as ever, at whichever step the disk is full; nothing is left behind."""
+    path = tmp_path / "a.rv"
+    path.write_text(SPEC)
+    with monkeypatch.context() as patch:
+        patch.setattr(os, call, fails)
+        spec = rvmon.load(path)
+        assert spec.evaluate(TRACE).verdicts == {"R": "P"}
+        if shutil.which("cc") is not None:
+            with pytest.raises(rvmon.RvmonError, match="No space left"):
+                spec.evaluate(TRACE, engine="c")
+    assert [*folder.iterdir()] == []
+    rvmon.load(path)
+    assert any(one.name.startswith("spec-") for one in folder.iterdir())
+
+
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_two_processes_that_compile_the_same_at_once_keep_it_whole(folder, tmp_path, engine):
+    """Both judge, nothing unfinished is left, and what is kept is read back."""
+    if engine == "c" and shutil.which("cc") is None:
+        pytest.skip("no C compiler")
+    path = tmp_path / "a.rv"
+    path.write_text(SPEC)
+    words = [sys.executable, "-c", COMPILE, str(path), engine]
+    pipe = subprocess.PIPE
+    begun = [subprocess.Popen(words, stdin=pipe, stdout=pipe, text=True) for _ in range(2)]  # noqa: S603
+    for one in begun:
+        assert one.stdout.readline() == "ready\n"
+    for one in begun:
+        one.stdin.write("go\n")
+        one.stdin.flush()
+    told = [one.communicate()[0] for one in begun]
+    assert [one.returncode for one in begun] == [0, 0]
+    assert told[0] == told[1]
+    assert '"P"' in told[0]
+    assert not [one for one in folder.iterdir() if one.name.endswith(".part")]
+    [kept] = [one for one in folder.iterdir() if one.name.startswith("spec-")]
+    assert read_kept(kept) is not None

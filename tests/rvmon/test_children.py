@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+import rvmon
 from rvmon.children import run
+from rvmon.errors import WorkerLostError
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs the signals of POSIX")
 
@@ -81,3 +83,22 @@ def test_a_command_that_takes_too_long_is_ended(tmp_path):
         run(["sh", "-c", f"sleep 600 & echo $! > {told}; wait"], timeout=1)
     while not has_ended(int(told.read_text())):
         time.sleep(0.02)
+
+
+class Deadly:
+    """What kills the process that receives it."""
+
+    def __reduce__(self):
+        return die, ()
+
+
+def die():
+    """End as the system ends a process when memory runs out."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_worker_that_is_killed_is_told():
+    """What was judged before has been given out; the error says the cause and a mend."""
+    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n")
+    with pytest.raises(WorkerLostError, match=r"memory runs out: use fewer processes \(jobs\)"):
+        list(spec.evaluate_many([[(0, {"p": True})], Deadly(), Deadly()], jobs=2))

@@ -14,7 +14,7 @@ from rvmon.children import workers
 from rvmon.cli.progress import shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.cli.second_look import can_be_read_again, second_look
-from rvmon.errors import TraceError
+from rvmon.errors import TraceError, WorkerLostError
 from rvmon.loading import load
 from rvmon.readers.reading import Telling
 from rvmon.readers.recording import FileRecording
@@ -86,11 +86,19 @@ def judge_all(
         constants: overridden in it.
         traces: paths.
         options: how to judge.
-        jobs: processes; 1 judges here.
+        jobs: processes; 1 judges here. If one of several is lost, so are the verdicts on what
+            comes behind the last that was judged in order, and each of these says so.
     """
     if jobs > 1 and len(traces) > 1:
-        with workers(min(jobs, len(traces))) as pool:
-            yield from pool.map(partial(_load_and_judge, path, constants, options), traces)
+        done = 0
+        try:
+            with workers(min(jobs, len(traces))) as pool:
+                for one in pool.map(partial(_load_and_judge, path, constants, options), traces):
+                    done += 1
+                    yield one
+        except WorkerLostError as error:
+            for trace in traces[done:]:
+                yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
     else:
         for trace in traces:
             yield judge(spec, trace, options)

@@ -13,13 +13,20 @@ from typing import TYPE_CHECKING
 from rvmon.readers.blocks import NotPlainError
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
+from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
+    from rvmon.explain.late import Known
+    from rvmon.readers.changes import Changes
+    from rvmon.spec.checked import Formula
+    from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
-    from rvmon.verdict.verdict import Verdict
 
 MOST_LATE = 1000
 """Failures of a requirement of which it is looked up whether what they awaited came late."""
+
+MOST_LATE_IN_ALL = 10_000
+"""The same of all requirements, of which each gets its share, and at least one."""
 
 
 def in_order(recording: Iterable[Sample]) -> list[Sample]:
@@ -53,7 +60,6 @@ def second_look(
         names: the signals and events that have a source; `None`: all.
         goals: whether the cover goals are asked for.
     """
-    silent = [name for name in report.verdicts if report.is_silent(name)]
     end = report.end
     if end is None or not can_be_read_again(trace):
         return report
@@ -68,58 +74,115 @@ def second_look(
     if goals and spec.checked.covers:
         report = replace(report, goals=_goals(spec, trace, end, names, samples))
 
+    late = _missed(spec, report)
+    silent = _silent(spec, report)
+    asked = [names for names, _ in late.values()] + list(silent.values())
+    looked_at = frozenset[str]().union(*(names for names in asked if names is not None))
+    changes = _changes(spec, trace, looked_at, end) if asked else None
+
     def read(names: frozenset[str] | None) -> Sequence[Sample]:
-        few = None if names is None else _changes(spec, trace, names, end)
-        return samples() if few is None else few
+        return samples() if names is None or changes is None else changes.samples(names)
 
-    late = {
-        name: _late(spec, report, name, names, read, end)
-        for name, verdict in report.verdicts.items()
-        if verdict == "F"
-    }
-    report = replace(report, late={name: found for name, found in late.items() if found})
-    if not silent:
-        return report
-    from rvmon.explain.miss import nearest_miss, read_as_values
+    return replace(
+        report,
+        late=_late(spec, late, read, end, names),
+        misses=_misses(spec, silent, read, end, names),
+    )
 
+
+def _missed(
+    spec: Spec, report: Report
+) -> Mapping[str, tuple[frozenset[str] | None, Sequence[Attempt]]]:
+    """By requirement, of the first failures, those that awaited something, and what that reads."""
+    failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
+    if not failed:
+        return {}
+    from rvmon.explain.late import awaited
+    from rvmon.explain.states import values_read
+
+    most = max(1, min(MOST_LATE, MOST_LATE_IN_ALL // len(failed)))
     found = {}
-    for name in silent:
+    for name in failed:
         requirement = spec.requirements[name]
-        few = read(read_as_values(spec.checked, requirement))
-        found[name] = nearest_miss(spec.checked, requirement, few, end, names)
-    return replace(report, misses={name: miss for name, miss in found.items() if miss})
+        attempts: list[Attempt] = []
+        formulas: set[Formula] = set()
+        for attempt in islice(report.of(name, Verdict.FAIL), most):
+            formula = awaited(requirement, attempt)
+            if formula is not None:
+                attempts.append(attempt)
+                formulas.add(formula)
+        if attempts:
+            found[name] = values_read(spec.checked, requirement, formulas), attempts
+    return found
+
+
+def _silent(spec: Spec, report: Report) -> dict[str, frozenset[str] | None]:
+    """The requirements without attempts, and what their triggers read."""
+    names = [name for name in report.verdicts if report.is_silent(name)]
+    if not names:
+        return {}
+    from rvmon.explain.miss import read_as_values
+
+    return {name: read_as_values(spec.checked, spec.requirements[name]) for name in names}
 
 
 def _late(
     spec: Spec,
-    report: Report,
-    name: str,
-    sources: frozenset[str] | None,
+    missed: Mapping[str, tuple[frozenset[str] | None, Sequence[Attempt]]],
     read: Callable[[frozenset[str] | None], Sequence[Sample]],
     end: int,
-) -> Mapping[int, int]:
-    """What came after its deadline, of the first failures of a requirement."""
-    from rvmon.explain.late import awaited, late_arrivals
-    from rvmon.explain.states import values_read
-    from rvmon.verdict.verdict import Verdict
-
-    requirement = spec.requirements[name]
-    missed = {}
-    for attempt in islice(report.of(name, Verdict.FAIL), MOST_LATE):
-        formula = awaited(requirement, attempt)
-        if formula is not None:
-            missed[attempt.number] = attempt, formula
+    sources: frozenset[str] | None,
+) -> Mapping[str, Mapping[int, int]]:
+    """What came after its deadline; requirements that read the same are looked up together."""
     if not missed:
         return {}
-    samples = read(values_read(spec.checked, requirement, [one for _, one in missed.values()]))
-    attempts = [attempt for attempt, _ in missed.values()]
-    return late_arrivals(spec.checked, requirement, attempts, samples, end, sources)
+    from rvmon.explain.late import late_arrivals
+
+    alike: dict[frozenset[str] | None, list[str]] = {}
+    for name, (names, _) in missed.items():
+        alike.setdefault(names, []).append(name)
+    found = {}
+    for names, own in alike.items():
+        known: Known = {}
+        samples = read(names)
+        for name in own:
+            requirement, attempts = spec.requirements[name], missed[name][1]
+            late = late_arrivals(
+                spec.checked, requirement, attempts, samples, end, sources, known=known
+            )
+            if late:
+                found[name] = late
+    return found
 
 
-def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Sequence[Sample] | None:
-    """The samples at which one of these names changes; `None` if the file is not plain."""
+def _misses(
+    spec: Spec,
+    silent: Mapping[str, frozenset[str] | None],
+    read: Callable[[frozenset[str] | None], Sequence[Sample]],
+    end: int,
+    sources: frozenset[str] | None,
+) -> dict[str, str]:
+    """What the triggers lacked that never came true; the same trigger is looked at once."""
+    if not silent:
+        return {}
+    from rvmon.explain.miss import nearest_miss
+    from rvmon.spec.printer import format_formula
+
+    known: dict[str, str] = {}
+    found = {}
+    for name, names in silent.items():
+        requirement = spec.requirements[name]
+        trigger = format_formula(requirement.trigger)
+        if trigger not in known or requirement.for_each is not None:
+            known[trigger] = nearest_miss(spec.checked, requirement, read(names), end, sources)
+        found[name] = known[trigger]
+    return {name: miss for name, miss in found.items() if miss}
+
+
+def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Changes | None:
+    """What changes of these names; `None` if the file is not plain."""
     from rvmon.readers.block_readers import reader_of
-    from rvmon.readers.changes import changes
+    from rvmon.readers.changes import Changes
 
     schema = spec.schema
     reader = reader_of(trace, schema, Counter())
@@ -127,7 +190,7 @@ def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Sequenc
         return None
     try:
         blocks = reader(trace, schema, frozenset((*schema.signals, *schema.events)))
-        return changes(blocks, names, schema.events.keys(), end)
+        return Changes(blocks, names, schema.events.keys(), end)
     except NotPlainError:
         return None
 

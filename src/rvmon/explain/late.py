@@ -12,10 +12,22 @@ from rvmon.explain.states import state_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import has_future
 from rvmon.monitor.instances import Instance
-from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Formula, Requirement, Unary, UnaryOp
+from rvmon.spec.checked import (
+    Binary,
+    BinaryOp,
+    CheckedSpec,
+    ForEach,
+    Formula,
+    Requirement,
+    Unary,
+    UnaryOp,
+)
 from rvmon.spec.printer import format_formula
 from rvmon.trace.sample import Sample, Scalar
 from rvmon.verdict.attempt import Attempt
+
+Known = dict[tuple[str, ForEach | None, tuple[tuple[str, Scalar], ...]], Spans]
+"""Where formulas were true in a recording, by their text, `for each` and captured values."""
 
 
 def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
@@ -53,6 +65,8 @@ def late_arrivals(
     samples: Sequence[Sample],
     end: int,
     names: frozenset[str] | None = None,
+    *,
+    known: Known | None = None,
 ) -> dict[int, int]:
     """By number of the attempt, when what it had awaited came true after the deadline, in ticks.
 
@@ -64,19 +78,20 @@ def late_arrivals(
         samples: the recording, in order.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
+        known: what was found for other requirements in the same recording; it grows.
 
     Cost: one pass over the samples for each choice of captured values.
     """
     if not samples:
         return {}
     begin, positions = samples[0].t, positions_of(spec, samples, end)
-    seen: dict[tuple[Formula, tuple[tuple[str, Scalar], ...]], Spans] = {}
+    seen: Known = {} if known is None else known
     found = {}
     for attempt in attempts:
         formula = awaited(requirement, attempt)
         if formula is None or attempt.blame is None:
             continue
-        key = (formula, tuple(attempt.captured.items()))
+        key = (format_formula(formula), requirement.for_each, tuple(attempt.captured.items()))
         if key not in seen:
             state = state_of(formula, Factory(), spec)
             instance = _instance(requirement, attempt.captured, begin)

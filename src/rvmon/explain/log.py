@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
@@ -68,11 +68,12 @@ def state_truths(
         names: the signals and events that have a source; `None`: all.
     """
     gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
-    flow = _Log(graph_of(roots), Inputs(spec, names), gap, captured)
-    lane = Lane(flow)
+    graph = graph_of(roots)
+    flow = _Log(graph, Inputs(_read_by(graph, spec), names), gap, captured)
+    lane, ignoring = Lane(flow), spec.ignoring
     for sample in samples:
         lane.through(sample.t - 1)
-        lane.sample(sample.t, seen_by(instance, updates_in(sample.values, spec.ignoring)))
+        lane.sample(sample.t, seen_by(instance, updates_in(sample.values, ignoring)))
     lane.through(end)
     found = {}
     for root in roots:
@@ -83,3 +84,12 @@ def state_truths(
         may = union([*((t, stop) for t, stop, v in spans if v != FALSE), (end + 1, FOREVER)])
         found[root] = Truth(sure, may)
     return found
+
+
+def _read_by(graph: Graph, spec: CheckedSpec) -> CheckedSpec:
+    """The specification with no other signals and events than formulas read: there may be many."""
+    return replace(
+        spec,
+        signals={name: spec.signals[name] for name in graph.by_name if name in spec.signals},
+        events={name: spec.events[name] for name in graph.by_name if name in spec.events},
+    )

@@ -64,7 +64,7 @@ def evaluate_plain(
     chosen = [name for name in compiled.requirements if only is None or name in only]
     by_arrays = None
     if engine in _BY_COLUMNS and not short:
-        by_arrays = columns_judge(compiled, chosen, frozenset(names))
+        by_arrays = columns_judge(compiled, frozenset(chosen), frozenset(names))
     if by_arrays is not None:
         rest = [name for name in chosen if name not in by_arrays.ids]
         by_rows = _row_judge(compiled, names, rest, engine) if rest else None

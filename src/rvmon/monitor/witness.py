@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
+from rvmon.automaton.machine import Machine
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.runtime.bulk import unpacked
 from rvmon.dataflow.flow import Flow
@@ -32,7 +34,6 @@ class Witness:
     Attributes:
         leaves: the nodes of the plan that it reads of the input.
         places: the nodes of the plan that its letters are made of.
-        reasons: of its decisions.
     """
 
     def __init__(self, compiled: CompiledRequirement, plan: Plan, clerk: Clerk) -> None:
@@ -44,9 +45,16 @@ class Witness:
         read = [(index[leaf], text) for leaf, text in compiled.leaves if leaf in index]
         self.leaves = tuple(leaf for leaf, _ in read)
         self._texts = tuple(text for _, text in read)
-        self._machine = compiled.machine("auto")
-        self.reasons = Reasons(compiled, self._machine)
         self.details = self._details
+
+    @cached_property
+    def _machine(self) -> Machine:
+        return self.compiled.machine("auto")
+
+    @cached_property
+    def reasons(self) -> Reasons:
+        """Of its decisions; they are rarely asked for where attempts are in doubt."""
+        return Reasons(self.compiled, self._machine)
 
     def judge(
         self,

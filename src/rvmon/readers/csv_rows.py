@@ -9,6 +9,7 @@ from typing import Any
 
 from rvmon.errors import TraceError
 from rvmon.readers.naming import aliases_of, stamps_among
+from rvmon.readers.pieces import LONGEST_LINE
 from rvmon.readers.values import as_declared, scalar_of_text, shorten
 from rvmon.trace.gaps import Gaps
 from rvmon.trace.sample import Scalar, Value
@@ -125,16 +126,35 @@ def split_lines(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
     """Split CSV text into rows with the number of the line that each ends on.
 
     Raises:
-        TraceError: the text is no CSV (a NUL character, a cell without end).
+        TraceError: the text is no CSV (a NUL character, a cell without end), or a row that quotes
+            ends of lines is longer than a line may be.
     """
-    reader = csv.reader(lines, strict=True)
+    began, taken = 1, 0
+
+    def of_row() -> Iterator[str]:
+        nonlocal taken
+        for line in lines:
+            taken += len(line)
+            if taken > LONGEST_LINE:
+                raise TraceError(
+                    f"line {began}: a row of more than {LONGEST_LINE:,} characters begins here: "
+                    "close its quotes"
+                )
+            yield line
+
+    reader = csv.reader(of_row(), strict=True)
     while True:
+        began, taken = reader.line_num + 1, 0
         try:
             row = next(reader)
         except StopIteration:
             return
         except csv.Error as error:
-            raise TraceError(f"line {reader.line_num}: not a CSV row ({error})") from None
+            more = f"; the row begins on line {began}: close its quotes"
+            raise TraceError(
+                f"line {reader.line_num}: not a CSV row ({error})"
+                f"{more if began < reader.line_num else ''}"
+            ) from None
         if row and not (len(row) == 1 and row[0].isspace()):
             yield reader.line_num, [cell.strip() for cell in row]
 

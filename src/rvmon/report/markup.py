@@ -33,7 +33,7 @@ def e(tag: str, attributes: Mapping[str, object] | None = None, *children: Child
     element = ET.Element(tag)
     for name, value in (attributes or {}).items():
         if value is not None and value is not False:
-            element.set(name, "" if value is True else str(value))
+            element.set(name, "" if value is True else shown(str(value)))
     extend(element, children)
     return element
 
@@ -83,8 +83,11 @@ def page(
 
 
 def data(identifier: str, value: object) -> ET.Element:
-    """Data for a script, as JSON that cannot end the element it stands in."""
-    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    """Data for a script, as JSON that cannot end the element it stands in.
+
+    Texts and keys in it are those that the page shows and has in its attributes.
+    """
+    text = json.dumps(_as_shown(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     for character, escape in _UNSAFE_IN_SCRIPT.items():
         text = text.replace(character, escape)
     return e("script", {"type": "application/json", "id": identifier}, text)
@@ -105,3 +108,15 @@ def with_code(sentence: str) -> list[Child]:
     if len(parts) % 2 == 0:  # an odd number of quotes quotes nothing
         return [sentence]
     return [e("code", None, part) if index % 2 else part for index, part in enumerate(parts)]
+
+
+def _as_shown(value: object) -> object:
+    match value:
+        case str():
+            return shown(value)
+        case dict():
+            return {shown(key): _as_shown(part) for key, part in value.items()}
+        case list() | tuple():
+            return [_as_shown(part) for part in value]
+        case _:
+            return value

@@ -2,12 +2,16 @@
 
 import io
 import json
+import multiprocessing
+import os
 import shutil
+import signal
 import xml.etree.ElementTree as ET
 
 import pytest
 
-from rvmon.cli import main
+from rvmon.cli import judging, main
+from rvmon.cli.judging import judge
 from rvmon.monitor.compiled import ENGINES
 from rvmon.verdict.report import Report
 
@@ -114,6 +118,29 @@ def test_many_recordings_are_counted(files, capsys):
     assert "4 recordings" in alone
     assert main(["run", "door.rv", *traces, "--jobs", "2"]) == 1
     assert capsys.readouterr().out == alone
+
+
+@pytest.mark.skipif(
+    multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
+)
+def test_a_process_that_is_killed_costs_only_what_was_not_judged(files, capsys, monkeypatch):
+    """As where memory runs out: what was judged is shown, the rest named, with a mend."""
+
+    def killed(spec, trace, options):
+        if trace == "I.csv":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return judge(spec, trace, options)
+
+    monkeypatch.setattr(judging, "judge", killed)
+    traces = ["P.csv", "I.csv", "NT.csv"]
+    code = main(["run", "door.rv", *traces, "--jobs", "2", "--format", "json", "--junit", "j.xml"])
+    told = capsys.readouterr()
+    assert code == 2
+    assert "I.csv: not judged: a process that shared the work was ended from outside" in told.err
+    assert "use fewer processes (jobs)" in told.err
+    assert "Traceback" not in told.err
+    assert len(json.loads(told.out)) == len(traces)
+    assert (files / "j.xml").exists()
 
 
 def test_junit_counts_failures(files):

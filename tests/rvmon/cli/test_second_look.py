@@ -11,7 +11,7 @@ from rvmon.cli.second_look import in_order
 from rvmon.explain.miss import nearest_miss, read_as_values
 from rvmon.monitor import batch_file
 from rvmon.readers.blocks import Block
-from rvmon.readers.changes import changes
+from rvmon.readers.changes import Changes
 
 HEAD = """
 spec cell
@@ -125,6 +125,55 @@ def test_rows_that_repeat_are_left_out():
         Block(np.array([3, 4, 5]), {"x": np.array([1.0, nan, nan]), "go": np.array([False] * 3)}),
         Block(np.array([6, 9]), {"x": np.array([2.0, 3.0]), "go": np.array([False, False])}),
     ]
-    found = changes(blocks, {"x", "go"}, {"go"}, 8)
+    changes = Changes(blocks, {"x", "go"}, {"go"}, 8)
+    found = changes.samples({"x", "go"})
     assert [sample.t for sample in found] == [1, 2, 4, 5, 6]
-    assert found[-1].values == {"x": 2.0, "go": False}
+    assert found[0].values == {"x": 1.0}
+    assert found[-1].values == {"x": 2.0}
+    assert [sample.t for sample in changes.samples({"go"})] == [1, 2]
+
+
+def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
+    """However many requirements failed or were silent, a file is read once again; each is told."""
+    from rvmon.readers import block_readers
+
+    pairs = range(6)
+    text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
+    for n in range(30):
+        text += f"requirement F{n}\n  upon e{n % 5} then within {n + 1} s p{n % 5}\n"
+        text += f"requirement S{n}\n  upon e5 and p{n % 5} then p5\n"
+    rows = ["t," + ",".join(f"e{n},p{n}" for n in pairs)]
+    rows += [
+        f"{t}," + ",".join(f"{int(t == n < 5)},{int(t == 50 + n)}" for n in pairs)
+        for t in range(90)
+    ]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(rows) + "\n")
+    opened = []
+    reader_of = block_readers.reader_of
+    monkeypatch.setattr(
+        block_readers, "reader_of", lambda *given: opened.append(given) or reader_of(*given)
+    )
+    report = judge(rvmon.loads(text), str(path), Options()).report
+    assert len(opened) == 1
+    assert {name: dict(found) for name, found in report.late.items()} == {
+        f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
+    }
+    assert report.misses == {
+        f"S{n}": f"`e5` was never true while `p{n % 5}` was (first at {50 + n % 5} s)"
+        for n in range(30)
+    }
+
+
+def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, monkeypatch):
+    """What came late is told of at least one failure of each requirement."""
+    monkeypatch.setattr("rvmon.cli.second_look.MOST_LATE_IN_ALL", 4)
+    text = "spec s\nevent e\nsignal p : bool\n" + "".join(
+        f"requirement R{n}\n  upon e then within {n + 1} ms p\n" for n in range(9)
+    )
+    rows = "".join(f"{t},{int(t % 4 == 1)},{int(t % 4 == 3)}\n" for t in range(40))
+    (tmp_path / "a.csv").write_text("t,e,p\n" + rows)
+    report = judge(rvmon.loads(text), str(tmp_path / "a.csv"), Options()).report
+    assert {name: list(found) for name, found in report.late.items()} == {
+        f"R{n}": [1] for n in range(9)
+    }

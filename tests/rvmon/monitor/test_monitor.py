@@ -227,3 +227,22 @@ def test_the_compile_report_says_what_became_of_a_requirement():
     ]
     assert report.engine == "network"
     assert "more than" in report.why
+
+
+@pytest.mark.parametrize(("count", "generated"), [(2000, True), (2001, False)])
+def test_code_is_generated_for_up_to_2000_requirements(count, generated):
+    """More are judged as well, without generated code; the engine `python` then says so."""
+    text = "spec s\nsignal p : bool\nevent e\n" + "".join(
+        f"requirement R{n}\n  upon e then within {n + 1} ms p\n" for n in range(count)
+    )
+    spec = rvmon.loads(text)
+    monitor = spec.monitor()
+    assert (type(monitor) is GeneratedMonitor) == generated
+    if not generated:
+        with pytest.raises(RvmonError, match="2001 requirements are more than the 2000"):
+            spec.monitor(engine="python")
+        assert type(spec.monitor(only=["R7"], engine="python")) is GeneratedMonitor
+    monitor.step(0, {"p": False, "e": True})
+    monitor.step(1, {"p": True})
+    report = monitor.finish(9)
+    assert [report.verdicts[f"R{n}"] for n in (0, 998, 999, count - 1)] == ["F", "F", "P", "P"]

@@ -2,6 +2,7 @@ from pathlib import Path
 
 import pytest
 
+import rvmon
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.recording import FileRecording
 from rvmon.trace.health import HealthKind
@@ -202,3 +203,16 @@ def test_what_is_called_infinite_is(tmp_path, cell, word):
     for name in ("a.csv", "a.jsonl"):
         (sample,) = FileRecording(tmp_path / name, Schema({"x": Kind.REAL}, {}))
         assert sample.values == {"x": float(cell)}
+
+
+def test_a_row_of_quoted_lines_is_bounded(tmp_path, monkeypatch):
+    """A row over many lines is refused like a line that is too long, where it begins."""
+    monkeypatch.setattr("rvmon.readers.csv_rows.LONGEST_LINE", 1000)
+    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n")
+    path = tmp_path / "a.csv"
+    path.write_text("t,p\n0,1\n" + '1,"\n"' + ',"\n"' * 300 + "\n2,1\n")
+    with pytest.raises(rvmon.TraceError, match=r"line 3: a row of more than 1,000 .* quotes"):
+        list(spec.recording(path))
+    path.write_text("t,p\n0,1\n" + '1,"' + "\n" * 200_000)
+    with pytest.raises(rvmon.TraceError, match=r"begins on line 3|begins here: close its quotes"):
+        list(spec.recording(path))

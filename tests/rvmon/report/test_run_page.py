@@ -11,6 +11,7 @@ from rvmon.report.run_html import run_page
 from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.report.run_pages import write_run_pages
 from rvmon.report.scene import Outline, Scene
+from rvmon.testing.hostile import FORGERIES, STEERING
 from rvmon.trace.time import TICKS_PER_SECOND
 
 SPEC = """
@@ -92,6 +93,35 @@ def test_it_opens_on_the_first_failure_with_one_sentence():
     title = "".join(Reader(page).texts["title"])
     assert title.startswith("D1 failed, monday, 7 s: ")
     assert "closed" in title
+
+
+def test_hostile_names_steer_nothing_and_scripts_find_them():
+    """Neither text, attributes nor data hold what steers; the data of each panel has its id."""
+    for number, hostile in enumerate(FORGERIES):
+        spec, run = door(name=hostile)
+        names = {name: f"{hostile}{number}" if name == "D1" else name for name in spec.requirements}
+        report = replace(
+            run.report,
+            verdicts={names[n]: v for n, v in run.report.verdicts.items()},
+            counts={names[n]: v for n, v in run.report.counts.items()},
+            attempts=tuple(
+                replace(a, requirement=names[a.requirement]) for a in tuple(run.report.attempts)
+            ),
+        )
+        checked = replace(
+            spec.checked,
+            requirements={
+                names[n]: replace(r, id=names[n], text=hostile)
+                for n, r in spec.checked.requirements.items()
+            },
+        )
+        page = run_page(RunPage(replace(run, report=report), checked, hostile, back=hostile))
+        assert not STEERING.search(page)
+        data = json.loads(re.search(r'id="run">(.*?)</script>', page).group(1))
+        sections = [a["id"] for tag, a in Reader(page).tags if tag == "section"]
+        assert set(sections) <= data["panels"].keys()
+        tracks = {a["data-track"] for tag, a in Reader(page).tags if "data-track" in a}
+        assert tracks <= {name for one in data["panels"].values() for name in one["tracks"]}
 
 
 def test_without_failure_it_opens_on_what_is_open():

@@ -12,7 +12,7 @@ from rvmon.automaton.machine import Token
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.columns.tables import Table
 from rvmon.monitor.columns.track import UNSEEN
-from rvmon.monitor.reasons import Finding
+from rvmon.monitor.reasons import Finding, Reasons
 from rvmon.monitor.witness import Witness
 from rvmon.verdict.attempt import Attempt, decided_attempt
 from rvmon.verdict.verdict import Verdict
@@ -60,7 +60,6 @@ class DecidedAttempts(Sequence[Attempt]):
 
     Attributes:
         decisions: the same.
-        reasons: of the requirement's decisions.
         id: of the requirement.
     """
 
@@ -69,8 +68,12 @@ class DecidedAttempts(Sequence[Attempt]):
         self._witness = witness
         self._clocked = clocked
         self._failed = np.cumsum(~decisions.passed) - 1
-        self.reasons = witness.reasons
         self.id = witness.compiled.requirement.id
+
+    @property
+    def reasons(self) -> Reasons:
+        """Of the requirement's decisions."""
+        return self._witness.reasons
 
     def __len__(self) -> int:
         return len(self.decisions.number)

@@ -63,7 +63,7 @@ class ColumnJudge:
     def __init__(
         self,
         compiled: CompiledSpec,
-        chosen: Sequence[str],
+        chosen: frozenset[str],
         ids: frozenset[str],
         names: frozenset[str],
     ) -> None:
@@ -178,7 +178,7 @@ class ColumnJudge:
 
 
 def columns_judge(
-    compiled: CompiledSpec, only: Sequence[str], names: frozenset[str]
+    compiled: CompiledSpec, only: frozenset[str], names: frozenset[str]
 ) -> ColumnJudge | None:
     """What judges by columns those requirements that can be; `None` if none can.
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -30,6 +31,7 @@ class JudgedAttempts(LazyAttempts):
     def __init__(
         self, parts: Sequence[DecidedAttempts], kept: Sequence[Attempt], order: NDArray[np.int64]
     ) -> None:
+        self._decided = parts
         self._parts: list[Sequence[Attempt]] = [*parts, kept]
         self._first = np.cumsum([0, *map(len, parts)])
         self._order = order
@@ -51,8 +53,33 @@ class JudgedAttempts(LazyAttempts):
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """See `LazyAttempts`."""
-        wanted = np.concatenate([_chosen(part, requirement, verdict) for part in self._parts])
-        return map(self._attempt, self._order[wanted[self._order]].tolist())
+        numbers = self._others.get(requirement, {}).get(verdict, [])
+        found = np.array(numbers, np.int64) + int(self._first[-2])
+        place = self._places.get(requirement)
+        if place is not None:
+            chosen = np.flatnonzero(_chosen(self._decided[place], verdict))
+            found = np.append(found, chosen + int(self._first[place]))
+        return map(self._attempt, found[np.argsort(self._rank[found])].tolist())
+
+    @cached_property
+    def _places(self) -> Mapping[str, int]:
+        """The part of each requirement that has one."""
+        return {part.id: place for place, part in enumerate(self._decided)}
+
+    @cached_property
+    def _others(self) -> Mapping[str, Mapping[Verdict, list[int]]]:
+        """The places among the other attempts, by requirement and verdict."""
+        found: dict[str, dict[Verdict, list[int]]] = {}
+        for number, one in enumerate(self._parts[-1]):
+            found.setdefault(one.requirement, {}).setdefault(one.verdict, []).append(number)
+        return found
+
+    @cached_property
+    def _rank(self) -> NDArray[np.int64]:
+        """Of each number its place in the order."""
+        rank = np.empty_like(self._order)
+        rank[self._order] = np.arange(len(rank))
+        return rank
 
     def texts(self, origin: int) -> Iterator[tuple[str, str]]:
         """See `LazyAttempts`."""
@@ -69,13 +96,9 @@ class JudgedAttempts(LazyAttempts):
         return self._parts[part][number - int(self._first[part])]
 
 
-def _chosen(part: Sequence[Attempt], requirement: str, verdict: Verdict) -> NDArray[np.bool_]:
-    """Which attempts of a part are of a requirement and have a verdict."""
-    if not isinstance(part, DecidedAttempts):
-        return np.array(
-            [one.requirement == requirement and one.verdict is verdict for one in part], bool
-        )
-    if part.id != requirement or verdict is Verdict.INCONCLUSIVE:
+def _chosen(part: DecidedAttempts, verdict: Verdict) -> NDArray[np.bool_]:
+    """Which attempts have a verdict."""
+    if verdict is Verdict.INCONCLUSIVE:
         return np.zeros(len(part), bool)
     passed = part.decisions.passed
     return passed if verdict is Verdict.PASS else ~passed

@@ -225,6 +225,8 @@ class ColumnRule:
             last: the last position.
             outages_at: gives by name what was not known at an instant.
         """
+        if not len(self._open) and not self._void:
+            return
         values = {leaf: timeline.value_here(leaf) for leaf in self._witness.leaves}
         since, until = {}, {}
         for place, track in zip(self._witness.places, self._tracks, strict=True):
