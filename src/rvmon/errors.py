@@ -9,7 +9,8 @@
     │   ├── TimeOrderError           a sample's time is not after the one before
     │   └── MissingNameError         a recording has no column for a name that is read
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
-    └── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
+    ├── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
+    └── OverlapError(RuntimeError)   a monitor was called while another call of it was under way
 """
 
 from __future__ import annotations
@@ -72,3 +73,7 @@ class UnknownNameError(RvmonError, KeyError):
 
 class SnapshotError(RvmonError, ValueError):
     """A snapshot was made by another specification or version."""
+
+
+class OverlapError(RvmonError, RuntimeError):
+    """A monitor was called while another call of it was under way; this one changed nothing."""
