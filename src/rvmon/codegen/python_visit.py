@@ -187,7 +187,12 @@ class VisitWriter:
             yield "self.position = t"
         yield "if self.news:"
         yield "    self.news = False"
-        yield "    return self.clerk.told(t)"
+        yield "    try:"
+        yield "        return self.clerk.told(t)"
+        yield "    except BaseException:"
+        yield "        if self.after == BUSY:"
+        yield "            self.after = t"
+        yield "        raise"
         yield "self.after = t"
         yield "return ()"
 

@@ -116,10 +116,9 @@ class GeneratedLanes(Lanes):
 
     def _told(self, t: int) -> Sequence[Attempt]:
         """What a sample at `t` has decided; it is over."""
-        try:
-            return self.ledger.flush()
-        finally:
-            self.unit.after = t
+        decided = self.ledger.flush()
+        self.unit.after = t
+        return decided
 
     def found(self, signal: int, t: int) -> None:
         """Hear that a signal has a value from `t` on."""
@@ -299,10 +298,8 @@ class GeneratedMonitor(Monitor):
     def _hear(self, t: int) -> Sequence[Attempt]:
         """Give out what the generated code has decided by itself, of a sample at `t`."""
         self._last = self._reached = t
-        try:
-            decided = self._flush()
-        finally:
-            self._unit.after = self._floor = t
+        decided = self._flush()
+        self._unit.after = self._floor = t
         self._tell(decided)
         return decided
 

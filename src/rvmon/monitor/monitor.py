@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 from rvmon.automaton.machine import INFINITY
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
@@ -371,6 +371,17 @@ class Monitor:
             if self._report is not None:
                 raise SnapshotError("the run is finished: keep its report, or call reset()")
             return self._put_away()
+
+    def __reduce__(self) -> NoReturn:
+        """Refused: pickles and copies would share or lack what is under way.
+
+        Raises:
+            RvmonError: always; it says what to do.
+        """
+        raise RvmonError(
+            "a monitor is neither pickled nor copied: monitor.snapshot() gives the run as bytes, "
+            "and spec.restore(data) makes a monitor of them, in this process or another"
+        )
 
     def _put_away(self) -> bytes:
         from rvmon.monitor.snapshot import snapshot

@@ -133,10 +133,9 @@ class Monitor:
 
     def told(self, t: int) -> list[Attempt]:
         """The records since the last call, after a sample at `t` that the unit took."""
-        try:
-            return self._flush()
-        finally:
-            self.unit.after = t
+        found = self._flush()
+        self.unit.after = t
+        return found
 
     def _flush(self) -> list[Attempt]:
         """The records since the last call, in order."""
