@@ -10,7 +10,8 @@
     │   └── MissingNameError         a recording has no column for a name that is read
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
     ├── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
-    └── WorkerLostError              a process that shared the work was ended from outside
+    ├── WorkerLostError              a process that shared the work was ended from outside
+    └── OverlapError(RuntimeError)   a monitor was called while another call of it was under way
 """
 
 from __future__ import annotations
@@ -77,3 +78,7 @@ class SnapshotError(RvmonError, ValueError):
 
 class WorkerLostError(RvmonError):
     """A process that shared the work was ended from outside."""
+
+
+class OverlapError(RvmonError, RuntimeError):
+    """A monitor was called while another call of it was under way; this one changed nothing."""

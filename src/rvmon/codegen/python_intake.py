@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_cones import ConeWriter
 from rvmon.codegen.python_values import ValueWriter
-from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
+from rvmon.codegen.python_visit import VisitWriter, alone, at_hand, indented
 
 _WHOLE = 64
 """Up to so many names, samples that hold all of them are taken name by name."""
@@ -67,7 +67,6 @@ class IntakeWriter:
         # Other mappings may answer what they do not hold.
         yield "    if values.__class__ is dict:"
         yield from indented(self._by_size(), 2)
-        yield from indented(self._checked())
         yield "    return self.some(t, values)"
         yield ""
         yield from self._some()
@@ -111,15 +110,15 @@ class IntakeWriter:
         yield from indented([*self.visit.done(), "return ()"], 2)
         if self.single and len(self.arriving) > 1:
             yield "elif len(values) == 1:"
-            yield f"    if {self._in_order()}:"
+            yield "    if t.__class__ is int:"
             yield "        (name,) = values"
             yield "        one = ONE.get(name)"
             yield "        if one is not None:"
             yield "            return one(self, t, values[name], values)"
 
-    def _in_order(self, before: str = "") -> str:
+    def _in_order(self, before: str) -> str:
         """Whether a time is whole and later than the one before; it may be beyond the limit."""
-        return f"t.__class__ is int and self.after < t{before and f' and {before}'}"
+        return f"t.__class__ is int and self.after < t and {before}"
 
     def _checked(self) -> Iterator[str]:
         """Have an invalid time seen to."""
@@ -139,7 +138,7 @@ class IntakeWriter:
             yield f"{branch} x{number} is not {self.values.before(name)}:"
             rest = names[number + 1 :]
             same = f"{self._same(rest)} and " if rest else ""
-            yield f"    if {same}{self._in_order()}:"
+            yield f"    if {same}t.__class__ is int:"
             yield f"        return one{number}(self, t, x{number}, values)"
         yield f"elif {quiet}:"
         yield from indented([*self.visit.done(), "return ()"])
@@ -154,6 +153,11 @@ class IntakeWriter:
             lines += self._noticed(number, name)
         yield from at_hand(lines)
         yield from lines
+        yield from alone(self._updated())
+        yield from self.visit.told()
+
+    def _updated(self) -> Iterator[str]:
+        """Take the values of a whole row that `changed`."""
         yield from self._time()
         yield from indented(self._expired())
         yield "dirty = 0"
@@ -190,24 +194,27 @@ class IntakeWriter:
     def _one(self, number: int, name: str) -> Iterator[str]:
         yield f"def one{number}(self, t, x, values):"
         yield f"    # {name!a}"
+        yield "    if not self.after < t < LIMIT:"
+        yield "        return self.clerk.other(t, values)"
         head = [f"if x is {self.values.before(name)}:", f"    if {self._quiet()}:"]
         head += indented([*self.visit.done(), "return ()"], 2)
         head += [f"elif {self.values.is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
         lines = []
         if name in self.plan.signals and self.cones.can_follow(name, self.values.instant):
             lines.append(f"elif {self.cones.apart(name, self._quiet())}:")
-            lines += indented(self.cones.followed(name, self.values.kept("x", name, given=True)))
-        general = ["if t >= LIMIT:", "    return self.clerk.other(t, values)"]
-        general += [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
+            kept = self.values.kept("x", name, given=True)
+            lines += indented([*alone(self.cones.followed(name, kept)), *self.visit.told()])
+        general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
         general += indented(self.values.new("x", name))
         general += self._after()
-        yield from indented([*at_hand(head), *head, *lines, *at_hand(general), *general])
+        general = [*at_hand(general), *general]
+        yield from indented([*at_hand(head), *head, *lines, *alone(general), *self.visit.told()])
 
     # A sample of any names.
 
     def _some(self) -> Iterator[str]:
         yield "def some(self, t, values):"
-        yield '    """Take a sample of which only the time was checked."""'
+        yield '    """Take a sample of which nothing was checked."""'
         yield "    takers = self.TAKERS"
         yield "    try:"
         yield "        found = [(*takers[name], x) for name, x in values.items()]"
@@ -216,11 +223,10 @@ class IntakeWriter:
         yield "    for classes, labels, _, x in found:"
         yield "        if x.__class__ not in classes or x != x or (labels and x not in labels):"
         yield "            return self.clerk.other(t, values)"
-        yield from indented(self._time())
-        yield "    dirty = 0"
-        yield "    for _, _, take, x in found:"
-        yield "        dirty |= take(self, t, x)"
-        yield from indented(self._after())
+        yield from indented(self._checked())
+        general = [*self._time(), "dirty = 0", "for _, _, take, x in found:"]
+        general += ["    dirty |= take(self, t, x)", *self._after()]
+        yield from indented([*alone(general), *self.visit.told()])
 
     def _take(self) -> Iterator[str]:
         yield "def take(self, t, values):"
@@ -254,7 +260,6 @@ class IntakeWriter:
         yield f"if dirty or {busy}:"
         yield "    self.dirty |= dirty"
         yield f"    self.{self._go_on}(t)"
-        yield from self.visit.told()
 
     @property
     def _go_on(self) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_source import unit_source
 from rvmon.codegen.runtime.bulk import BulkRule
-from rvmon.codegen.runtime.nodes import LIMIT, MISSING
+from rvmon.codegen.runtime.nodes import BUSY, LIMIT, MISSING
 from rvmon.codegen.runtime.past import compared, finite, number
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.solo import SoloRule
@@ -28,7 +28,13 @@ def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]
     """
     operations = ("lt", "le", "eq", "ne", "ge", "gt", "add", "sub", "mul", "truediv", "neg")
     namespace: dict[str, Any] = {name: getattr(operator, name) for name in operations}
-    namespace |= {"__name__": "rvmon.generated", "math": math, "NEVER": NEVER, "LIMIT": LIMIT}
+    namespace |= {
+        "__name__": "rvmon.generated",
+        "math": math,
+        "NEVER": NEVER,
+        "LIMIT": LIMIT,
+        "BUSY": BUSY,
+    }
     namespace |= {"MISSING": MISSING, "Unit": Unit, "heappush": heapq.heappush}
     namespace |= {"Rule": Rule, "BulkRule": BulkRule, "SoloRule": SoloRule}
     namespace |= {"letter_table": letter_table, "closures": closures}

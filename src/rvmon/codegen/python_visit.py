@@ -27,6 +27,20 @@ def at_hand(lines: list[str], *given: str) -> Iterator[str]:
             yield f"{name} = self.{name}"
 
 
+def alone(lines: Iterator[str] | list[str]) -> Iterator[str]:
+    """Statements during which no other sample is taken; they stand behind a look at `after`.
+
+    Between the two no function is called, so that no other thread can have a turn.
+    """
+    yield "held = self.after"
+    yield "self.after = BUSY"
+    yield "try:"
+    yield from indented(lines)
+    yield "except BaseException:"
+    yield "    self.after = held"
+    yield "    raise"
+
+
 def indented(lines: Iterator[str] | list[str], depth: int = 1) -> Iterator[str]:
     """Lines of an inner block."""
     return ("    " * depth + line for line in lines)
@@ -136,13 +150,13 @@ class VisitWriter:
         yield from self._alarm()
 
     def followed(self, *, timed: bool, triggers: bool) -> Iterator[str]:
-        """As `judged` and `told`, where before the sample nothing was awaited at its instant.
+        """As `judged`, where before the sample nothing was awaited at its instant.
 
         Args:
             timed: whether something may be awaited from now on, though no requirement is concerned.
             triggers: whether one may have been triggered.
         """
-        yield "self.position = self.after = t"
+        yield "self.position = t"
         if not self.calm:
             yield "dues = self.dues"
         yield from self._concluded([*self._concerns(triggers=triggers)], triggers=triggers)
@@ -150,11 +164,9 @@ class VisitWriter:
             yield from indented(self._alarm())
         elif self.goes_on:
             yield from indented(self._resumption())
-        yield from indented(self._news())
         if timed:
             yield "else:"
             yield from indented(self._alarm())
-        yield "return ()"
 
     def _concluded(self, concerns: list[str], *, triggers: bool = True) -> Iterator[str]:
         yield f"if {' or '.join(concerns)}:"
@@ -171,14 +183,18 @@ class VisitWriter:
 
     def told(self) -> Iterator[str]:
         """Return what was decided."""
-        yield from self.done()
-        yield from self._news()
-        yield "return ()"
-
-    def _news(self) -> Iterator[str]:
+        if self.plan.gap is None:
+            yield "self.position = t"
         yield "if self.news:"
         yield "    self.news = False"
-        yield "    return self.clerk.told()"
+        yield "    try:"
+        yield "        return self.clerk.told(t)"
+        yield "    except BaseException:"
+        yield "        if self.after == BUSY:"
+        yield "            self.after = t"
+        yield "        raise"
+        yield "self.after = t"
+        yield "return ()"
 
     def _concerns(self, *, triggers: bool = True) -> Iterator[str]:
         """If none of these holds, a position is not to be judged."""

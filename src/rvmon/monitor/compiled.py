@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.bulk import moves_in_runs
@@ -335,6 +336,10 @@ class CompiledSpec:
         self.checked = checked
         self.requirements = requirements
         self.forms: dict[object, object] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Compiled again elsewhere: what was generated here, and tables in hand, stay here.
+        return compile_spec, (self.checked,)
 
 
 def compile_spec(checked: CheckedSpec) -> CompiledSpec:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from rvmon.automaton.machine import INFINITY
 from rvmon.codegen.python_unit import machine_of, unit_class
-from rvmon.codegen.runtime.nodes import LIMIT
+from rvmon.codegen.runtime.nodes import BUSY, LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
@@ -17,14 +18,15 @@ from rvmon.monitor.hosted import HostedRule
 from rvmon.monitor.lanes import Lanes, Shape
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.one_call import overlap
 from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.monitor.seat import Seat
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
 
 Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
+Told = Callable[[int], Sequence[Attempt]]
 
 
 class Forms:
@@ -82,7 +84,7 @@ class GeneratedLanes(Lanes):
         other: Step,
     ) -> None:
         self.other = other
-        self.told = ledger.flush
+        self.told: Told = self._told
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
         self.alone = not forms.others
@@ -111,6 +113,12 @@ class GeneratedLanes(Lanes):
     def lost(self, signal: int, t: int, why: str) -> None:
         """Hear that a signal is not known from `t` on."""
         note_lost(self.outages, self.spec, self.unit.SIGNALS[signal], HealthKind(why), t)
+
+    def _told(self, t: int) -> Sequence[Attempt]:
+        """What a sample at `t` has decided; it is over."""
+        decided = self.ledger.flush()
+        self.unit.after = t
+        return decided
 
     def found(self, signal: int, t: int) -> None:
         """Hear that a signal has a value from `t` on."""
@@ -156,6 +164,7 @@ class GeneratedLanes(Lanes):
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a valid sample; time has come to `t − 1` before."""
         self.unit.take(t, values)
+        self.unit.after = BUSY  # the call goes on
         super().sample(t, values)
 
     def finish(self, end: int, reached: int) -> None:
@@ -243,7 +252,8 @@ class GeneratedMonitor(Monitor):
         super().__init__(compiled, requirements, engine, settle, sources, keep)
         self._by_unit = not forms.others and self._intake is None
         """Whether the unit alone takes samples as they come."""
-        if self._by_unit:
+        # Generated code looks and closes in one go only where one thread has a turn at a time.
+        if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
             self.__dict__["step_ns"] = self._unit.step
 
     def _make_lanes(self) -> Lanes:
@@ -254,94 +264,74 @@ class GeneratedMonitor(Monitor):
             self._engine,
             self._sources,
             self._ledger,
-            self.step_slowly,
+            super().step_ns,
         )
         return self._unit_lanes
 
     def _attend(self) -> None:
         attends = self._callbacks or self.choice.keep is not None
-        self._unit_lanes.told = self._hear if attends else self._ledger.flush
+        self._unit_lanes.told = self._hear if attends else self._unit_lanes._told
 
-    def reset(self) -> None:
-        """Forget the run; the next sample starts another."""
-        super().reset()
+    def _begin(self) -> None:
+        super()._begin()
         self._floor = self._unit.after
 
-    def _see(self) -> None:
-        """Note the samples that the generated code took by itself."""
-        after = self._unit.after
+    def _enter(self) -> None:
+        """Note the samples that the generated code took by itself, and have it take no more."""
+        unit = self._unit
+        after = unit.after
+        if after == BUSY:
+            raise overlap()
+        unit.after = BUSY
         if after != self._floor:
             self._last = self._reached = self._floor = after
         if self._health.began is None:
-            self._health.began = self._unit.began
+            self._health.began = unit.began
 
-    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """See `Monitor.step_ns`."""
-        return self.step_slowly(t_ns, values)
+    def _leave(self) -> None:
+        """Have the generated code take samples behind what was taken, and what time has come to."""
+        after = -LIMIT if self._last is None else self._last
+        if self._reached is not None:
+            after = max(after, self._reached - 1)
+        self._unit.after = self._floor = after if self._report is None else LIMIT
 
-    def step_slowly(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample by the way of every monitor."""
-        self._see()
-        return super().step_ns(t_ns, values)
-
-    def _hear(self) -> Sequence[Attempt]:
-        """Give out what the generated code has decided by itself."""
-        self._see()
-        return self._flush()
+    def _hear(self, t: int) -> Sequence[Attempt]:
+        """Give out what the generated code has decided by itself, of a sample at `t`."""
+        self._last = self._reached = t
+        decided = self._flush()
+        self._unit.after = self._floor = t
+        self._tell(decided)
+        return decided
 
     def _flush(self) -> Sequence[Attempt]:
-        self._floor = self._unit.after
         self._unit.news = False
-        self._close_off()
         return super()._flush()
 
-    def _close_off(self) -> None:
-        """Have the unit refuse samples before the instant that time has come to."""
-        if self._reached is not None:
-            self._unit.after = self._floor = max(self._unit.after, self._reached - 1)
-
-    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
-        """See `Monitor.advance_ns`."""
-        self._see()
-        unit = self._unit
-        if not (self._by_unit and type(t_ns) is int and unit.after < t_ns < unit.wake):
-            return super().advance_ns(t_ns)
+    def _advance(self, t_ns: int) -> Sequence[Attempt]:
+        if not (self._by_unit and type(t_ns) is int and self._floor < t_ns < self._unit.wake):
+            return super()._advance(t_ns)
         self._reached = t_ns  # nothing happens up to then
-        self._close_off()
         return ()
 
-    def finish_ns(self, t_ns: int | None = None) -> Report:
-        """See `Monitor.finish_ns`."""
-        self._see()
-        return super().finish_ns(t_ns)
+    def _put_away(self) -> bytes:
+        # Generated code may take samples meanwhile: what it has taken is part of what is put away.
+        self._unit.after = self._floor
+        data = super()._put_away()
+        if self._unit.after != self._floor:
+            raise overlap()
+        return data
 
-    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
-        concluded = super()._conclude(t_ns)
-        self._unit.after = self._floor = LIMIT
-        return concluded
-
-    def snapshot(self) -> bytes:
-        """See `Monitor.snapshot`."""
-        self._see()
-        return super().snapshot()
-
-    @property
-    def open(self) -> Sequence[Attempt]:
-        """See `Monitor.open`."""
-        self._see()
+    def _open(self) -> Sequence[Attempt]:
         for rule in self._unit.rules:
             if rule.slides and self._reached is not None:
                 # Its clocks are taken along when somebody looks.
                 rule.pass_to(self._reached - (self._reached != self._last))
-        return super().open
+        return super()._open()
 
-    @property
-    def next_due(self) -> int | None:
-        """See `Monitor.next_due`."""
+    def _next_due(self) -> int | None:
         own = min(self._unit.next_position(), self._unit.next_due())
-        others = super().next_due
+        others = super()._next_due()
         found = own if others is None else min(own, others)
-        self._see()
         if found >= INFINITY or self._reached is None or self._report is not None:
             return None
         return max(found, self._reached + 1)

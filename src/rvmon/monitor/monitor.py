@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 from rvmon.automaton.machine import INFINITY
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
@@ -14,6 +14,7 @@ from rvmon.monitor.intake import Intake
 from rvmon.monitor.kept import Kept
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.one_call import OneCall
 from rvmon.monitor.validate import Validator
 from rvmon.spec.checked import TimeModel
 from rvmon.trace.sample import Sample, Value
@@ -63,10 +64,21 @@ class Monitor:
         single = frozenset().union(*(one.single_payloads for one in requirements))
         self._validator = Validator(compiled.checked, sources, single)
         self._callbacks: dict[object, tuple[bool, Callback]] = {}
-        self.reset()
+        self._alone = OneCall(self)
+        self._begin()
+
+    def _enter(self) -> None:
+        """Begin a call: learn what was done without one."""
+
+    def _leave(self) -> None:
+        """End a call."""
 
     def reset(self) -> None:
         """Forget the run; the next sample starts another. Callbacks stay."""
+        with self._alone:
+            self._begin()
+
+    def _begin(self) -> None:
         self._ledger = Ledger()
         self._lanes = self._make_lanes()
         self._kept = Kept(self._ledger, self.choice.keep)
@@ -80,7 +92,7 @@ class Monitor:
         self._attend()
 
     def _attend(self) -> None:
-        """Have what is decided flushed by `_flush`, if it is to be told or bounded."""
+        """Have what is decided heard of, if it is to be told or bounded."""
 
     def _make_lanes(self) -> Lanes:
         return Lanes(
@@ -109,8 +121,15 @@ class Monitor:
         Raises:
             TimeOrderError: the time is not later, or an `advance` said that nothing would come.
             TraceError: a name or a value that the specification does not know, or a time that is
-                no whole number. In all cases the monitor is as it was.
+                no whole number.
+            OverlapError: another call is under way. In all cases the monitor is as it was.
         """
+        with self._alone:
+            decided = self._step(t_ns, values)
+        self._tell(decided)
+        return decided
+
+    def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         t_ns = self._taken_time(t_ns)
         if self._intake is not None:
             ready = self._intake.take(t_ns, self._validator.check(t_ns, values))
@@ -130,14 +149,13 @@ class Monitor:
         return self._flush()
 
     def _flush(self) -> Sequence[Attempt]:
-        """What was decided since the last call; all that hear of it have done so."""
+        """What was decided since the last call."""
         decided = self._ledger.flush()
         self._kept.bound(self._lanes)
-        self._tell(decided)
         return decided
 
     def _tell(self, decided: Sequence[Attempt]) -> None:
-        """Call the callbacks; the monitor is done with what it was asked for."""
+        """Call the callbacks, which may call the monitor: the call that decided is over."""
         if not self._callbacks:
             return
         errors: list[Exception] = []
@@ -231,6 +249,12 @@ class Monitor:
 
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
+        with self._alone:
+            decided = self._advance(t_ns)
+        self._tell(decided)
+        return decided
+
+    def _advance(self, t_ns: int) -> Sequence[Attempt]:
         t_ns = self._taken_time(t_ns)
         held_back = () if self._intake is None else self._intake.settle(t_ns)
         return self._settled(held_back, t_ns)
@@ -260,15 +284,17 @@ class Monitor:
         Returns:
             The report; the same again if the run was finished before.
         """
-        if self._report is not None:
-            return self._report
-        if t_ns is not None:
-            t_ns = self._taken_time(t_ns)
-        for sample in () if self._intake is None else self._intake.close():
-            self._judge(sample.t, sample.values)
-        self._report, decided = self._conclude(t_ns)
+        with self._alone:
+            if self._report is not None:
+                return self._report
+            if t_ns is not None:
+                t_ns = self._taken_time(t_ns)
+            for sample in () if self._intake is None else self._intake.close():
+                self._judge(sample.t, sample.values)
+            report, decided = self._conclude(t_ns)
+            self._report = report
         self._tell(decided)
-        return self._report
+        return report
 
     def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
         """Judge the run that ends, all samples of which were taken; also what this decided."""
@@ -315,7 +341,8 @@ class Monitor:
         F
         F
         """
-        return self._verdicts_so_far() if self._report is None else self._report.verdicts
+        with self._alone:
+            return self._verdicts_so_far() if self._report is None else self._report.verdicts
 
     def _verdicts_so_far(self) -> Mapping[str, Verdict]:
         return self._kept.verdicts(self._names)
@@ -345,8 +372,23 @@ class Monitor:
         Raises:
             SnapshotError: the run is finished.
         """
-        if self._report is not None:
-            raise SnapshotError("the run is finished: keep its report, or call reset()")
+        with self._alone:
+            if self._report is not None:
+                raise SnapshotError("the run is finished: keep its report, or call reset()")
+            return self._put_away()
+
+    def __reduce__(self) -> NoReturn:
+        """Refused: pickles and copies would share or lack what is under way.
+
+        Raises:
+            RvmonError: always; it says what to do.
+        """
+        raise RvmonError(
+            "a monitor is neither pickled nor copied: monitor.snapshot() gives the run as bytes, "
+            "and spec.restore(data) makes a monitor of them, in this process or another"
+        )
+
+    def _put_away(self) -> bytes:
         from rvmon.monitor.snapshot import snapshot
 
         self._kept.tidy(self._lanes)
@@ -355,6 +397,10 @@ class Monitor:
     @property
     def open(self) -> Sequence[Attempt]:
         """The attempts that are undecided now."""
+        with self._alone:
+            return self._open()
+
+    def _open(self) -> Sequence[Attempt]:
         if self._reached is None:
             return []
         now = 2 * self._reached + (self._reached == self._last)
@@ -367,6 +413,10 @@ class Monitor:
     @property
     def next_due(self) -> int | None:
         """The next instant (ticks) at which time alone can decide something."""
+        with self._alone:
+            return self._next_due()
+
+    def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:
             return None
         found = min(lane.next_due for lane in self._lanes.all)

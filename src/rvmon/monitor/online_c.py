@@ -45,7 +45,9 @@ class CompiledMonitor(Monitor):
         absent = frozenset() if sources is None else frozenset(names - sources)
         self._library = library
         self._ids = [one.requirement.id for one in requirements]
-        self._core = library.core(absent, look_closer=super().step, look_closer_ns=self.step_slowly)
+        self._core = library.core(
+            absent, look_closer=super().step, look_closer_ns=self._look_closer
+        )
         super().__init__(compiled, requirements, "c", settle, sources, None)
 
     def _attend(self) -> None:
@@ -59,12 +61,11 @@ class CompiledMonitor(Monitor):
     def _make_lanes(self) -> Lanes:
         return Lanes(self._compiled.checked, (), "auto", self._sources, self._ledger)
 
-    def reset(self) -> None:
-        """Forget the run; the next sample starts another."""
-        super().reset()
+    def _begin(self) -> None:
+        super()._begin()
         self._core.reset()
 
-    def _see(self) -> None:
+    def _enter(self) -> None:
         """Note how far the run has come."""
         sampled, began, last, reached = self._core.times()
         self._health.began = began if sampled else None
@@ -74,16 +75,15 @@ class CompiledMonitor(Monitor):
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """See `Monitor.step_ns`."""
         if self._intake is not None:
-            decided = self.step_slowly(t_ns, values)
-        else:
-            decided = self._core.step_ns(t_ns, values)
+            return super().step_ns(t_ns, values)
+        decided = self._core.step_ns(t_ns, values)
         self._tell(decided)
         return decided
 
-    def step_slowly(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample by the way of every monitor."""
-        self._see()
-        return super().step_ns(t_ns, values)
+    def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample by the way of every monitor; who asked for that tells what it decides."""
+        with self._alone:
+            return self._step(t_ns, values)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         # C takes `str` alone, no subclasses of it, such as members of an enumeration.
@@ -119,13 +119,6 @@ class CompiledMonitor(Monitor):
     def _pass_to(self, t: int) -> None:
         self._core.advance(t)
 
-    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
-        """See `Monitor.advance_ns`."""
-        self._see()
-        decided = super().advance_ns(t_ns)
-        self._tell(decided)
-        return decided
-
     def _verdicts_so_far(self) -> Mapping[str, Verdict]:
         so_far = (Verdict.FAIL, Verdict.PASS)
         return {
@@ -141,7 +134,7 @@ class CompiledMonitor(Monitor):
 
         end = self._core.close(t_ns)
         decided = self._core.flush()
-        self._see()
+        self._enter()
         told = Told(
             np.frombuffer(self._core.records(), RECORD),
             ordered=False,
@@ -160,15 +153,11 @@ class CompiledMonitor(Monitor):
             "a compiled monitor cannot be put away: use the engine `auto` for snapshots"
         )
 
-    @property
-    def open(self) -> Sequence[Attempt]:
-        """The attempts that are undecided now, without deadlines and forecasts."""
+    def _open(self) -> Sequence[Attempt]:
+        """See `Monitor.open`; without deadlines and forecasts."""
         return [] if self._report is not None else self._core.open()
 
-    @property
-    def next_due(self) -> int | None:
-        """See `Monitor.next_due`."""
-        self._see()
+    def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:
             return None
         found = self._core.next_due()

@@ -52,6 +52,7 @@ class Seat(Witness):
         self._counts = counts
         self._seen_of = _picking(self.leaves)
         self._noted = noted
+        self._noted_last: tuple[Any, ...] = ()
         self._id = compiled.requirement.id
         self._rank = compiled.rank
         self._upon_end = compiled.obligation.trigger is None
@@ -132,12 +133,16 @@ class Seat(Witness):
             seen: what was seen there, perhaps packed.
             verdict: whether it passed.
             t: the instant of the decision.
-            before: its token before that.
+            before: its token before that; the anchors may be `FROM_TRIGGER`.
         """
         unit = self._unit
         unit.news = True
         decided = triggered if self._upon_end else t
         noted = self._noted(seen, t, before, rule, unit.v, unit.since, unit.until)
+        if noted == self._noted_last:
+            noted = self._noted_last  # of many that one letter decides, it is kept once
+        else:
+            self._noted_last = noted
         record = decided_attempt(
             self._id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
         )

@@ -8,7 +8,7 @@ from typing import Any
 
 from rvmon.automaton.machine import Machine
 from rvmon.codegen.plan import Plan
-from rvmon.codegen.runtime.bulk import unpacked
+from rvmon.codegen.runtime.bulk import FROM_TRIGGER, unpacked
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.outages import Outage
 from rvmon.monitor.bench import Clerk, Open
@@ -85,6 +85,8 @@ class Witness:
         """All that a record says beside the verdict, from what was noted at the decision."""
         seen_then, t, before, letter, other, position, *rest = noted
         seen_then = self.unpacked(seen_then)
+        if before[1] == FROM_TRIGGER:
+            before = (before[0], (attempt.triggered,))
         leaves, count = len(self.leaves), len(self.places)
         seen = tuple(rest[:leaves])
         values, since = rest[leaves:][:count], rest[leaves + count :][:count]

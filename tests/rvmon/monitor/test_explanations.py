@@ -262,3 +262,17 @@ def test_what_is_owed_in_a_loop_is_that_of_now(engine):
         [left] = monitor.open
         assert left.owed.startswith(f"`always[1 ns, 1 ns] start` until {now} ns, or ")
         assert left.deadline == now
+
+
+def test_attempts_decided_together_keep_reasons_of_their_own() -> None:
+    """What is noted once for many is told of each as its own engine tells it."""
+    spec = rvmon.loads("spec s\nevent e\nevent p\nrequirement R\n  upon e\n  then within 10 s p\n")
+    told = []
+    for engine in ("auto", "automaton"):
+        monitor = spec.monitor(engine=engine)
+        for t in range(5):
+            monitor.step(2 * t, {"e": True})
+            monitor.step(2 * t + 1, {"e": False})
+        decided = [*monitor.step(11, {"p": True}), *monitor.finish(30).attempts]
+        told.append([(str(one), one.deadline, one.blame, one.at_trigger) for one in decided])
+    assert told[0] == told[1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import namedtuple
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.nodes import LIMIT
+from rvmon.codegen.runtime.nodes import BUSY, LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.table import FAILED, PASSED, Table
 from rvmon.codegen.runtime.unit import Unit
@@ -131,7 +131,13 @@ class Monitor:
         made = Attempt(name, attempt.number, attempt.triggered, t, verdict, decision, doubt)
         self.fresh.append(made)
 
-    def told(self) -> list[Attempt]:
+    def told(self, t: int) -> list[Attempt]:
+        """The records since the last call, after a sample at `t` that the unit took."""
+        found = self._flush()
+        self.unit.after = t
+        return found
+
+    def _flush(self) -> list[Attempt]:
         """The records since the last call, in order."""
         self.unit.news = False
         ranks = {name: rank for rank, name in enumerate(self.NAMES)}
@@ -150,6 +156,7 @@ class Monitor:
 
     def other(self, t: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample that needs a closer look."""
+        self._expect_alone()
         if self.finished:
             raise ValueError("the run is finished: call reset() before the next")
         if t.__class__ is not int or not self.unit.after < t < LIMIT:
@@ -161,7 +168,7 @@ class Monitor:
         plain = {name: self._plain(name, value) for name, value in values.items()}
         self.unit.through(t - 1)
         self.unit.take(t, plain)
-        return self.told()
+        return self._flush()
 
     def _plain(self, name: str, value: Any) -> Any:
         if name not in self.KINDS or name in self.unit.absent:
@@ -206,6 +213,7 @@ class Monitor:
 
     def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
         """Say that no sample before `t_ns` will come."""
+        self._expect_alone()
         if self.finished:
             raise ValueError("the run is finished: call reset() before the next")
         self._see()
@@ -213,7 +221,14 @@ class Monitor:
             self.unit.advance(t_ns)
             self.reached = t_ns
             self.unit.after = max(self.unit.after, t_ns - 1)
-        return self.told()
+        return self._flush()
+
+    def _expect_alone(self) -> None:
+        if self.unit.after == BUSY:
+            raise RuntimeError(
+                "another call of this monitor is under way: give each thread a monitor of its "
+                "own, or hold a lock round the calls"
+            )
 
     def _see(self) -> None:
         """Note the last sample, which only the generated code knows of."""
@@ -223,6 +238,7 @@ class Monitor:
 
     def finish_ns(self, t_ns: int | None = None) -> dict[str, str]:
         """End the run, at `t_ns` if that is later; returns the verdict of each requirement."""
+        self._expect_alone()
         if not self.finished:
             self._see()
             self.finished = True
@@ -260,4 +276,4 @@ class Monitor:
                 self._record(rule, attempt, at, verdict, decision)
         for rule, attempt in self.void:
             self._record(rule, attempt, None, "I", "open")
-        self.told()
+        self._flush()

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 NOWHERE = -1
 """The target where no run comes at its next step."""
 
+FROM_TRIGGER = (NEVER,)
+"""The anchors of attempts whose clock has run since their triggers, the same to all of them."""
+
 
 class Run:
     """Attempts in one location, in order of their triggers; 20 bytes each.
@@ -208,10 +211,9 @@ class BulkRule(Rule):
         cut: int = 0,
     ) -> None:
         """Tell of decisions at `t`; without it, at the age `cut` of each."""
-        clocked = bool(self.machine.cuts_of[location])
+        token: Token = (location, FROM_TRIGGER if self.machine.cuts_of[location] else ())
         for index in range(start, stop):
             triggered = run.triggers[index]
-            token = (location, (triggered,) if clocked else ())
             at = triggered + cut if t is None else t
             number, seen = run.numbers[index], run.seen[index]
             self._told_in_run(number, triggered, seen, verdict, at, token)

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 FALSE, UNKNOWN, TRUE = 0, 1, 2
 LIMIT = 1 << 62
+BUSY = LIMIT + 1
+"""Stands for the instant after which samples are taken, while one is: none is after it."""
 MISSING = object()
 
 

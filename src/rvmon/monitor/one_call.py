@@ -1,0 +1,52 @@
+"""One call at a time: a monitor has no room for two."""
+
+from __future__ import annotations
+
+from threading import Lock
+from typing import Protocol
+
+from rvmon.errors import OverlapError
+
+
+class Guarded(Protocol):
+    """What is entered by one call at a time."""
+
+    def _enter(self) -> None:
+        """Begin a call."""
+
+    def _leave(self) -> None:
+        """End it, however it ends."""
+
+
+class OneCall:
+    """Refuses a call that comes while another is under way, from whatever thread.
+
+    Args:
+        guarded: what is called.
+    """
+
+    def __init__(self, guarded: Guarded) -> None:
+        self._guarded = guarded
+        self._lock = Lock()
+
+    def __enter__(self) -> None:
+        if not self._lock.acquire(blocking=False):
+            raise overlap()
+        try:
+            self._guarded._enter()
+        except BaseException:
+            self._lock.release()
+            raise
+
+    def __exit__(self, *_: object) -> None:
+        self._guarded._leave()
+        self._lock.release()
+
+
+def overlap() -> OverlapError:
+    """The error of a call that comes while another is under way."""
+    return OverlapError(
+        "another call of this monitor is under way, in another thread or in what a signal handler "
+        "has interrupted; this one was not taken: give each thread a monitor of its own "
+        "(spec.monitor()), or hold a lock round the calls"
+    )

@@ -1,0 +1,133 @@
+"""A specification is shared by threads, tasks and processes; a monitor is put away by name."""
+
+import asyncio
+import copy
+import multiprocessing
+import pickle
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from itertools import count
+from pathlib import Path
+from threading import Barrier
+
+import pytest
+
+import rvmon
+
+_SPEC = """spec s
+signal x : real
+event e
+event p
+requirement R1
+  always x <= 3
+requirement R2
+  upon e
+  then within 1 s p
+requirement R3
+  whenever x > 2
+  then within 2 s x < 1
+"""
+_ROWS = [
+    (number, {"x": number % 5, "e": number % 4 == 0, "p": number % 3 == 0}) for number in range(60)
+]
+_TRACE = "t,x,e,p\n" + "".join(
+    f"{t},{row['x']},{int(row['e'])},{int(row['p'])}\n" for t, row in _ROWS
+)
+
+
+@pytest.fixture
+def trace(tmp_path: Path) -> Path:
+    """A recording of the rows."""
+    path = tmp_path / "trace.csv"
+    path.write_text(_TRACE)
+    return path
+
+
+@pytest.fixture
+def quick_turns() -> Iterator[None]:
+    """Threads take turns as often as they can."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    yield
+    sys.setswitchinterval(before)
+
+
+def _stepped(spec: rvmon.Spec) -> str:
+    monitor = spec.monitor()
+    for t, row in _ROWS:
+        monitor.step(t, row)
+    return monitor.finish(70).to_json()
+
+
+def _evaluated(spec: rvmon.Spec, path: Path) -> str:
+    return spec.evaluate(path).to_json()
+
+
+@pytest.mark.parametrize("engine", ["stepped", "evaluated"])
+@pytest.mark.usefixtures("quick_turns")
+def test_eight_threads_share_a_new_specification(engine: str, trace: Path) -> None:
+    """What is worked out late is worked out alike, whoever asks first."""
+    barrier = Barrier(8)
+
+    def judge(spec: rvmon.Spec) -> str:
+        return _stepped(spec) if engine == "stepped" else _evaluated(spec, trace)
+
+    def work(spec: rvmon.Spec) -> str:
+        barrier.wait()
+        return judge(spec)
+
+    with ThreadPoolExecutor(8) as threads:
+        for number in range(3):
+            text = _SPEC.replace("spec s", f"spec s{number}")
+            found = set(threads.map(work, [rvmon.loads(text)] * 8))
+            assert found == {judge(rvmon.loads(text))}
+
+
+def test_tasks_share_a_monitor() -> None:
+    """Tasks that take turns at `await` are one thread."""
+    spec = rvmon.loads(_SPEC)
+    monitor = spec.monitor()
+    clock = count()
+
+    async def feed(own: int) -> None:
+        for _ in range(20):
+            number = next(clock)
+            monitor.step(number, {"x": number % 5})
+            await asyncio.sleep(0)
+        assert own >= 0
+
+    async def all_of_them() -> None:
+        await asyncio.gather(*(feed(own) for own in range(5)))
+
+    asyncio.run(all_of_them())
+    alone = spec.monitor()
+    for number in range(100):
+        alone.step(number, {"x": number % 5})
+    assert monitor.finish(100).to_json() == alone.finish(100).to_json()
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_used_specification_goes_to_other_processes(method: str, trace: Path) -> None:
+    """Pickled or inherited, it judges there as here."""
+    if method not in multiprocessing.get_all_start_methods():
+        pytest.skip(f"there is no {method} here")
+    spec = rvmon.loads(_SPEC)
+    here = _stepped(spec), _evaluated(spec, trace)
+    context = multiprocessing.get_context(method)
+    with ProcessPoolExecutor(1, mp_context=context) as processes:
+        stepped = processes.submit(_stepped, spec).result(60)
+        evaluated = processes.submit(_evaluated, spec, trace).result(60)
+    assert (stepped, evaluated) == here
+
+
+@pytest.mark.parametrize("engine", ["auto", "network"])
+@pytest.mark.parametrize("act", [pickle.dumps, copy.copy, copy.deepcopy])
+def test_a_monitor_is_neither_pickled_nor_copied(
+    act: Callable[[object], object], engine: str
+) -> None:
+    """The error says how a run is put away."""
+    monitor = rvmon.loads(_SPEC).monitor(engine=engine)
+    with pytest.raises(rvmon.RvmonError, match=r"monitor\.snapshot\(\).*spec\.restore"):
+        act(monitor)
