@@ -64,7 +64,7 @@ class Monitor:
         single = frozenset().union(*(one.single_payloads for one in requirements))
         self._validator = Validator(compiled.checked, sources, single)
         self._callbacks: dict[object, tuple[bool, Callback]] = {}
-        self._alone = OneCall(self)
+        self.one_call = OneCall(self)
         self._begin()
 
     def _enter(self) -> None:
@@ -75,7 +75,7 @@ class Monitor:
 
     def reset(self) -> None:
         """Forget the run; the next sample starts another. Callbacks stay."""
-        with self._alone:
+        with self.one_call:
             self._begin()
 
     def _begin(self) -> None:
@@ -124,7 +124,7 @@ class Monitor:
                 no whole number.
             OverlapError: another call is under way. In all cases the monitor is as it was.
         """
-        with self._alone:
+        with self.one_call:
             decided = self._step(t_ns, values)
         self._tell(decided)
         return decided
@@ -249,7 +249,7 @@ class Monitor:
 
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
-        with self._alone:
+        with self.one_call:
             decided = self._advance(t_ns)
         self._tell(decided)
         return decided
@@ -284,7 +284,7 @@ class Monitor:
         Returns:
             The report; the same again if the run was finished before.
         """
-        with self._alone:
+        with self.one_call:
             if self._report is not None:
                 return self._report
             if t_ns is not None:
@@ -341,7 +341,7 @@ class Monitor:
         F
         F
         """
-        with self._alone:
+        with self.one_call:
             return self._verdicts_so_far() if self._report is None else self._report.verdicts
 
     def _verdicts_so_far(self) -> Mapping[str, Verdict]:
@@ -372,7 +372,7 @@ class Monitor:
         Raises:
             SnapshotError: the run is finished.
         """
-        with self._alone:
+        with self.one_call:
             if self._report is not None:
                 raise SnapshotError("the run is finished: keep its report, or call reset()")
             return self._put_away()
@@ -397,7 +397,7 @@ class Monitor:
     @property
     def open(self) -> Sequence[Attempt]:
         """The attempts that are undecided now."""
-        with self._alone:
+        with self.one_call:
             return self._open()
 
     def _open(self) -> Sequence[Attempt]:
@@ -413,7 +413,7 @@ class Monitor:
     @property
     def next_due(self) -> int | None:
         """The next instant (ticks) at which time alone can decide something."""
-        with self._alone:
+        with self.one_call:
             return self._next_due()
 
     def _next_due(self) -> int | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from threading import Lock
 from typing import Protocol
 
-from rvmon.errors import OverlapError
+from rvmon.errors import OverlapError, RvmonError, SnapshotError
 
 
 class Guarded(Protocol):
@@ -23,9 +23,13 @@ class OneCall:
 
     Args:
         guarded: what is called.
+
+    Attributes:
+        restored: whether its state came from outside, and so may fit no monitor after all.
     """
 
     def __init__(self, guarded: Guarded) -> None:
+        self.restored = False
         self._guarded = guarded
         self._lock = Lock()
 
@@ -38,9 +42,14 @@ class OneCall:
             self._lock.release()
             raise
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
         self._guarded._leave()
         self._lock.release()
+        if self.restored and isinstance(error, Exception) and not isinstance(error, RvmonError):
+            raise SnapshotError(
+                "the snapshot that this monitor was made of was damaged: what it held fits no "
+                "monitor; begin a new run"
+            ) from error
 
 
 def overlap() -> OverlapError:

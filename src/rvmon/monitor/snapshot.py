@@ -79,11 +79,13 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
         )
     try:
         _rehearse(_restored(compiled, document))
-        return _restored(compiled, document)
+        monitor = _restored(compiled, document)
     except SnapshotError:
         raise
     except Exception:  # noqa: BLE001 - whatever a hostile snapshot leads to
         raise SnapshotError("the snapshot is damaged: what it holds fits no monitor") from None
+    monitor.one_call.restored = True
+    return monitor
 
 
 def _rehearse(monitor: Monitor) -> None:
