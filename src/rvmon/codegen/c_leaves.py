@@ -16,6 +16,7 @@ from rvmon.formula.state import (
     TRUE,
     UNKNOWN,
     Elapsed,
+    Lapsed,
     Leaf,
     Lost,
     Missing,
@@ -126,6 +127,8 @@ def leaf_value(names: Names, leaf: Leaf, unborn: int = UNKNOWN) -> str:
     match leaf:
         case Constant(value=value):
             return TRUTHS[TRUE if value else FALSE]
+        case Lapsed():
+            raise ValueError("captured values are not generated")
         case Lost():
             return TRUTHS[UNKNOWN]
         case Unborn(signals=signals):

@@ -9,7 +9,7 @@ from typing import assert_never
 from rvmon.codegen.plan import Plan
 from rvmon.dataflow.numbers import events_of
 from rvmon.formula.numeric import signals_of
-from rvmon.formula.state import UNKNOWN, Elapsed, Leaf, Lost, Missing, Unborn
+from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Missing, Unborn
 from rvmon.spec.checked import (
     Arithmetic,
     BoundAtom,
@@ -44,6 +44,8 @@ def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
     if isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN:
         return _before_birth(plan, leaf, str(unborn))
     match leaf:
+        case Lapsed():
+            raise ValueError("captured values are not generated")
         case Lost():
             return "1"
         case Unborn(signals=signals):

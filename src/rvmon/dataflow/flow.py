@@ -13,7 +13,7 @@ from rvmon.dataflow.inputs import NEVER, Inputs, Reported
 from rvmon.dataflow.leaves import Evaluate, before_birth, evaluator
 from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.since import Previous, Since
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Leaf, State, StateOp
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, Leaf, State, StateOp
 from rvmon.spec.checked import Compare, ProbeAtom, SignalAtom
 from rvmon.trace.sample import Scalar
 
@@ -38,8 +38,7 @@ class Flow:
         position: the position that `values` were evaluated at last.
         since: per node, the position from which on it has had its value.
         memory: what the nodes that look back remember.
-        cut: the instant from which on the node of `cut_off` is FALSE.
-        uncut: that node, and the value that it would have.
+        cut: the instant from which on it is not known which values were captured.
         begun: of a flow that was made by `twin`, the position from which on it saw what is its own.
     """
 
@@ -63,8 +62,6 @@ class Flow:
         self._fading: list[int] = []
         self._wakes: dict[int, int] = {}
         self._left = True
-        self.uncut = (-1, FALSE)
-        self._cut_place = -1
         self.memory: dict[int, Memory] = {}
         self._momentary = frozenset(
             place
@@ -145,32 +142,23 @@ class Flow:
         nodes = ((node, other.memory[place]) for place, node in self.memory.items())
         return all(_remembered(one) == _remembered(its) for one, its in nodes)
 
-    def cut_off(self, place: int) -> None:
-        """Have a node be FALSE from the instant `cut` on."""
-        read = self._evaluate[place]
-        self._cut_place = place
-
-        def evaluate(t: int) -> int:
-            value = read(t)
-            if t < self.cut:
-                return value
-            # An occurrence is over at the next position: nothing else would look there.
-            passing = place in self._momentary and value != FALSE
-            self._set_wake(place, t + (self.gap or 1) if passing else NEVER)
-            self.uncut = place, value
-            return FALSE
-
-        self._evaluate[place] = evaluate
-
     @property
     def is_cut(self) -> bool:
         """Whether that instant is set."""
         return self.cut < NEVER
 
     def cut_at(self, t: int) -> None:
-        """Set that instant, which has not come yet."""
+        """Set that instant: the position that it is at, or one to come."""
         self.cut = t
-        self._wakes[self._cut_place] = t
+        for place, state in enumerate(self.graph.nodes):
+            if isinstance(state.leaf, Lapsed):
+                self._set_wake(place, t)
+        if self.position == t:
+            self._propagate(t, {place for place, wake in self._wakes.items() if wake <= t})
+
+    def _lapsed(self, place: int, t: int) -> int:
+        self._set_wake(place, self.cut if t < self.cut else NEVER)
+        return FALSE if t < self.cut else TRUE
 
     def _take_over(self, place: int, other: Flow) -> None:
         """Have a node be, and remember, what it is in another flow."""
@@ -288,6 +276,8 @@ class Flow:
                 assert_never(state.op)
 
     def _leaf(self, place: int, leaf: Leaf) -> Evaluate:
+        if isinstance(leaf, Lapsed):
+            return lambda t: self._lapsed(place, t)
         read = evaluator(leaf, self.inputs, self.captured, lambda: self.origin)
         unborn = self.graph.nodes[place].unborn
         if isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN:

@@ -10,7 +10,18 @@ from typing import Any, assert_never
 from rvmon.dataflow.inputs import Inputs, Slot, payloads_of
 from rvmon.dataflow.numbers import COMPARE, captured_of, events_of, inputs_of, reader
 from rvmon.formula.numeric import signals_of
-from rvmon.formula.state import FALSE, TRUE, UNBORN, UNKNOWN, Elapsed, Leaf, Lost, Missing, Unborn
+from rvmon.formula.state import (
+    FALSE,
+    TRUE,
+    UNBORN,
+    UNKNOWN,
+    Elapsed,
+    Lapsed,
+    Leaf,
+    Lost,
+    Missing,
+    Unborn,
+)
 from rvmon.spec.checked import (
     BoundAtom,
     Compare,
@@ -44,7 +55,7 @@ class Reads:
 def reads(leaf: Leaf) -> Reads:
     """What a leaf depends on."""
     match leaf:
-        case Constant() | Elapsed() | Lost():
+        case Constant() | Elapsed() | Lost() | Lapsed():
             return Reads()
         case Unborn(signals=signals):
             return Reads(frozenset(name for name, _ in signals))
@@ -88,6 +99,8 @@ def evaluator(
             return lambda _: truth
         case Lost():
             return lambda _: UNKNOWN
+        case Lapsed():  # a flow knows when
+            return lambda _: FALSE
         case Unborn(signals=signals):
             return lambda _: TRUE if is_unborn(inputs, signals) else FALSE
         case Missing(atom=atom):

@@ -9,7 +9,7 @@ from rvmon.dataflow.graph import graph_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import UNKNOWN, Elapsed, Leaf, Lost, Missing, State, Unborn
+from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Missing, State, Unborn
 from rvmon.spec.checked import (
     BoundAtom,
     CheckedSpec,
@@ -57,7 +57,9 @@ def _is_of_values(leaf: Leaf) -> bool:
             return all(isinstance(part, SignalValue | Literal) for part in parts)
         case ProbeAtom(probe=probe):
             return probe is Probe.KNOWN
-        case SignalAtom() | EventAtom() | BoundAtom() | Constant() | Elapsed() | Unborn() | Lost():
+        case SignalAtom() | EventAtom() | BoundAtom() | Constant():
+            return True
+        case Elapsed() | Unborn() | Lost() | Lapsed():
             return True
         case Missing(atom=atom):
             return _is_of_values(atom)

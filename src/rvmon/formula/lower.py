@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import assert_never
 
 from rvmon.errors import RvmonError
@@ -12,7 +12,7 @@ from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Four, Reader
 from rvmon.formula.numeric import signals_of
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp, Unborn
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, State, StateOp, Unborn
 from rvmon.spec.checked import (
     Binary,
     BinaryOp,
@@ -64,6 +64,8 @@ class Obligation:
             FALSE for it.
         owed: what an attempt owes from its trigger on; of an episode, all that it owes.
         origins: for explanations, where the parts of `owed` come from.
+        running: of an episode, what is FALSE where it is over; with captured values also where it
+            is not known any more which these are.
         again: of an episode, not FALSE where what is owed has not failed at once: there it goes on
             after a failure; `None` where it does not, as the future stands below the past.
         unborn: of an episode, where something of its consequent had no value yet.
@@ -71,19 +73,19 @@ class Obligation:
         hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN where one may
             start; `None` if the trigger is never unknown.
         doubted: the same where it is not known whether there is such an instance at all.
-        doubt: of an episode with captured values, UNKNOWN where another may have begun; also where
-            it is not known whether there is such an instance.
+        doubt: of an episode with captured values, UNKNOWN where another may have begun.
     """
 
     trigger: State | None
     owed: Core
     origins: Mapping[Core, Origin]
+    running: State | None = None
     again: State | None = None
     unborn: State | None = None
     told: State | None = None
     hidden: Obligation | None = None
     doubted: Obligation | None = None
-    doubt: Mapping[bool, State] = field(default_factory=dict)
+    doubt: State | None = None
 
 
 def has_future(formula: Formula) -> bool:
@@ -120,26 +122,27 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
     told = _told(four, factory)
     if requirement.mode is Mode.WHENEVER:
         parts = _flat(requirement.consequent, True, False)
-        implied = lowering.join_signed(parts, False, [factory.negation(trigger)])
-        owed = lowering.episode(trigger, implied, requirement.consequent)
+        running = _running(trigger, requirement, factory)
+        implied = lowering.join_signed(parts, False, [factory.negation(running)])
+        owed = lowering.episode(running, implied, requirement.consequent)
         ahead = lowering.core(requirement.consequent, True)
         again = None if _looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
-        doubted = requirement.for_each is not None
-        doubt = {
-            every: factory.doubt(trigger, pulse=requirement.pulse, every=every)
-            for every in (False, True)
-            if requirement.captures and (doubted or not every)
-        }
-        return Obligation(trigger, owed, lowering.origins, again, unborn, told, doubt=doubt)
+        doubt = None
+        if requirement.captures:
+            doubt = factory.doubt(trigger, pulse=requirement.pulse, every=False)
+        return Obligation(
+            trigger, owed, lowering.origins, running, again, unborn, told, doubt=doubt
+        )
     owed = lowering.core(requirement.consequent, True)
 
     def hidden(every: bool) -> Obligation:
         doubt = factory.doubt(trigger, pulse=requirement.pulse, every=every)
-        here = factory.state_any([factory.negation(doubt), factory.sure(doubt)])
+        running = _running(doubt, requirement, factory)
+        here = factory.state_any([factory.negation(running), factory.sure(running)])
         either = factory.any_of([factory.literal(here, Sense.TRUE), owed])
-        whole = lowering.episode(doubt, either, requirement.consequent)
-        return Obligation(doubt, whole, lowering.origins)
+        whole = lowering.episode(running, either, requirement.consequent)
+        return Obligation(doubt, whole, lowering.origins, running)
 
     return Obligation(
         trigger,
@@ -149,6 +152,12 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
         hidden=hidden(False) if _may_be_unknown(trigger) else None,
         doubted=hidden(True) if requirement.for_each is not None else None,
     )
+
+
+def _running(trigger: State, requirement: Requirement, factory: Factory) -> State:
+    if not requirement.captures:
+        return trigger
+    return factory.state_all([trigger, factory.negation(factory.leaf(Lapsed()))])
 
 
 def _told(trigger: Four, factory: Factory) -> State | None:
@@ -163,7 +172,7 @@ def _may_be_unknown(state: State) -> bool:
     match state.leaf:
         case None:
             return state.op is not StateOp.SURE and any(map(_may_be_unknown, state.args))
-        case Constant() | BoundAtom() | Elapsed() | Unborn():
+        case Constant() | BoundAtom() | Elapsed() | Unborn() | Lapsed():
             return False
         case ProbeAtom(probe=probe):
             return probe is Probe.CHANGED

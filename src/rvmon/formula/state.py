@@ -44,7 +44,12 @@ class Lost:
     """Unknown, whatever the input."""
 
 
-Knowledge = Lost | Unborn | Missing
+@dataclass(frozen=True, slots=True)
+class Lapsed:
+    """It is not known any more which values an attempt has captured; two-valued."""
+
+
+Knowledge = Lost | Unborn | Missing | Lapsed
 """What speaks of what is known, not of what is there."""
 
 Shown = SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom

@@ -160,9 +160,6 @@ class Bench(ABC):
     def seen(self) -> tuple[int, ...]:
         """The values of the leaves now."""
         values = self.flow.values
-        if self.captured and self.flow.is_cut:
-            cut, value = self.flow.uncut
-            return tuple([value if place == cut else values[place] for place, _ in self.leaves])
         return tuple([values[place] for place, _ in self.leaves])
 
     def _doubt(self) -> Doubt:

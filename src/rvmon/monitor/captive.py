@@ -23,23 +23,45 @@ class CapturedAttempt:
 
     Args:
         parent: the lane in which it was triggered.
-        lane: its own.
         compiled: its requirement.
+        captured: its values.
         trigger: place of the trigger in the parent's flow: where that is FALSE, it is over.
-        doubt: place there of what is UNKNOWN where it may have begun.
+        doubt: place there of what is UNKNOWN where it may have begun; `None`: anywhere.
 
     Source: SEMANTICS, section 3 (Doubt, `let`); decision record 4.
     """
 
     def __init__(
-        self, parent: Lane, lane: Lane, compiled: CompiledRequirement, trigger: int, doubt: int
+        self,
+        parent: Lane,
+        compiled: CompiledRequirement,
+        captured: Captured,
+        trigger: int,
+        doubt: int | None,
     ) -> None:
         self._parent = parent
-        self._lane = lane
+        self._lane = parent
+        self._own = captured
         self._captures = compiled.requirement.captures
         self._leaves = leaves_in(parent.flow, compiled)
         self._trigger = trigger
         self._doubt = doubt
+
+    def follow(self, lane: Lane) -> None:
+        """Take the lane that is its own."""
+        self._lane = lane
+        self._parent.captured.append(self)
+
+    @property
+    def may_begin_otherwise(self) -> bool:
+        """Whether it may have begun at this position, with other values."""
+        flow, doubt = self._parent.flow, self._doubt
+        return (doubt is None or flow.values[doubt] == UNKNOWN) and not self._is_same(flow)
+
+    def _lapse(self, t: int) -> None:
+        self._lane.flow.cut_at(t)
+        self._lane.blurs = False
+        self._cause = doubt_in(self._parent.flow, self._leaves, t)
 
     def keeps(self, t: int) -> bool:
         """See `rvmon.monitor.lane.Captive`."""
@@ -47,9 +69,10 @@ class CapturedAttempt:
         trigger = flow.values[self._trigger]
         if lane.is_idle or trigger == FALSE:
             lane.blurs = False
-        elif lane.blurs and flow.values[self._doubt] == UNKNOWN and not self._is_same(flow):
+        elif lane.blurs and not lane.flow.is_cut and self.may_begin_otherwise:
             lane.flow.cut_at(t)
             lane.blurs = False
+        if lane.flow.cut == t:
             doubt = doubt_in(flow, self._leaves, t)
             for attempt in self._attempts:
                 attempt.doubt = attempt.doubt or doubt
@@ -64,9 +87,7 @@ class CapturedAttempt:
         return (attempt for judge in self._lane.judges for attempt in judge.attempts)
 
     def _is_same(self, flow: Flow) -> bool:
-        made_for = self._lane.made_for
-        own = dict(made_for[1]) if made_for else {}
-        known = dict(own)
+        own, known = self._own, dict(self._own)
         for capture in self._captures:
             known[capture.name] = captured_value(capture.value, flow, known)
         return all(

@@ -267,8 +267,8 @@ class CompiledRequirement:
     @property
     def _shared(self) -> Iterator[State]:
         obligation = self.obligation
-        yield from (one for one in (obligation.trigger, obligation.told) if one is not None)
-        yield from obligation.doubt.values()
+        states = (obligation.trigger, obligation.told, obligation.doubt)
+        yield from (one for one in states if one is not None)
         if not self.requirement.captures:
             yield from self._own
         for beside in (self.hidden, self.doubted):
@@ -281,8 +281,9 @@ class CompiledRequirement:
         obligation = self.obligation
         yield from self.alphabet.propositions
         yield from (one for one in (obligation.again, obligation.unborn) if one is not None)
-        if self.requirement.mode is Mode.WHENEVER and obligation.trigger is not None:
-            yield obligation.trigger
+        if self.requirement.mode is Mode.WHENEVER:
+            states = (obligation.trigger, obligation.running)
+            yield from (one for one in states if one is not None)
 
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:

@@ -20,7 +20,7 @@ class Episode:
         sure: hears of an attempt whose trigger was TRUE for the first time.
 
     Attributes:
-        place: of the trigger in the flow.
+        place: of what is FALSE in the flow where the episode is over.
         again: of the formula that is FALSE where what is owed fails at once; −1: it does not go on.
         current: the attempt that runs, or has failed in an episode that runs.
         failed_at: the instant of that failure.
@@ -45,7 +45,8 @@ class Episode:
         self._start = start
         self._sure = sure
         obligation = judge.compiled.obligation
-        self.place = self._place_of(obligation.trigger)
+        self.place = self._place_of(obligation.running)
+        self._trigger = self._place_of(obligation.trigger)
         self.again = self._place_of(obligation.again)
         self._unborn = self._place_of(obligation.unborn)
         self.current: Open | None = None
@@ -62,8 +63,9 @@ class Episode:
 
     def begin(self, t: int, triggered: int) -> Open:
         """Start an attempt at the position `t`, which the flow is at."""
-        value = self._flow.values[self.place]
+        value = self._flow.values[self._trigger]
         attempt = self.judge.new_attempt(t, triggered)
+        attempt.void = self._flow.is_cut
         self.current, self.failed_at = attempt, None
         if value != TRUE or self._doubted:
             self._start(attempt)

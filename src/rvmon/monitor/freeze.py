@@ -93,7 +93,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
     ),
     Flow: (
         *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
-        *("_dirty", "_fading", "_wakes", "_left", "cut", "uncut", "begun"),
+        *("_dirty", "_fading", "_wakes", "_left", "cut", "begun"),
     ),
     Inputs: ("slots", "occurrences", "updated", "expired", "changed", "outages"),
     Slot: (

@@ -212,7 +212,9 @@ class Lanes:
             else:
                 self._judge(compiled, lane, captured, instance)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
-                self._compare(next(parents, self.main), lane, compiled, instance)
+                parent = next(parents, self.main)
+                if compared := self._compared(parent, compiled, captured, instance):
+                    compared.follow(lane)
                 self._captured.append((lane, instance))
 
     # Making lanes.
@@ -275,10 +277,11 @@ class Lanes:
         if requirement.captures:
 
             def start(t: int, triggered: int) -> None:
-                new, own = self._captured_lane(lane, compiled, captured, instance, t)
+                new, own, compared = self._captured_lane(lane, compiled, captured, instance, t)
                 self._begin(new, own, instance, t, triggered, hidden=hidden)
                 self._captured.append((new, instance))
-                self._compare(lane, new, compiled, instance)
+                if compared is not None:
+                    compared.keeps(t)
         else:
             judge = self._judge(compiled, lane, captured, instance)
 
@@ -294,21 +297,24 @@ class Lanes:
         lane.add_starter(starter)
         return starter
 
-    def _compare(
-        self, parent: Lane, lane: Lane, compiled: CompiledRequirement, instance: Instance | None
-    ) -> None:
+    def _compared(
+        self,
+        parent: Lane,
+        compiled: CompiledRequirement,
+        captured: Captured,
+        instance: Instance | None,
+    ) -> CapturedAttempt | None:
         """Have it seen in the parent whether the values of a captured attempt stay known."""
         doubted = instance is not None and instance.value is None
         obligation = compiled.obligation
-        doubt = obligation.doubt.get(doubted, obligation.trigger)
+        doubt = obligation.doubt or obligation.trigger
         main = self._by_id[compiled.requirement.id].obligation
         if main.trigger is None or doubt is None or doubt is main.trigger:
-            return  # what it owes, it owes at one position
+            return None  # what it owes, it owes at one position
         index = parent.flow.graph.index
-        lane.flow.cut_off(lane.flow.graph.index[obligation.trigger or doubt])
-        one = CapturedAttempt(parent, lane, compiled, index[main.trigger], index[doubt])
-        parent.captured.append(one)
-        one.keeps(parent.flow.position)
+        # Of what has a key that is not known, another may have begun wherever the episode runs.
+        place = None if doubted and obligation.doubt is not None else index[doubt]
+        return CapturedAttempt(parent, compiled, captured, index[main.trigger], place)
 
     def _begin(
         self,
@@ -327,6 +333,7 @@ class Lanes:
                 lane.begin_episode(episode, t)
                 return
         attempt = judge.new_attempt(t, triggered)
+        attempt.void = lane.flow.is_cut
         if hidden:
             self.ledger.doubtful(rank, judge, attempt)
         else:
@@ -361,21 +368,29 @@ class Lanes:
         captured: Captured,
         instance: Instance | None,
         t: int,
-    ) -> tuple[Lane, Bench]:
+    ) -> tuple[Lane, Bench, CapturedAttempt | None]:
         """A lane for one attempt, triggered at `t`, in which its captured values are constants."""
         own = dict(captured)
         for capture in compiled.requirement.captures:
             own[capture.name] = captured_value(capture.value, parent.flow, own)
+        compared = self._compared(parent, compiled, own, instance)
+        lapses = compared is not None and compared.may_begin_otherwise
         graph = compiled.consequent_graph
         if _looks_back(compiled, parent.flow.graph):
             lane = Lane(self._flow(graph, own), (compiled, own))
+            if lapses:
+                lane.flow.cut_at(t)
             judge = self._judge(compiled, lane, own, instance)
             self._replay(lane, instance)
             lane.through(t)
         else:
             lane = Lane(parent.flow.fork(graph, own), (compiled, own))
+            if lapses:
+                lane.flow.cut_at(t)
             judge = self._judge(compiled, lane, own, instance)
-        return lane, judge
+        if compared is not None:
+            compared.follow(lane)
+        return lane, judge, compared
 
     def _replay(self, lane: Lane, instance: Instance | None) -> None:
         """Let a new lane see the samples so far."""

@@ -106,7 +106,10 @@ class Ledger:
 
     def say_nothing(self, judge: Bench, attempt: Open) -> None:
         """Take an attempt that stays undecided, whatever comes."""
-        why = Explanation("it was over before all that it speaks of had a value")
+        reason = "it was over before all that it speaks of had a value"
+        if judge.flow.is_cut:
+            reason = "it is not known which values it captured"
+        why = Explanation(reason)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
         self.void.append((judge.compiled.rank, attempt, record))
 

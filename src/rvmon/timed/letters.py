@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import assert_never
 
 from rvmon.formula.alphabet import Alphabet
-from rvmon.formula.state import FALSE, TRUE, Lost, Missing, StateOp, Unborn
+from rvmon.formula.state import FALSE, TRUE, Lapsed, Lost, Missing, StateOp, Unborn
 from rvmon.formula.state import State as Proposition
 from rvmon.spec.checked import (
     Compare,
@@ -73,7 +73,10 @@ class Letters:
                             pass
                         case _:
                             raise NotExpressibleError("it calculates with numbers")
-            case (StateOp.LEAF, Constant() | Unborn() | Missing() | Lost()) | (StateOp.SURE, _):
+            case (StateOp.LEAF, Constant() | Unborn() | Missing() | Lost() | Lapsed()) | (
+                StateOp.SURE,
+                _,
+            ):
                 pass
             case StateOp.LEAF, _:
                 raise NotExpressibleError("it speaks of updates or of the trace's ends")
@@ -104,7 +107,7 @@ class Letters:
         match proposition.leaf:
             case Constant(value=value):
                 return value
-            case Unborn() | Missing() | Lost():  # nor is anything unborn
+            case Unborn() | Missing() | Lost() | Lapsed():  # nor is anything unborn
                 return False
             case SignalAtom(name=name):
                 return bool(self._read(name, state))
