@@ -20,12 +20,6 @@ EQUIVALENT = {
     "key=_in_order)` => `sorted(residual, key=_in_order) if limit is None else residual`": (
         "the order says only which results are met on the way"
     ),
-    "lanes.py off by one: `len(known) + 1` => `len(known)`": "only the order of instances counts",
-    "lanes.py operator: `len(known) + 1` => `len(known) - 1`": "only the order of instances counts",
-    "lanes.py dropped operand: `requirement.for_each is not None and remembers` => "
-    "`requirement.for_each is not None`": (
-        "what came before is replayed where going on from now would do"
-    ),
     "past.py dropped operand: `value is None or isinstance(value, str)` => `value is None`": (
         "nothing is computed with labels: the checker refuses it"
     ),

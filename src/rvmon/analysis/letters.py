@@ -102,6 +102,7 @@ class Letters:
             return None
         read = [leaf for own in leaves.values() for leaf in own]
         steady = {n: n.leaf.value for n in nodes if isinstance(n.leaf, Constant)}
+        steady |= {n: False for n in nodes if isinstance(n.leaf, Lapsed)}  # nothing is unknown
         derived = [node for node in nodes if not _is_free(node)]
         rows = {}
         for chosen in product(*shown):
