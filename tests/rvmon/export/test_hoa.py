@@ -164,3 +164,12 @@ def test_windows_of_time_are_refused():
     spec = loads('spec s\nevent e\nrequirement R1 "x"\n  upon start\n  then within 3 s e\n')
     with pytest.raises(RvmonError, match="windows of time, which HOA cannot say"):
         hoa(compile_spec(spec.checked).requirements["R1"])
+
+
+def test_states_that_differ_only_where_something_is_unknown_are_one():
+    """Of `p <-> eventually always p` nothing is ever decided: one state is enough."""
+    spec = loads(
+        "spec s\nsignal p : bool\nrequirement R\n"
+        "  upon start\n  then p iff eventually always p\n"
+    )
+    assert "States: 1\n" in hoa(compile_spec(spec.checked).requirements["R"])
