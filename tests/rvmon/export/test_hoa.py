@@ -169,7 +169,6 @@ def test_windows_of_time_are_refused():
 def test_states_that_differ_only_where_something_is_unknown_are_one():
     """Of `p <-> eventually always p` nothing is ever decided: one state is enough."""
     spec = loads(
-        "spec s\nsignal p : bool\nrequirement R\n"
-        "  upon start\n  then p iff eventually always p\n"
+        "spec s\nsignal p : bool\nrequirement R\n  upon start\n  then p iff eventually always p\n"
     )
     assert "States: 1\n" in hoa(compile_spec(spec.checked).requirements["R"])
