@@ -43,8 +43,10 @@ class OneCall:
             raise
 
     def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
-        self._guarded._leave()
-        self._lock.release()
+        try:
+            self._guarded._leave()
+        finally:
+            self._lock.release()
         if self.restored and isinstance(error, Exception) and not isinstance(error, RvmonError):
             raise SnapshotError(
                 "the snapshot that this monitor was made of was damaged: what it held fits no "
