@@ -27,7 +27,7 @@ from rvmon.automaton.reduce import reduce
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.monitor.wording import Words
+from rvmon.monitor.obligation_words import Words
 from rvmon.spec.checked import Binary, Formula, Unary
 from rvmon.testing.build import p, requirement, start
 from rvmon.testing.generate_formula import Shape, formula

@@ -14,11 +14,11 @@ from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
-    from rvmon.codegen.plan import Plan
+    from rvmon.codegen.unit_plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
-    from rvmon.monitor.measured import Margins
     from rvmon.monitor.robustness import RobustnessMonitor
+    from rvmon.monitor.robustness_values import Margins
     from rvmon.readers.columns import TableRecording
     from rvmon.readers.reading import Reading, ReadingArguments, Telling
     from rvmon.readers.recording import FileRecording
@@ -115,7 +115,7 @@ class Spec:
             UnknownNameError: there is no such requirement.
             RvmonError: one of them is beyond generated code; which and why is said.
         """
-        from rvmon.monitor.planned import plan_alone
+        from rvmon.monitor.codegen_support import plan_alone
 
         return plan_alone(self._compiled, only)
 

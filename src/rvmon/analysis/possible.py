@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.analysis.letters import combinations_of
+from rvmon.analysis.combinations import combinations_of
 from rvmon.analysis.regions import Regions, row_of
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.analysis.letters import Letters, Table, Truths
+from rvmon.analysis.combinations import Letters, Table, Truths
 from rvmon.analysis.possible import automaton_letter
 from rvmon.analysis.regions import Regions, after_edge, row_of
 from rvmon.analysis.subject import Subject

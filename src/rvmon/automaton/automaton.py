@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 from dataclasses import dataclass
 
-from rvmon.automaton.letters import LetterClasses
+from rvmon.automaton.letter_classes import LetterClasses
 from rvmon.automaton.location import Location
 from rvmon.formula.alphabet import Alphabet
 

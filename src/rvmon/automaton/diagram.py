@@ -9,7 +9,7 @@ from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from rvmon.automaton.letters import LetterClasses, LetterDiagram, Tree, joined
+from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram, Tree, joined
 from rvmon.formula.alphabet import Alphabet, holds
 from rvmon.formula.core import Literal, Sense
 from rvmon.formula.residual import FAILS, HOLDS, Atom, Residual, substitute

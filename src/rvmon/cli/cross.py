@@ -105,7 +105,7 @@ def _as_run_takes_them(
     recording: Recording, spec: CheckedSpec
 ) -> tuple[list[Sample], tuple[int, int] | None]:
     """The samples in order of time, and how many came too late, with the first one's instant."""
-    from rvmon.cli.second_look import in_order
+    from rvmon.cli.post_analysis import in_order
     from rvmon.monitor.intake import Intake
 
     if not spec.max_delay:

@@ -11,9 +11,9 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from rvmon.children import workers
+from rvmon.cli.post_analysis import can_be_read_again, post_analysis
 from rvmon.cli.progress import shown_while_reading
 from rvmon.cli.reading import opened
-from rvmon.cli.second_look import can_be_read_again, second_look
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.loading import load
 from rvmon.readers.reading import Telling
@@ -23,7 +23,7 @@ from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
-    from rvmon.monitor.measured import Measured
+    from rvmon.monitor.robustness_values import Measured
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -173,7 +173,7 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(_shown(trace), None, tuple(before), place + message)
-    report = second_look(spec, trace, report, recording.names, goals=options.only is None)
+    report = post_analysis(spec, trace, report, recording.names, goals=options.only is None)
     trace = _shown(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
     return Judged(trace, replace(report, trace=trace, health=health), missing=missing)
@@ -208,7 +208,7 @@ class _Meter:
     def told(self, report: Report, end: int | None) -> Report:
         """The report with a figure for each attempt."""
         self._found.extend(self._monitor.finish_ns(end))
-        from rvmon.monitor.measured import margins_from
+        from rvmon.monitor.robustness_values import margins_from
 
         margins = margins_from(self._found)
         return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))

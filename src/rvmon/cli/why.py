@@ -57,9 +57,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
     from rvmon.cli.constants import constants_of
-    from rvmon.cli.second_look import in_order
+    from rvmon.cli.post_analysis import in_order
     from rvmon.explain.dissect import dissect
-    from rvmon.explain.miss import nearest_miss
+    from rvmon.explain.nearest_miss import nearest_miss
     from rvmon.loading import load
     from rvmon.trace.time import ticks_of_seconds
 

@@ -15,7 +15,7 @@ from rvmon.codegen.c_exact import too_large, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
 from rvmon.codegen.c_source import c_files
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import reprlib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import TraceError
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import Missing

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import assert_never
 
 from rvmon.codegen.c_names import Memory, Names, memory_of
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import events_of
 from rvmon.errors import RvmonError
 from rvmon.formula.numeric import signals_of

@@ -6,7 +6,7 @@ import re
 from enum import Enum
 from functools import cached_property
 
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import Elapsed, State, StateOp
 
 _TAKEN = (

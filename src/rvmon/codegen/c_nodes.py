@@ -14,7 +14,7 @@ from itertools import chain
 
 from rvmon.codegen.c_leaves import node_body
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.plan import Plan, PlannedRule
+from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State, StateOp
 from rvmon.spec.checked import ProbeAtom
 

@@ -23,7 +23,7 @@ from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind

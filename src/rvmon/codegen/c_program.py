@@ -11,7 +11,7 @@ from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.diagnostics.shown import shown_json
 from rvmon.spec.checked import Type
 from rvmon.spec.reads import names_of_requirement

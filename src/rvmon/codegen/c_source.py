@@ -24,7 +24,7 @@ from rvmon.codegen.c_samples import SAMPLE, take_source
 from rvmon.codegen.c_tables import array, automata_source, lists, repeats
 from rvmon.codegen.c_text import called, filled, template
 from rvmon.codegen.comment import comment
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError
 from rvmon.formula.state import StateOp
 

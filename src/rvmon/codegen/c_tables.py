@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.tables import TableData, tables_of
+from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.spec.checked import EndPolicy, Mode
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.end import settle_at_end

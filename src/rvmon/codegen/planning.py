@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.codegen.plan import Plan, PlannedRule, Uses
+from rvmon.codegen.unit_plan import Plan, PlannedRule, Uses
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf, Missing, Unborn

@@ -7,14 +7,14 @@ from importlib.resources import files
 
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, outcomes
 from rvmon.codegen.comment import comment
-from rvmon.codegen.plan import Plan, PlannedRule
 from rvmon.codegen.python_source import judges, unit_source
 from rvmon.codegen.tables import tables_of
+from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type
 from rvmon.trace.schema import Kind
 
-_RUNTIME = ("past", "table", "rule", "solo", "bulk", "nodes", "unit", "alone")
+_RUNTIME = ("past", "table", "rule", "solo", "bulk", "nodes", "unit", "standalone")
 
 _HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 and nothing else.
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.codegen.plan import Plan
-from rvmon.codegen.python_cones import ConeWriter
+from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_values import ValueWriter
 from rvmon.codegen.python_visit import VisitWriter, alone, at_hand, indented
+from rvmon.codegen.unit_plan import Plan
 
 _WHOLE = 64
 """Up to so many names, samples that hold all of them are taken name by name."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import assert_never
 
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import events_of
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Missing, Unborn

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import assert_never
 
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_leaves import leaf_expression
+from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import Elapsed, State, StateOp
 from rvmon.spec.checked import Constant
 

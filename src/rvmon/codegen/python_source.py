@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.codegen.comment import comment
-from rvmon.codegen.plan import Plan, PlannedRule
-from rvmon.codegen.python_cones import ConeWriter
 from rvmon.codegen.python_intake import IntakeWriter
+from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_nodes import (
     NodeWriter,
     bits,
@@ -19,6 +18,7 @@ from rvmon.codegen.python_nodes import (
 from rvmon.codegen.python_visit import VisitWriter, indented
 from rvmon.codegen.runtime.solo import only_location
 from rvmon.codegen.tables import tables_of
+from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State
 from rvmon.spec.checked import Compare, Mode, ProbeAtom, SignalAtom
 from rvmon.spec.printer import format_formula

@@ -7,7 +7,6 @@ import math
 import operator
 from typing import Any
 
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_source import unit_source
 from rvmon.codegen.runtime.bulk import BulkRule
 from rvmon.codegen.runtime.nodes import BUSY, LIMIT, MISSING
@@ -17,6 +16,7 @@ from rvmon.codegen.runtime.solo import SoloRule
 from rvmon.codegen.runtime.table import NEVER, Table, letter_table
 from rvmon.codegen.runtime.unit import Unit, closures
 from rvmon.codegen.tables import tables_of
+from rvmon.codegen.unit_plan import Plan
 
 
 def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]:

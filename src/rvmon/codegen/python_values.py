@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_leaves import known_test, leaf_expression
 from rvmon.codegen.python_nodes import bits
 from rvmon.codegen.python_visit import indented
+from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.state import UNKNOWN, Leaf, Missing, Unborn
 from rvmon.spec.checked import Compare, SignalAtom

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_nodes import NEVER, NodeWriter, Roles, bits, keeps_stretches
+from rvmon.codegen.unit_plan import Plan
 from rvmon.spec.checked import Mode
 
 _ARRAYS = (

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.end import EndClause, end_clauses
-from rvmon.automaton.letters import LetterClasses, LetterDiagram
+from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram
 
 Edge = tuple[int, tuple[int, ...]]
 """Target, and for each of its clocks the old clock it is, or −1 for one started now."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rvmon.dataflow.evaluate import evaluated
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Leaf, Shift, Sweep, operands_of
-from rvmon.dataflow.pieces import FAR, PAST, Pieces, as_past, clip, soonest, stamp, up_to
+from rvmon.dataflow.piecewise import FAR, PAST, Pieces, as_past, clip, soonest, stamp, up_to
 from rvmon.dataflow.sweep import Carried, Known
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.dataflow.nodes import Junction, Node, Shift, Sweep, Window
-from rvmon.dataflow.pieces import (
+from rvmon.dataflow.piecewise import (
     EVER,
     FAR,
     Pieces,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Self, assert_never
 
 from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window
-from rvmon.dataflow.pieces import FAR, PAST, Piece, as_past, stamp, up_to
+from rvmon.dataflow.piecewise import FAR, PAST, Piece, as_past, stamp, up_to
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.ranges import drop, end_of, retract, settle
 from rvmon.dataflow.sweep import Carried, Known

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from rvmon.dataflow.evaluate import Range, evaluated
 from rvmon.dataflow.knowledge import Knowledge
 from rvmon.dataflow.nodes import Leaf, Node, Shift, Sweep, Window, operands_of
-from rvmon.dataflow.pieces import FAR, PAST, Piece, Pieces, append, up_to
+from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, up_to
 from rvmon.dataflow.ranges import gaps, holds, insert, merged, retract, some_before
 from rvmon.dataflow.sweep import Carried, Known
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 
-from rvmon.dataflow.pieces import FAR, PAST, Piece, Pieces, append, clip
+from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, clip
 
 
 class Positions:

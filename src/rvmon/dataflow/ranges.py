@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from operator import itemgetter
 
 from rvmon.dataflow.evaluate import Range
-from rvmon.dataflow.pieces import FAR, PAST, Piece, Pieces, append, span
+from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, span
 from rvmon.dataflow.sweep import Known
 
 _left = itemgetter(0)

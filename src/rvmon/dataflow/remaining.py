@@ -12,7 +12,7 @@ from typing import assert_never
 
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Sweep
-from rvmon.dataflow.pieces import FAR, up_to
+from rvmon.dataflow.piecewise import FAR, up_to
 from rvmon.dataflow.ranges import stretch
 from rvmon.dataflow.sweep import Known
 from rvmon.formula.core import (

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 
-from rvmon.dataflow.cells import Cell, Horizon, Rest, cell_of
+from rvmon.dataflow.margin_nodes import Cell, Horizon, Rest, cell_of
 from rvmon.dataflow.nodes import Junction, Plan, Sweep, Window, operands_of
-from rvmon.dataflow.pieces import FAR
+from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.steps import Step, Steps
 
@@ -26,7 +26,7 @@ class Gauge:
         plan: of the formula.
         gap: ticks between two positions; `None` if only samples are positions.
 
-    Memory: what is not settled; see `rvmon.dataflow.cells`.
+    Memory: what is not settled; see `rvmon.dataflow.margin_nodes`.
     """
 
     def __init__(self, plan: Plan, gap: int | None) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import MutableSequence, Sequence
 
-from rvmon.dataflow.pieces import FAR
+from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.positions import Positions
 
 Step = tuple[int, int, float]

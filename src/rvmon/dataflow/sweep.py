@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.dataflow.pieces import Line, Piece, Pieces, append, clip, latest, soonest, stamp
+from rvmon.dataflow.piecewise import Line, Piece, Pieces, append, clip, latest, soonest, stamp
 
 Known = tuple[Pieces, Pieces]
 """Where something is known to be true, and where to be false."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.explain.anatomy import Anatomy, Strand
-from rvmon.explain.eye import Eye, subformulas
 from rvmon.explain.late import late_arrivals
 from rvmon.explain.spans import both, outside
 from rvmon.explain.tempo import small_step
+from rvmon.explain.truth_over_trace import Eye, subformulas
 from rvmon.spec.checked import BoundAtom, CheckedSpec, Constant, Formula
 from rvmon.spec.printer import format_formula
 from rvmon.trace.sample import Sample

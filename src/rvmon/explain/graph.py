@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.analysis.letters import combinations_of
+from rvmon.analysis.combinations import combinations_of
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.explain.cubes import ANY, Cube, cubes_of

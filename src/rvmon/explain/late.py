@@ -5,10 +5,10 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 
-from rvmon.explain.eye import positions_of, subformulas
-from rvmon.explain.log import state_truths
 from rvmon.explain.spans import Spans
+from rvmon.explain.state_truths import state_truths
 from rvmon.explain.states import state_of
+from rvmon.explain.truth_over_trace import positions_of, subformulas
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import has_future
 from rvmon.monitor.instances import Instance

@@ -26,8 +26,8 @@ from rvmon.timed.model import (
     Update,
     Variable,
 )
-from rvmon.timed.pieces import has_paths
 from rvmon.timed.syntax import LocationKind
+from rvmon.timed.zone_unions import has_paths
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _HEAD = """<?xml version="1.0" encoding="utf-8"?>

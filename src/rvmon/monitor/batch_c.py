@@ -11,8 +11,8 @@ import numpy as np
 from rvmon.codegen.c_batch import NO, YES, BatchLibrary, BatchRun, Column
 from rvmon.codegen.c_columns import columns_of_samples
 from rvmon.errors import TimeOrderError
+from rvmon.monitor.codegen_support import plan_alone
 from rvmon.monitor.compiled import CompiledSpec
-from rvmon.monitor.planned import plan_alone
 from rvmon.monitor.recorded import report_of_records
 from rvmon.monitor.validate import Validator
 from rvmon.spec.checked import CheckedSpec

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.batch import evaluate_plain
+from rvmon.monitor.codegen_support import can_feed, plan_requirements
 from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
-from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.readers.block_readers import reader_of
 from rvmon.readers.blocks import NotPlainError
 from rvmon.trace.schema import Schema

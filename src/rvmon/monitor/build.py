@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.monitor.codegen_support import can_feed
 from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.generated import Forms, GeneratedMonitor
 from rvmon.monitor.monitor import Monitor
-from rvmon.monitor.planned import can_feed
 from rvmon.spec.asked import requirements_asked
 
 _GENERATED = ("auto", "python")

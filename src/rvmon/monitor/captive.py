@@ -9,7 +9,7 @@ from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import payloads_of
 from rvmon.dataflow.numbers import reader
 from rvmon.formula.state import FALSE, UNKNOWN
-from rvmon.monitor.bench import Open, doubt_in, leaves_in
+from rvmon.monitor.attempt_judge import Open, doubt_in, leaves_in
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.lane import Lane
 from rvmon.spec.checked import Numeric

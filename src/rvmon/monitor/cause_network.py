@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from rvmon.dataflow.network import Network
-from rvmon.dataflow.pieces import FAR
+from rvmon.dataflow.piecewise import FAR
 from rvmon.formula.core import (
     And,
     Constant,

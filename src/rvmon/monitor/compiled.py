@@ -17,16 +17,16 @@ from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.dataflow.graph import Graph, graph_of, leaf_texts
+from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.numbers import events_of, inputs_of
-from rvmon.dataflow.plan import plan_of
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import Obligation, UnmonitorableError, lower
 from rvmon.formula.state import State
-from rvmon.monitor.wording import Words
+from rvmon.monitor.obligation_words import Words
 from rvmon.spec.checked import CheckedSpec, Compare, Mode, Requirement, TimeModel
 
 RUN_BYTES = 20

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 
 
 class Episode:
@@ -31,7 +31,7 @@ class Episode:
 
     def __init__(
         self,
-        judge: Bench,
+        judge: AttemptJudge,
         flow: Flow,
         *,
         doubted: bool,

@@ -11,12 +11,12 @@ from rvmon.automaton.stretch import run
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.horizon import horizon
 from rvmon.formula.progress import after
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.doubt import outage_in_words
 from rvmon.monitor.judge import Judge
+from rvmon.monitor.obligation_words import settled_alone
 from rvmon.monitor.reasons import Reasons
 from rvmon.monitor.sentence import told
-from rvmon.monitor.wording import settled_alone
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
@@ -35,7 +35,7 @@ class Explanation:
 def explain_decision(
     judge: Judge, attempt: Open, verdict: bool, t: int, before: Token
 ) -> Explanation:
-    """Why an attempt was decided at `t`; see `rvmon.monitor.bench.Clerk.decided`."""
+    """Why an attempt was decided at `t`; see `rvmon.monitor.attempt_judge.Clerk.decided`."""
     letter = judge.letters[0 if verdict else 1]
     machine, flow = judge.machine, judge.flow
     token = just_before(machine, before, letter, judge.position, t, flow.gap)
@@ -150,7 +150,7 @@ def still_owed(owed: str, end: int | None) -> str:
     return f"still owed{when}: {owed}"
 
 
-def unborn(judge: Bench, end: int | None) -> str:
+def unborn(judge: AttemptJudge, end: int | None) -> str:
     """Which of what a requirement reads has had no value so far: nothing holds of it, or fails."""
     reads, outages = judge.flow.graph.reads, judge.flow.outages
     names = {name for place, _ in judge.leaves for name in reads[place].names & outages.keys()}
@@ -161,7 +161,7 @@ def unborn(judge: Bench, end: int | None) -> str:
     )
 
 
-def longer(judge: Bench, attempt: Open, end: int | None) -> str:
+def longer(judge: AttemptJudge, attempt: Open, end: int | None) -> str:
     """How much longer a trace that has ended would decide an attempt, whatever it brings."""
     if end is None:
         return ""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rvmon.automaton.location import FAILED
 from rvmon.automaton.machine import Token
-from rvmon.dataflow.alone import known_alone, settled
 from rvmon.dataflow.network import Network
-from rvmon.monitor.bench import Open
+from rvmon.dataflow.time_decisions import known_alone, settled
+from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.cause_network import NetworkCauseFinder
 from rvmon.monitor.explain import Explanation, earlier, longer, still_owed, unborn
 from rvmon.monitor.network_judge import WAITING, NetworkJudge

@@ -7,7 +7,7 @@ from rvmon.automaton.machine import Token
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.remaining import Remaining
 from rvmon.formula.residual import TooManyClausesError
-from rvmon.monitor.bench import Open
+from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.verdict.verdict import Verdict

@@ -29,20 +29,20 @@ from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.positions import Positions
 from rvmon.errors import SnapshotError
-from rvmon.monitor.bench import Open
+from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.doubt import Doubt
 from rvmon.monitor.episode import Episode
+from rvmon.monitor.fed_judge import FedJudge
 from rvmon.monitor.generated import GeneratedLanes, GeneratedMonitor
 from rvmon.monitor.health import HealthLog
-from rvmon.monitor.hosted import HostedRule
 from rvmon.monitor.intake import Intake
 from rvmon.monitor.judge import Judge
-from rvmon.monitor.kept import Kept
 from rvmon.monitor.lane import Lane, Starter
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.network_judge import NetworkJudge
+from rvmon.monitor.retention import Kept
 from rvmon.monitor.trigger import Trigger
 from rvmon.readers.coalesce import Conflicts
 from rvmon.trace.health import HealthKind
@@ -75,7 +75,7 @@ _KEPT: Mapping[type, tuple[str, ...]] = {
         *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
         *("before", "running", "current", "failed_at", "clouded", "eyed"),
     ),
-    HostedRule: (
+    FedJudge: (
         *("_judge", "_episode", "due", "restless", "before", "running", "failed_at", "eyed"),
     ),
     Episode: ("current", "failed_at"),

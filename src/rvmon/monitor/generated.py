@@ -12,15 +12,15 @@ from rvmon.codegen.runtime.nodes import BUSY, LIMIT
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
-from rvmon.monitor.bench import Bench, Holder, Open, held_by
+from rvmon.monitor.attempt_judge import AttemptJudge, Holder, Open, held_by
+from rvmon.monitor.codegen_support import can_feed, plan_requirements
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.hosted import HostedRule
+from rvmon.monitor.fed_judge import FedJudge
+from rvmon.monitor.generated_records import GeneratedRecords
 from rvmon.monitor.lanes import Lanes, Shape
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.one_call import overlap
-from rvmon.monitor.planned import can_feed, plan_requirements
-from rvmon.monitor.seat import Seat
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
@@ -93,7 +93,7 @@ class GeneratedLanes(Lanes):
         self.outages = outages_at_first(spec, absent)
         self._counts = [0] * len(forms.requirements)
         self._seats = [
-            Seat(one, forms.plan, unit, ledger, self._counts, noted)
+            GeneratedRecords(one, forms.plan, unit, ledger, self._counts, noted)
             for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
         unit.restart(self, [*self._seats, *(None for _ in forms.plan.hidden_of)])
@@ -101,7 +101,7 @@ class GeneratedLanes(Lanes):
         judged += [forms.requirements[index].hidden for index in forms.plan.hidden_of]
         for index, one in enumerate(judged):
             if forms.machines[index] is None and one is not None:
-                unit.rules[index] = rule = HostedRule(index, one, forms.plan, unit, ledger)
+                unit.rules[index] = rule = FedJudge(index, one, forms.plan, unit, ledger)
                 if one.network_plan.looks_back:
                     # What it owes depends on what was before.
                     rule.judge.restless = rule.restless = True
@@ -127,7 +127,7 @@ class GeneratedLanes(Lanes):
     # What the monitor calls.
 
     @property
-    def judges(self) -> Sequence[Bench]:
+    def judges(self) -> Sequence[AttemptJudge]:
         """The judges of all lanes."""
         own = (self._judge_now(rule) for rule in self.unit.rules)
         return [*(judge for judge in own if judge is not None), *super().judges]
@@ -137,14 +137,14 @@ class GeneratedLanes(Lanes):
         return [*(self._holder(rule) for rule in self.unit.rules), *super().holders()]
 
     def _holder(self, rule: Rule) -> tuple[str, Holder, Open | None]:
-        if isinstance(rule, HostedRule):
+        if isinstance(rule, FedJudge):
             return held_by(rule.judge)
         running = (one for one in rule.attempts if one.triggered == rule.current)
         return self._seats[rule.index].compiled.requirement.id, rule, next(running, None)
 
-    def _judge_now(self, rule: Rule) -> Bench | None:
+    def _judge_now(self, rule: Rule) -> AttemptJudge | None:
         """The judge of a rule, or how it would stand if there were one; `None`: nobody asked it."""
-        if isinstance(rule, HostedRule):
+        if isinstance(rule, FedJudge):
             rule.stand()
             return rule.judge if rule.runs else None
         return self._seats[rule.index].judge_now(rule)
@@ -188,7 +188,7 @@ class GeneratedLanes(Lanes):
         """See `Lanes`."""
         instances, lanes, unopened, _ = super().shape()
         rules = self.unit.rules
-        hosted = [rule.index for rule in rules if isinstance(rule, HostedRule) and rule.runs]
+        hosted = [rule.index for rule in rules if isinstance(rule, FedJudge) and rule.runs]
         return instances, lanes, unopened, hosted
 
     def rebuild(self, shape: Shape) -> None:
@@ -196,7 +196,7 @@ class GeneratedLanes(Lanes):
         super().rebuild(shape)
         for index in shape[3]:
             rule = self.unit.rules[index]
-            if isinstance(rule, HostedRule):
+            if isinstance(rule, FedJudge):
                 rule.stand()
                 _ = rule.judge  # it is made when it is asked for
 

@@ -9,7 +9,7 @@ from rvmon.automaton.machine import INFINITY, Machine, Token
 from rvmon.automaton.stretch import next_cut, run, settle
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.progress import after, holds_at_end
-from rvmon.monitor.bench import Bench, Clerk, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.trace.sample import Scalar
 
@@ -17,7 +17,7 @@ Drive = Callable[[Token, int], tuple[Token, int]]
 """Takes a token on under a letter; gives it with the instant of its decision, or when it is due."""
 
 
-class Judge(Bench):
+class Judge(AttemptJudge):
     """Judges by the tokens of a machine.
 
     Attributes:
@@ -49,11 +49,11 @@ class Judge(Bench):
         )
 
     def new_attempt(self, _: int, triggered: int) -> Open:
-        """See `Bench`."""
+        """See `AttemptJudge`."""
         return Open(triggered, self.machine.start, self.seen)
 
     def begin(self, attempt: Open, t: int) -> None:
-        """See `Bench`."""
+        """See `AttemptJudge`."""
         if self.position < t:
             self.visit(t)
         due = self._drive(attempt, self._stepping(t))

@@ -14,7 +14,7 @@ from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Reported
 from rvmon.formula.state import TRUE
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
 from rvmon.monitor.trigger import Trigger
@@ -66,27 +66,27 @@ class Lane:
     ) -> None:
         self.flow = flow
         self.made_for = made_for
-        self.judges: list[Bench] = []
+        self.judges: list[AttemptJudge] = []
         self.starters: list[Starter] = []
         self.episodes: list[Episode] = []
         self.captured: list[Captive] = []
         self.blurs = True
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
         nodes = flow.graph.nodes
-        self._judges_at: list[list[Bench]] = [[] for _ in nodes]
+        self._judges_at: list[list[AttemptJudge]] = [[] for _ in nodes]
         self._starters_at: list[list[Starter]] = [[] for _ in nodes]
         self._expected: list[CompiledRequirement] = []
         self._looking: list[list[Episode]] = [[] for _ in nodes]
         self._going_on: list[list[Episode]] = [[] for _ in nodes]
         self._failed: dict[Episode, None] = {}
-        self._restless: dict[Bench, None] = {}
+        self._restless: dict[AttemptJudge, None] = {}
         self._repeating: dict[Starter, None] = {}
         self._soonest = INFINITY
         """No judge is due before."""
         self._awaited = INFINITY
         """The next position at which samples that were taken will show."""
 
-    def add_judge(self, judge: Bench) -> None:
+    def add_judge(self, judge: AttemptJudge) -> None:
         """Have a requirement's attempts driven."""
         self.judges.append(judge)
         for place in judge.places:
@@ -207,7 +207,7 @@ class Lane:
         for judge in self.judges:
             self._note(judge)
 
-    def _note(self, judge: Bench) -> None:
+    def _note(self, judge: AttemptJudge) -> None:
         """Remember when a judge has to be seen to, after something was done to it."""
         self._soonest = min(self._soonest, judge.due)
         if judge.restless:
@@ -259,7 +259,7 @@ class Lane:
         elif episode.failed_at is not None and t <= episode.failed_at:
             self._failed[episode] = None
 
-    def begin(self, judge: Bench, attempt: Open, t: int) -> None:
+    def begin(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """Drive an attempt of one of the judges from the position `t` on, which the flow is at."""
         judge.begin(attempt, t)
         self._note(judge)
@@ -269,7 +269,7 @@ class Lane:
         episode.begin(t, t)
         self._note(episode.judge)
 
-    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[Bench]:
+    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[AttemptJudge]:
         """The judges that have to visit the position at `t`."""
         concerned = self._restless
         self._restless = {}

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs
-from rvmon.monitor.bench import Bench, Holder, Open, held_by
+from rvmon.monitor.attempt_judge import AttemptJudge, Holder, Open, held_by
 from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
@@ -102,7 +102,7 @@ class Lanes:
         return [lane for lane, _ in self._entries]
 
     @property
-    def judges(self) -> Sequence[Bench]:
+    def judges(self) -> Sequence[AttemptJudge]:
         """The judges of all lanes."""
         return [judge for lane in self.all for judge in lane.judges]
 
@@ -228,7 +228,7 @@ class Lanes:
         lane: Lane,
         captured: Captured,
         instance: Instance | None,
-    ) -> Bench:
+    ) -> AttemptJudge:
         judge = self._new_judge(compiled, lane.flow, captured)
         lane.add_judge(judge)
         episodic = compiled.requirement.mode is Mode.WHENEVER
@@ -236,7 +236,9 @@ class Lanes:
             self._follow_episodes(lane, judge, instance)
         return judge
 
-    def _new_judge(self, compiled: CompiledRequirement, flow: Flow, captured: Captured) -> Bench:
+    def _new_judge(
+        self, compiled: CompiledRequirement, flow: Flow, captured: Captured
+    ) -> AttemptJudge:
         if compiled.is_beside or compiled.engine(self.engine) == "network":
             return NetworkJudge(compiled, compiled.network_plan, flow, self.ledger, captured)
         return Judge(compiled, compiled.machine(self.engine), flow, self.ledger, captured)
@@ -319,7 +321,7 @@ class Lanes:
     def _begin(
         self,
         lane: Lane,
-        judge: Bench,
+        judge: AttemptJudge,
         instance: Instance | None,
         t: int,
         triggered: int,
@@ -341,7 +343,7 @@ class Lanes:
             self.ledger.sure(rank, judge, attempt, triggered)
         lane.begin(judge, attempt, t)
 
-    def _follow_episodes(self, lane: Lane, judge: Bench, instance: Instance | None) -> None:
+    def _follow_episodes(self, lane: Lane, judge: AttemptJudge, instance: Instance | None) -> None:
         rank = 0 if instance is None else instance.rank
         ledger = self.ledger
 
@@ -368,7 +370,7 @@ class Lanes:
         captured: Captured,
         instance: Instance | None,
         t: int,
-    ) -> tuple[Lane, Bench, CapturedAttempt | None]:
+    ) -> tuple[Lane, AttemptJudge, CapturedAttempt | None]:
         """A lane for one attempt, triggered at `t`, in which its captured values are constants."""
         own = dict(captured)
         for capture in compiled.requirement.captures:

@@ -9,9 +9,9 @@ from operator import itemgetter
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.formula.state import TRUE, UNKNOWN
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.explain import Explanation
-from rvmon.monitor.tell import outlook, why_decided, why_open
+from rvmon.monitor.explain_dispatch import outlook, why_decided, why_open
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.end import settle_at_end
@@ -37,14 +37,14 @@ class Ledger:
     def __init__(self) -> None:
         self.attempts: list[Attempt] = []
         self._counts: dict[str, int] = {}
-        self._started: list[tuple[int, int, Bench, Open]] = []
-        self._doubtful: list[tuple[int, int, Bench, Open]] = []
+        self._started: list[tuple[int, int, AttemptJudge, Open]] = []
+        self._doubtful: list[tuple[int, int, AttemptJudge, Open]] = []
         self._doubts: dict[str, int] = {}
         self.void: list[tuple[int, Open, Attempt]] = []
-        self._decided: list[tuple[Bench, Open, Attempt]] = []
+        self._decided: list[tuple[AttemptJudge, Open, Attempt]] = []
         self.told: list[tuple[int, int, int, Attempt]] = []
 
-    def sure(self, instance: int, judge: Bench, attempt: Open, t: int) -> None:
+    def sure(self, instance: int, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """Take an attempt whose trigger was true, at `t` first, to be numbered by that.
 
         Args:
@@ -55,7 +55,7 @@ class Ledger:
         """
         self._started.append((t, instance, judge, attempt))
 
-    def doubtful(self, instance: int, judge: Bench, attempt: Open) -> None:
+    def doubtful(self, instance: int, judge: AttemptJudge, attempt: Open) -> None:
         """Take a new attempt of which it is not known whether there was a trigger; see `sure`."""
         self._doubtful.append((attempt.triggered, instance, judge, attempt))
 
@@ -64,8 +64,10 @@ class Ledger:
         self._doubts[name] = self._doubts.get(name, 0) + 1
         return self._doubts[name]
 
-    def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
-        """See `rvmon.monitor.bench.Clerk`."""
+    def decided(
+        self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
+    ) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
         if verdict and attempt.void:
             self.say_nothing(judge, attempt)
             return
@@ -87,7 +89,7 @@ class Ledger:
         )
         self._decided.append((judge, attempt, record))
 
-    def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
+    def ended(self, judge: AttemptJudge, attempt: Open, end: int, reached: int) -> None:
         """Take an attempt that is undecided at the end of the trace."""
         requirement = judge.compiled.requirement
         verdict, decision = verdict_at_end(judge, attempt, end, reached)
@@ -104,7 +106,7 @@ class Ledger:
             record = replace(record, forecast=_outlook(judge, attempt, now))
         self._decided.append((judge, attempt, record))
 
-    def say_nothing(self, judge: Bench, attempt: Open) -> None:
+    def say_nothing(self, judge: AttemptJudge, attempt: Open) -> None:
         """Take an attempt that stays undecided, whatever comes."""
         reason = "it was over before all that it speaks of had a value"
         if judge.flow.is_cut:
@@ -125,7 +127,7 @@ class Ledger:
         self.void.clear()
         return found
 
-    def open_record(self, judge: Bench, attempt: Open, now: int) -> Attempt:
+    def open_record(self, judge: AttemptJudge, attempt: Open, now: int) -> Attempt:
         """The record of an attempt that is still running; `now` as in `why_open`."""
         why = _why_open(judge, attempt, now)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
@@ -164,7 +166,9 @@ class Ledger:
         return records
 
 
-def verdict_at_end(judge: Bench, attempt: Open, end: int, reached: int) -> tuple[Verdict, Decision]:
+def verdict_at_end(
+    judge: AttemptJudge, attempt: Open, end: int, reached: int
+) -> tuple[Verdict, Decision]:
     """What becomes of an attempt that is undecided at the end of the trace."""
     passes = attempt.better is not None and attempt.better[0] == PASSED
     return settle_at_end(
@@ -176,7 +180,7 @@ def verdict_at_end(judge: Bench, attempt: Open, end: int, reached: int) -> tuple
 
 
 def _record(
-    judge: Bench,
+    judge: AttemptJudge,
     attempt: Open,
     decided: int | None,
     verdict: Verdict,
@@ -201,7 +205,7 @@ def _record(
     )
 
 
-def _why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> Explanation:
+def _why_open(judge: AttemptJudge, attempt: Open, now: int, end: int | None = None) -> Explanation:
     """What an undecided attempt waits for; one in doubt waits for nothing but to be met."""
     if attempt.sure:
         why = why_open(judge, attempt, now, end)
@@ -214,7 +218,7 @@ def _why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> 
     return replace(why_open(judge, attempt.unsplit(), now, end), deadline=None)
 
 
-def _outlook(judge: Bench, attempt: Open, now: int) -> Verdict | None:
+def _outlook(judge: AttemptJudge, attempt: Open, now: int) -> Verdict | None:
     return outlook(judge, attempt, now) if attempt.sure and not attempt.void else None
 
 
@@ -222,7 +226,7 @@ def _number(attempt: Open) -> int:
     return attempt.number if attempt.sure else attempt.doubtful_number
 
 
-def values_shown(judge: Bench, seen: tuple[int, ...]) -> dict[str, Scalar]:
+def values_shown(judge: AttemptJudge, seen: tuple[int, ...]) -> dict[str, Scalar]:
     """The propositions concerned by their text; `None` is unknown."""
     return truths_shown([text for _, text in judge.leaves], seen)
 

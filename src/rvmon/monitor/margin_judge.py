@@ -6,20 +6,20 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from rvmon.automaton.machine import INFINITY
-from rvmon.dataflow.cells import Rest
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import NEVER
 from rvmon.dataflow.leaves import reads
+from rvmon.dataflow.margin_nodes import Rest
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import Plan
-from rvmon.dataflow.pieces import FAR
+from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.robust import Gauge
 from rvmon.dataflow.steps import INFINITE, Step, add
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
-from rvmon.monitor.bench import Bench, Clerk, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.measured import Robustness
+from rvmon.monitor.robustness_values import Robustness
 from rvmon.spec.checked import CheckedSpec
 from rvmon.trace.sample import Scalar
 
@@ -42,7 +42,7 @@ class Gauger(Clerk, Protocol):
         """Take the figure of a position that nothing can change any more."""
 
 
-class MarginJudge(Bench):
+class MarginJudge(AttemptJudge):
     """Follows the robustness of attempts: its least value, and its greatest if that differs.
 
     The attempts are those of another judge, which knows what becomes of them.

@@ -11,10 +11,10 @@ from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.intake import Intake
-from rvmon.monitor.kept import Kept
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.one_call import OneCall
+from rvmon.monitor.retention import Kept
 from rvmon.monitor.validate import Validator
 from rvmon.spec.checked import TimeModel
 from rvmon.trace.sample import Sample, Value

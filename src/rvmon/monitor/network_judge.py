@@ -8,18 +8,18 @@ from itertools import chain
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import INFINITY, Token
-from rvmon.dataflow.alone import Moment
 from rvmon.dataflow.at_end import held_at_end
 from rvmon.dataflow.evaluate import Range
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import Plan
-from rvmon.dataflow.pieces import Pieces, stamp
+from rvmon.dataflow.piecewise import Pieces, stamp
 from rvmon.dataflow.ranges import merged
 from rvmon.dataflow.sweep import Carried
+from rvmon.dataflow.time_decisions import Moment
 from rvmon.formula.core import Constant, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
-from rvmon.monitor.bench import Bench, Clerk, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.trace.sample import Scalar
 
@@ -33,7 +33,7 @@ _PATIENCE = 16
 """A letter that has stayed for a while is looked ahead for so many times that."""
 
 
-class NetworkJudge(Bench):
+class NetworkJudge(AttemptJudge):
     """Judges by a network, or by two as soon as something was unknown.
 
     Attributes:
@@ -92,11 +92,11 @@ class NetworkJudge(Bench):
         return worse, better
 
     def new_attempt(self, t: int, triggered: int) -> Open:
-        """See `Bench`."""
+        """See `AttemptJudge`."""
         return Open(triggered, (WAITING, (t,)), self.seen)
 
     def begin(self, attempt: Open, t: int) -> None:
-        """See `Bench`."""
+        """See `AttemptJudge`."""
         self.attempts.append(attempt)
         self._begin_network()
         if self._letters is None or self.position < t:

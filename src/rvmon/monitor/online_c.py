@@ -9,10 +9,10 @@ from rvmon.codegen.c_exact import several_payloads, too_large
 from rvmon.codegen.c_online import NEVER, NOT_YET, OnlineLibrary, online_library
 from rvmon.codegen.c_tables import VERDICTS
 from rvmon.errors import SnapshotError
+from rvmon.monitor.codegen_support import plan_alone
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.monitor import Monitor
-from rvmon.monitor.planned import plan_alone
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

@@ -17,7 +17,7 @@ from rvmon.formula.core import (
     Since,
     Until,
 )
-from rvmon.monitor.wording import Words, all_of
+from rvmon.monitor.obligation_words import Words, all_of
 from rvmon.trace.time import format_ticks
 
 

@@ -14,8 +14,8 @@ from rvmon.formula.residual import NO_CLOCK
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.cause import Cause, CauseFinder
 from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.obligation_words import deadline
 from rvmon.monitor.sentence import Sentence
-from rvmon.monitor.wording import deadline
 
 Instant = TypeVar("Instant")
 """In ticks: one, or an array of them."""

@@ -10,12 +10,12 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from rvmon.automaton.machine import Token
+from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import Plan
-from rvmon.dataflow.plan import plan_of
 from rvmon.dataflow.steps import INFINITE
 from rvmon.errors import UnknownNameError
 from rvmon.formula.expand import expanded
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.instances import Instance
 from rvmon.monitor.intake import WAYS_TO_SETTLE
@@ -23,8 +23,8 @@ from rvmon.monitor.lane import Lane
 from rvmon.monitor.lanes import Captured, Lanes
 from rvmon.monitor.ledger import Ledger, verdict_at_end
 from rvmon.monitor.margin_judge import MarginJudge
-from rvmon.monitor.measured import Margins, Measured, Robustness, margins_from
 from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.robustness_values import Margins, Measured, Robustness, margins_from
 from rvmon.spec.checked import CheckedSpec
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
@@ -172,7 +172,7 @@ class _MeasuringLanes(Lanes):
         lane: Lane,
         captured: Captured,
         instance: Instance | None,
-    ) -> Bench:
+    ) -> AttemptJudge:
         judge = super()._judge(compiled, lane, captured, instance)
         requirement = compiled.requirement
         if compiled not in self._plans:
@@ -218,28 +218,28 @@ class _Gauged(Ledger):
     def __init__(self) -> None:
         super().__init__()
         self.heard = -TIME_LIMIT
-        self.beside: WeakKeyDictionary[Bench, MarginJudge] = WeakKeyDictionary()
+        self.beside: WeakKeyDictionary[AttemptJudge, MarginJudge] = WeakKeyDictionary()
         self.vanished: set[Open] = set()
         self._found: list[tuple[MarginJudge, Open | None, int, Robustness]] = []
-        self._ends: dict[Bench, Mapping[int, Robustness]] = {}
+        self._ends: dict[AttemptJudge, Mapping[int, Robustness]] = {}
 
-    def sure(self, instance: int, judge: Bench, attempt: Open, t: int) -> None:
+    def sure(self, instance: int, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """See `Ledger`; what was in doubt before is measured already."""
         super().sure(instance, judge, attempt, t)
         if t == attempt.triggered:
             self._measure(judge, attempt)
 
-    def doubtful(self, instance: int, judge: Bench, attempt: Open) -> None:
+    def doubtful(self, instance: int, judge: AttemptJudge, attempt: Open) -> None:
         """See `Ledger`."""
         super().doubtful(instance, judge, attempt)
         self._measure(judge, attempt)
 
-    def _measure(self, judge: Bench, attempt: Open) -> None:
+    def _measure(self, judge: AttemptJudge, attempt: Open) -> None:
         sampled = judge.flow.gap is None
         self.beside[judge].begin(attempt, judge.flow.position if sampled else attempt.triggered)
 
-    def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, _: Token) -> None:
-        """See `rvmon.monitor.bench.Clerk`; there are no records."""
+    def decided(self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, _: Token) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`; there are no records."""
         if not attempt.sure:
             if verdict and not attempt.void:
                 self.vanished.add(attempt)
@@ -254,7 +254,7 @@ class _Gauged(Ledger):
         """See `rvmon.monitor.margin_judge.Gauger`."""
         self._found.append((judge, None, t, found))
 
-    def ended(self, judge: Bench, attempt: Open, end: int, reached: int) -> None:
+    def ended(self, judge: AttemptJudge, attempt: Open, end: int, reached: int) -> None:
         """See `Ledger`; each attempt is seen by its own judge first."""
         if isinstance(judge, MarginJudge):
             if judge not in self._ends:

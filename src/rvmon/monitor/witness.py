@@ -7,11 +7,11 @@ from functools import cached_property
 from typing import Any
 
 from rvmon.automaton.machine import Machine
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.runtime.bulk import FROM_TRIGGER, unpacked
+from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.outages import Outage
-from rvmon.monitor.bench import Clerk, Open
+from rvmon.monitor.attempt_judge import Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.explain import explained, just_before
 from rvmon.monitor.judge import Judge

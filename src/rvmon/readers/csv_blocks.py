@@ -14,7 +14,7 @@ from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, decimals, instants, truth_values, whole_numbers
 from rvmon.readers.held import held_values
-from rvmon.readers.pieces import BLOCK, whole_lines
+from rvmon.readers.line_chunks import BLOCK, whole_lines
 from rvmon.readers.ticks import ticks_in_range
 from rvmon.trace.schema import Kind, Schema
 

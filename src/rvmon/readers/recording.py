@@ -13,7 +13,7 @@ from typing import TextIO
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
-from rvmon.readers.pieces import bounded_lines
+from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.health import Health, HealthKind

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rvmon.explain.anatomy import Strand
 from rvmon.explain.dissect import strands_of
-from rvmon.explain.eye import Eye
 from rvmon.explain.late import late_arrivals
-from rvmon.explain.miss import nearest_miss
+from rvmon.explain.nearest_miss import nearest_miss
+from rvmon.explain.truth_over_trace import Eye
 from rvmon.report.choose import shown_attempts
 from rvmon.report.nearest import Candidate, nearest_passing
 from rvmon.report.panel import Panel

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rvmon.spec.format_words import Piece
 from rvmon.spec.layout import text_of
-from rvmon.spec.pieces import Piece
 
 Row = tuple[str, str, str, str, str]
 """Word, names, type, role, what it ignores and its limit of staleness."""

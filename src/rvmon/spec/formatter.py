@@ -11,9 +11,9 @@ from rvmon.diagnostics.span import Source
 from rvmon.errors import SpecError
 from rvmon.spec.columns import aligned
 from rvmon.spec.findings import Findings
+from rvmon.spec.format_words import Piece, pieces_of
 from rvmon.spec.layout import WIDTH, lines_of
 from rvmon.spec.parse import parse_spec
-from rvmon.spec.pieces import Piece, pieces_of
 from rvmon.spec.split import split_items
 
 _CLAUSES = frozenset(

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from rvmon.spec.pieces import Piece
+from rvmon.spec.format_words import Piece
 
 WIDTH = 100
 """Longer lines are broken where operators or commas allow it."""

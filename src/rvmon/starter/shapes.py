@@ -11,8 +11,8 @@ import msgspec
 
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
+from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
-from rvmon.readers.pieces import bounded_lines
 from rvmon.readers.recording import FORMATS
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS
 from rvmon.starter.column import Shape, Shapes

@@ -11,7 +11,7 @@ from rvmon.codegen.c_batch import BatchLibrary
 from rvmon.monitor import CompiledSpec
 from rvmon.monitor.batch import evaluate_blocks, evaluate_plain
 from rvmon.monitor.batch_c import evaluate_c_blocks
-from rvmon.monitor.planned import can_stand_alone, plan_alone
+from rvmon.monitor.codegen_support import can_stand_alone, plan_alone
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind

@@ -9,13 +9,13 @@ from typing import Any
 
 from rvmon.codegen.c_batch import BatchLibrary, BatchRun
 from rvmon.codegen.c_online import OnlineLibrary, online_library
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.python_file import python_file
+from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
+from rvmon.monitor.codegen_support import can_stand_alone, plan_alone
 from rvmon.monitor.compiled import ENGINES
 from rvmon.monitor.online_c import CompiledMonitor
-from rvmon.monitor.planned import can_stand_alone, plan_alone
 from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case

@@ -22,9 +22,9 @@ from rvmon.spec.checked import (
     UpdateValue,
 )
 from rvmon.testing.case import Case
+from rvmon.testing.sample_words import heard
 from rvmon.testing.walk import parts_of, subformulas
 from rvmon.testing.word import Word
-from rvmon.testing.wording import heard
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 

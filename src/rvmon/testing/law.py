@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rvmon.testing.case import Case
 from rvmon.testing.oracle import evaluate
+from rvmon.testing.sample_words import word_of
 from rvmon.testing.word import Word
-from rvmon.testing.wording import word_of
 from rvmon.verdict.report import Report
 
 

@@ -19,9 +19,9 @@ from rvmon.spec.checked import (
 from rvmon.testing.attempts import Start, is_upon_end, obligation
 from rvmon.testing.follow import Followed, Followings, follow
 from rvmon.testing.kleene import Truth
+from rvmon.testing.sample_words import word_of
 from rvmon.testing.truths import Rest
 from rvmon.testing.word import Word
-from rvmon.testing.wording import word_of
 from rvmon.trace.sample import Sample, Trace, Value
 from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision

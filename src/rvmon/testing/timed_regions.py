@@ -38,9 +38,9 @@ from rvmon.timed.model import (
     PathFormula,
     Query,
 )
-from rvmon.timed.pieces import compares_of, has_paths, speaks_of_deadlock
 from rvmon.timed.run import Action
 from rvmon.timed.syntax import BinaryOp, PathOp
+from rvmon.timed.zone_unions import compares_of, has_paths, speaks_of_deadlock
 
 
 class TooManyRegionsError(Exception):

@@ -16,9 +16,9 @@ from rvmon.timed.concrete import (
 from rvmon.timed.guards import normal_form, with_deadlock
 from rvmon.timed.model import Expression, LeadsToFormula, Network, PathFormula
 from rvmon.timed.outcome import Outcome
-from rvmon.timed.pieces import has_paths, speaks_of_deadlock
 from rvmon.timed.run import Run
 from rvmon.timed.syntax import PathOp
+from rvmon.timed.zone_unions import has_paths, speaks_of_deadlock
 
 Instants = list[tuple[Fraction, Configuration]]
 

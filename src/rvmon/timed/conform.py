@@ -22,12 +22,12 @@ from rvmon.timed.discrete import Move, State
 from rvmon.timed.explore import explore
 from rvmon.timed.meter import Meter
 from rvmon.timed.model import Constant, Network
-from rvmon.timed.pieces import Piece
 from rvmon.timed.refine import finer
 from rvmon.timed.rules import model_error
 from rvmon.timed.search import UNLIMITED, Budget, Node
 from rvmon.timed.start import check_start
 from rvmon.timed.symbolic import Steps
+from rvmon.timed.zone_unions import Piece
 from rvmon.timed.zones import Zone, constrain, cut, normalise
 from rvmon.trace.time import TICKS_PER_UNIT
 

@@ -19,9 +19,9 @@ from rvmon.timed.federation import before, piece_of, subtract_all, universe
 from rvmon.timed.guards import normal_form
 from rvmon.timed.meter import Meter
 from rvmon.timed.model import BinaryOperation, Expression, PathFormula
-from rvmon.timed.pieces import Piece, PieceMaker, has_paths, piece_maker, speaks_of_deadlock
 from rvmon.timed.successors import Space
 from rvmon.timed.syntax import BinaryOp, PathOp
+from rvmon.timed.zone_unions import Piece, PieceMaker, has_paths, piece_maker, speaks_of_deadlock
 from rvmon.timed.zones import Zone, cut, is_within, normalise
 
 Federation = list[Zone]

@@ -8,8 +8,8 @@ from heapq import heappop, heappush
 from itertools import count
 
 from rvmon.timed.meter import Meter, paused_collector
-from rvmon.timed.pieces import Piece
 from rvmon.timed.search import Found, LinkT, Node, Problem, SiteT
+from rvmon.timed.zone_unions import Piece
 from rvmon.timed.zones import CoverTest, Zone, cover_test, passes
 
 

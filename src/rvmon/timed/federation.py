@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import inf
 
-from rvmon.timed.pieces import Piece
+from rvmon.timed.zone_unions import Piece
 from rvmon.timed.zones import STRICT, Zone, constrain, normalise
 
 

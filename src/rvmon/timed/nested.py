@@ -9,9 +9,9 @@ from rvmon.timed.discrete import State
 from rvmon.timed.federation import piece_of
 from rvmon.timed.meter import Meter
 from rvmon.timed.model import BinaryOperation, Constant, Expression, Network, PathFormula
-from rvmon.timed.pieces import Piece, has_paths
 from rvmon.timed.symbolic import Steps, meets
 from rvmon.timed.syntax import BinaryOp, PathOp
+from rvmon.timed.zone_unions import Piece, has_paths
 from rvmon.timed.zones import Zone
 
 

@@ -16,9 +16,9 @@ from rvmon.spec.checked import BoundAtom, CheckedSpec, Requirement, TimeModel
 from rvmon.timed.elaborate import signal_on
 from rvmon.timed.evaluate import Evaluator, evaluator
 from rvmon.timed.explore import explore
-from rvmon.timed.letters import Letters, NotExpressibleError
 from rvmon.timed.meter import Meter
 from rvmon.timed.model import Network, VariableValue
+from rvmon.timed.network_propositions import Letters, NotExpressibleError
 from rvmon.timed.observation import Observation
 from rvmon.timed.observed_run import observed_run
 from rvmon.timed.observer import (

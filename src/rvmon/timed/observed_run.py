@@ -12,11 +12,11 @@ from rvmon.automaton.location import NOW
 from rvmon.timed.model import Network
 from rvmon.timed.observer import Observed, ObservedLink, ObservedSite, Phase
 from rvmon.timed.paths import PathStep, invariant_of
-from rvmon.timed.pieces import Piece
 from rvmon.timed.run import Run
 from rvmon.timed.search import Node
 from rvmon.timed.timing import TimedStep
 from rvmon.timed.witness import make_run
+from rvmon.timed.zone_unions import Piece
 from rvmon.timed.zones import STRICT
 
 

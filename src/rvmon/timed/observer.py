@@ -21,10 +21,10 @@ from rvmon.formula.lower import Obligation
 from rvmon.spec.checked import Bound, BoundAtom
 from rvmon.timed.conform import names_of
 from rvmon.timed.discrete import Move, State
-from rvmon.timed.letters import Letters, NotExpressibleError
 from rvmon.timed.model import Constant, Network
-from rvmon.timed.pieces import Piece
+from rvmon.timed.network_propositions import Letters, NotExpressibleError
 from rvmon.timed.symbolic import Steps, fire, settle_in
+from rvmon.timed.zone_unions import Piece
 from rvmon.timed.zones import STRICT, Zone, cut, delay, normalise, reset, zero
 
 MOST_STEPS = 20

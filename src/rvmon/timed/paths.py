@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.timed.discrete import Move, State
-from rvmon.timed.pieces import EVERYWHERE, Piece
 from rvmon.timed.stay import Crossing, StaySite, Stride
 from rvmon.timed.timing import TimedStep
+from rvmon.timed.zone_unions import EVERYWHERE, Piece
 
 
 @dataclass(frozen=True, slots=True)

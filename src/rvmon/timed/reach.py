@@ -9,9 +9,9 @@ from rvmon.timed.discrete import State
 from rvmon.timed.federation import piece_of, subtract_all, universe
 from rvmon.timed.guards import with_deadlock
 from rvmon.timed.model import Expression, Network
-from rvmon.timed.pieces import Piece, piece_maker
 from rvmon.timed.run import Ending
 from rvmon.timed.symbolic import Steps, meets
+from rvmon.timed.zone_unions import Piece, piece_maker
 from rvmon.timed.zones import Zone, cut, normalise
 
 

@@ -10,10 +10,10 @@ from rvmon.timed.guards import normal_form
 from rvmon.timed.liveness import Escape, Staying
 from rvmon.timed.meter import Meter
 from rvmon.timed.model import BinaryOperation, Expression, Network
-from rvmon.timed.pieces import EVERYWHERE, Piece, piece_maker
 from rvmon.timed.stay import Crossing, Inside, StaySite
 from rvmon.timed.symbolic import Steps, meets
 from rvmon.timed.syntax import BinaryOp
+from rvmon.timed.zone_unions import EVERYWHERE, Piece, piece_maker
 from rvmon.timed.zones import STRICT, Zone, cut, reset, zero
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-from rvmon.timed.pieces import Piece
+from rvmon.timed.zone_unions import Piece
 from rvmon.timed.zones import CoverTest, Zone
 
 

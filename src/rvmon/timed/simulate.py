@@ -19,7 +19,11 @@ from random import Random
 from rvmon.timed.discrete import Move, State
 from rvmon.timed.guards import normal_form
 from rvmon.timed.model import Expression, Network, PathFormula, Query
-from rvmon.timed.pieces import (
+from rvmon.timed.rules import model_error
+from rvmon.timed.start import check_start
+from rvmon.timed.successors import Space
+from rvmon.timed.syntax import PathOp
+from rvmon.timed.zone_unions import (
     Piece,
     PieceMaker,
     formula_bounds,
@@ -27,10 +31,6 @@ from rvmon.timed.pieces import (
     piece_maker,
     speaks_of_deadlock,
 )
-from rvmon.timed.rules import model_error
-from rvmon.timed.start import check_start
-from rvmon.timed.successors import Space
-from rvmon.timed.syntax import PathOp
 
 GRID = 1_000
 """Steps of simulated time in one unit: all times are whole numbers of them."""

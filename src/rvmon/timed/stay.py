@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from math import ceil
 
 from rvmon.timed.discrete import Move, State
-from rvmon.timed.pieces import EVERYWHERE, Piece, PieceMaker
 from rvmon.timed.successors import Space
 from rvmon.timed.symbolic import fire, settle_in
+from rvmon.timed.zone_unions import EVERYWHERE, Piece, PieceMaker
 from rvmon.timed.zones import Zone, cut, delay, normalise
 
 

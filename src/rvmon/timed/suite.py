@@ -18,12 +18,12 @@ from rvmon.timed.discrete import Move, State
 from rvmon.timed.explore import explore
 from rvmon.timed.meter import Meter
 from rvmon.timed.model import Constant, Network
-from rvmon.timed.pieces import Piece
 from rvmon.timed.run import Run
 from rvmon.timed.search import UNLIMITED, Budget, Node, Statistics, Watch
 from rvmon.timed.start import check_start
 from rvmon.timed.symbolic import Steps
 from rvmon.timed.witness import make_run, move_path
+from rvmon.timed.zone_unions import Piece
 from rvmon.timed.zones import Zone
 
 

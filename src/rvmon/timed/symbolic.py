@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from rvmon.timed.discrete import Move, State
 from rvmon.timed.model import Expression, Network
-from rvmon.timed.pieces import Piece, formula_bounds, has_strict_bounds
 from rvmon.timed.successors import Space
+from rvmon.timed.zone_unions import Piece, formula_bounds, has_strict_bounds
 from rvmon.timed.zones import Zone, constrain, cut, delay_within, normalise, reset, zero
 
 

@@ -17,7 +17,6 @@ from rvmon.timed.model import Expression, LeadsToFormula, Network, PathFormula, 
 from rvmon.timed.nested import NestedReachability, alternatives, lasting_part, together
 from rvmon.timed.outcome import Outcome, Policy
 from rvmon.timed.paths import PathStep, mark_step
-from rvmon.timed.pieces import Piece, has_paths, piece_maker, speaks_of_deadlock
 from rvmon.timed.reach import DeadlockReachability, Reachability
 from rvmon.timed.respond import BoundedResponse, UnboundedResponse
 from rvmon.timed.rules import model_error
@@ -34,6 +33,7 @@ from rvmon.timed.witness import (
     plain_path,
     state_of,
 )
+from rvmon.timed.zone_unions import Piece, has_paths, piece_maker, speaks_of_deadlock
 from rvmon.timed.zones import Zone, cut, zero
 
 

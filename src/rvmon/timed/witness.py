@@ -19,12 +19,12 @@ from rvmon.timed.paths import (
     move_step,
     stride_path,
 )
-from rvmon.timed.pieces import EVERYWHERE
 from rvmon.timed.respond import BoundedLink, BoundedSite
 from rvmon.timed.run import Action, Ending, Position, Run, RunStep
 from rvmon.timed.search import Node
 from rvmon.timed.stay import Crossing, StaySite
 from rvmon.timed.timing import earliest, timing_of, windows
+from rvmon.timed.zone_unions import EVERYWHERE
 from rvmon.timed.zones import Zone, cut, delay, normalise, reset, zero
 
 

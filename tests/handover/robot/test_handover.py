@@ -36,7 +36,7 @@ ALL_OK = Reading(gaze=True, pressure=True, location=True)
 
 
 @dataclass
-class Bench:
+class AttemptJudge:
     """Bus, arm, gripper and sensors in one, with a clock that the waits of the robot drive."""
 
     signals: list[Message] = field(default_factory=list)
@@ -119,7 +119,7 @@ def protocol(ready_after: float = 25.0) -> list[Message]:
 
 def test_handover_goes_through_all_states() -> None:
     """A human who follows the protocol gets the piece after all nine states in order."""
-    bench = Bench(protocol())
+    bench = AttemptJudge(protocol())
     machine = bench.play()
     assert bench.states() == list(STATES)
     assert bench.times("released")
@@ -137,7 +137,7 @@ def test_handover_goes_through_all_states() -> None:
 )
 def test_one_bad_reading_withholds(reading: Reading, word: str) -> None:
     """One bad reading is enough not to release, and the outcome says which."""
-    bench = Bench(protocol(), reading=lambda _: reading)
+    bench = AttemptJudge(protocol(), reading=lambda _: reading)
     machine = bench.play()
     assert bench.times("withheld")
     assert not bench.times("released")
@@ -148,7 +148,7 @@ def test_one_bad_reading_withholds(reading: Reading, word: str) -> None:
 def test_correct_waits_for_all_readings() -> None:
     """A sensor without a reading keeps the correct robot in `sense` until it has one."""
     missing = Reading(gaze=True, pressure=None, location=True)
-    bench = Bench(protocol(), reading=lambda now: missing if now < 27.0 else ALL_OK)
+    bench = AttemptJudge(protocol(), reading=lambda now: missing if now < 27.0 else ALL_OK)
     bench.play()
     assert bench.times("released")
     assert bench.times("sensed")[0] >= 27.0
@@ -157,7 +157,7 @@ def test_correct_waits_for_all_readings() -> None:
 def test_correct_sensing_times_out_after_five_seconds() -> None:
     """Without a full reading the correct robot gives up 5 s after the human was ready."""
     nothing = Reading(gaze=None, pressure=None, location=None)
-    bench = Bench(protocol(), reading=lambda _: nothing)
+    bench = AttemptJudge(protocol(), reading=lambda _: nothing)
     bench.play()
     assert not bench.times("sensed")
     assert bench.times("timed_out")[0] - 25.0 == pytest.approx(5.0, abs=0.11)
@@ -166,7 +166,7 @@ def test_correct_sensing_times_out_after_five_seconds() -> None:
 def test_legacy_reads_missing_as_bad() -> None:
     """The legacy robot takes a sensor without a reading for a bad one, at once."""
     nothing = Reading(gaze=None, pressure=None, location=None)
-    bench = Bench(protocol(), reading=lambda _: nothing)
+    bench = AttemptJudge(protocol(), reading=lambda _: nothing)
     bench.play(LEGACY)
     assert ("gpl_is_ok", False) in [(topic, value) for _, topic, value in bench.log]
 
@@ -174,21 +174,21 @@ def test_legacy_reads_missing_as_bad() -> None:
 @pytest.mark.parametrize("signal", ["activateRobot", "humanIsReady"])
 def test_legacy_takes_any_signal_twice(signal: str) -> None:
     """One latched signal, right or wrong, carries the legacy robot through both waits."""
-    bench = Bench([Message(signal, 3.0)])
+    bench = AttemptJudge([Message(signal, 3.0)])
     bench.play(LEGACY)
     assert bench.states()[-2:] == ["release", "done"]
 
 
 def test_correct_refuses_the_wrong_signal() -> None:
     """The correct robot is not activated by the signal of the other state."""
-    bench = Bench([Message("humanIsReady", 3.0)])
+    bench = AttemptJudge([Message("humanIsReady", 3.0)])
     bench.play()
     assert bench.states() == ["reset", "receive_activation", "done"]
 
 
 def test_correct_refuses_old_readiness() -> None:
     """Readiness from before the human was informed does not count."""
-    bench = Bench([Message("activateRobot", 3.0), Message("humanIsReady", 6.0)])
+    bench = AttemptJudge([Message("activateRobot", 3.0), Message("humanIsReady", 6.0)])
     machine = bench.play()
     assert "sense" not in bench.states()
     assert machine.outcome == "the human never was ready"
@@ -196,10 +196,10 @@ def test_correct_refuses_old_readiness() -> None:
 
 def test_correct_gives_up_after_twenty_seconds_in_each_wait() -> None:
     """Each wait of the correct robot has its own 20 s."""
-    alone = Bench()
+    alone = AttemptJudge()
     alone.play()
     assert alone.times("timed_out")[0] == pytest.approx(0.9 + 20.0)
-    activated = Bench([Message("activateRobot", 15.0)])
+    activated = AttemptJudge([Message("activateRobot", 15.0)])
     activated.play()
     informed = activated.times("informed")[0]
     assert activated.times("timed_out")[0] - informed == pytest.approx(20.0)
@@ -207,7 +207,7 @@ def test_correct_gives_up_after_twenty_seconds_in_each_wait() -> None:
 
 def test_legacy_shares_its_polls() -> None:
     """The legacy robot has 500 polls for both waits together, and subscribes in each."""
-    bench = Bench([Message("activateRobot", 21.0)])
+    bench = AttemptJudge([Message("activateRobot", 21.0)])
     no_readiness = replace(LEGACY, readiness=frozenset())
     bench.play(no_readiness)
     assert bench.subscriptions == 500
@@ -217,10 +217,10 @@ def test_legacy_shares_its_polls() -> None:
 
 def test_legacy_sensing_timeout_is_a_parameter() -> None:
     """The legacy robot times out when its parameter has passed since it informed the human."""
-    in_time = Bench(protocol(), timeout_time=100)
+    in_time = AttemptJudge(protocol(), timeout_time=100)
     in_time.play(LEGACY)
     assert in_time.times("decide")
-    late = Bench(protocol(), timeout_time=3)
+    late = AttemptJudge(protocol(), timeout_time=3)
     late.play(LEGACY)
     assert not late.times("decide")
     assert late.times("timed_out")
@@ -228,7 +228,7 @@ def test_legacy_sensing_timeout_is_a_parameter() -> None:
 
 def test_unreachable_piece_ends_the_task() -> None:
     """Where no path is found the robot tries three times and gives up."""
-    bench = Bench(protocol(), reachable=False)
+    bench = AttemptJudge(protocol(), reachable=False)
     machine = bench.play()
     assert bench.states()[-2:] == ["move", "done"]
     assert bench.commands == ["open"]
@@ -238,7 +238,7 @@ def test_unreachable_piece_ends_the_task() -> None:
 @pytest.mark.parametrize("seen", [None, (0.9, -0.6)])
 def test_lost_piece_ends_the_task(seen: tuple[float, float] | None) -> None:
     """If the piece did not come along the correct robot tells nobody to take it."""
-    bench = Bench(protocol(), piece_seen=lambda now: (0.0, 0.05) if now < 10 else seen)
+    bench = AttemptJudge(protocol(), piece_seen=lambda now: (0.0, 0.05) if now < 10 else seen)
     bench.play()
     assert not bench.times("informed")
     assert bench.times("timed_out")
@@ -246,7 +246,7 @@ def test_lost_piece_ends_the_task(seen: tuple[float, float] | None) -> None:
 
 def test_invisible_piece_ends_the_task() -> None:
     """Without a piece in sight the arm does not move."""
-    bench = Bench(protocol(), piece_seen=lambda _: None)
+    bench = AttemptJudge(protocol(), piece_seen=lambda _: None)
     machine = bench.play()
     assert machine.outcome == "no piece in sight"
     assert bench.commands == ["open"]
@@ -274,11 +274,11 @@ def test_transitions_are_those_of_the_protocol() -> None:
     nothing = Reading(gaze=None, pressure=None, location=None)
     bad = Reading(gaze=False, pressure=True, location=True)
     benches = [
-        Bench(protocol()),
-        Bench(protocol(), reading=lambda _: bad),
-        Bench(protocol(), reading=lambda _: nothing),
-        Bench([Message("activateRobot", 3.0)]),
-        Bench(),
+        AttemptJudge(protocol()),
+        AttemptJudge(protocol(), reading=lambda _: bad),
+        AttemptJudge(protocol(), reading=lambda _: nothing),
+        AttemptJudge([Message("activateRobot", 3.0)]),
+        AttemptJudge(),
     ]
     seen: set[tuple[str, str]] = set()
     for bench in benches:
@@ -295,11 +295,11 @@ def test_mutants_differ_from_the_robot(name: str) -> None:
         Reading(gaze=False, pressure=True, location=True),
         Reading(gaze=True, pressure=False, location=True),
     ]
-    situations: list[Callable[[], Bench]] = [
-        lambda: Bench(protocol()),
-        lambda: Bench(protocol(), reading=lambda _: bad[0]),
-        lambda: Bench(protocol(), reading=lambda _: bad[1]),
-        Bench,
+    situations: list[Callable[[], AttemptJudge]] = [
+        lambda: AttemptJudge(protocol()),
+        lambda: AttemptJudge(protocol(), reading=lambda _: bad[0]),
+        lambda: AttemptJudge(protocol(), reading=lambda _: bad[1]),
+        AttemptJudge,
     ]
     differs = False
     for situation in situations:
@@ -312,7 +312,7 @@ def test_mutants_differ_from_the_robot(name: str) -> None:
 
 def test_crashing_mutant_crashes() -> None:
     """The mutant made to crash does so in `sense`."""
-    bench = Bench(protocol())
+    bench = AttemptJudge(protocol())
     with pytest.raises(ZeroDivisionError):
         bench.play(robot=MUTATIONS["crashes"])
     assert bench.states()[-1] == "sense"

@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
-from rvmon.automaton.letters import LetterDiagram
+from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import INFINITY
 from rvmon.automaton.progression import Progression

@@ -13,7 +13,7 @@ from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, UNKNOWN
-from rvmon.monitor.wording import Words
+from rvmon.monitor.obligation_words import Words
 from rvmon.testing.build import always, eventually, false, no, p, q, r, requirement, two
 from rvmon.testing.generate_formula import Shape
 from rvmon.testing.strategies import formulas

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from rvmon.dataflow.pieces import FAR, PAST, append
+from rvmon.dataflow.piecewise import FAR, PAST, append
 from rvmon.dataflow.ranges import stretch
 
 LAST = 25

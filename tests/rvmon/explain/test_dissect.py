@@ -5,17 +5,17 @@ import random
 import pytest
 
 from rvmon.explain.dissect import dissect
-from rvmon.explain.eye import Eye, subformulas
 from rvmon.explain.spans import both, outside, union, until
+from rvmon.explain.truth_over_trace import Eye, subformulas
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked import TimeModel
 from rvmon.testing import build
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.kleene import Truth
+from rvmon.testing.sample_words import word_of
 from rvmon.testing.show import show_case
 from rvmon.testing.truths import Truths
-from rvmon.testing.wording import word_of
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict

@@ -37,7 +37,7 @@ from rvmon.testing.build import (
     y,
 )
 from rvmon.testing.oracle import evaluate
-from rvmon.testing.wording import MOST_TICKS
+from rvmon.testing.sample_words import MOST_TICKS
 from rvmon.trace.sample import Sample, Trace
 
 ALL = frozenset({"p", "q", "r", "x", "y", "mode", "e", "f", "g"})

@@ -11,8 +11,8 @@ from rvmon.testing.follow import follow
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.kleene import Truth
+from rvmon.testing.sample_words import word_of
 from rvmon.testing.truths import Rest
-from rvmon.testing.wording import word_of
 
 
 @pytest.mark.parametrize("time", TimeModel)

@@ -15,8 +15,8 @@ from rvmon.automaton.location import PASSED
 from rvmon.formula.state import TRUE, UNKNOWN
 from rvmon.monitor.columns.attempts import Tokens
 from rvmon.monitor.columns.axis import FAR, Axis
-from rvmon.monitor.columns.letters import Letters
 from rvmon.monitor.columns.moves import Moves
+from rvmon.monitor.columns.row_letters import Letters
 from rvmon.monitor.columns.tables import Table
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ import numpy as np
 from rvmon.dataflow.inputs import Inputs
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf
+from rvmon.monitor.codegen_support import can_generate, plan_requirements
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
@@ -22,7 +23,6 @@ from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog, holds_nan
 from rvmon.monitor.ledger import Ledger
-from rvmon.monitor.planned import can_generate, plan_requirements
 from rvmon.spec.checked import (
     Compare,
     Literal,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.letters import LetterDiagram
+from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.automaton.location import NOW, PASSED
 from rvmon.monitor.columns.axis import FAR
 

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.leaves import reads
 from rvmon.formula.state import Leaf, Missing, Unborn
 from rvmon.monitor.build import build_monitor
+from rvmon.monitor.codegen_support import can_feed, plan_requirements
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.columns.reading import first_known
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.health import HealthLog, by_name, holds_nan
-from rvmon.monitor.planned import can_feed, plan_requirements
 from rvmon.spec.checked import Compare, Probe, ProbeAtom, SignalAtom, TimeModel
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.report import Report

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.automaton.machine import Token
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.outages import Outage
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
-from rvmon.monitor.bench import Open
+from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.columns.attempts import Attempts, Tokens, joined_attempts, starting_attempts
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
@@ -20,8 +20,8 @@ from rvmon.monitor.columns.drive import Outcome
 from rvmon.monitor.columns.episodes import Episodes
 from rvmon.monitor.columns.judging import Judging
 from rvmon.monitor.columns.leaves import NotByColumnsError
-from rvmon.monitor.columns.letters import letters_along
 from rvmon.monitor.columns.moves import Moves, moves_of
+from rvmon.monitor.columns.row_letters import letters_along
 from rvmon.monitor.columns.starts import Starts
 from rvmon.monitor.columns.stretches import first_in
 from rvmon.monitor.columns.timeline import Piece, Timeline

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from rvmon.codegen.plan import Plan
+from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import Elapsed, State, StateOp
 from rvmon.monitor.columns.axis import Axis, RowAxis, TickAxis
 from rvmon.monitor.columns.doubt import Doubt

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
 from rvmon.automaton.location import FAILED, PASSED
-from rvmon.monitor.bench import Open
+from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.verdict.attempt import Attempt

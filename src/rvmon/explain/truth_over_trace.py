@@ -7,8 +7,8 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import assert_never
 
-from rvmon.explain.log import Truth, state_truths
 from rvmon.explain.spans import FOREVER, Spans, both, outside, since, union, until
+from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.core import Literal, Sense
 from rvmon.formula.factory import Factory

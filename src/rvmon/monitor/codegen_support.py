@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.letters import LetterDiagram
-from rvmon.codegen.plan import Plan, PlannedRule
+from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.codegen.planning import plan_of
+from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.spec.asked import requirements_asked

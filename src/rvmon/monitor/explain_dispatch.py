@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rvmon.automaton.machine import Token
-from rvmon.monitor.bench import Bench, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.explain import Explanation, explain_decision, explain_open
 from rvmon.monitor.explain_network import network_decision, network_open
 from rvmon.monitor.forecast import forecast_by_network, forecast_of
@@ -12,8 +12,10 @@ from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.verdict.verdict import Verdict
 
 
-def why_decided(judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> Explanation:
-    """Why an attempt was decided at `t`; see `rvmon.monitor.bench.Clerk.decided`."""
+def why_decided(
+    judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
+) -> Explanation:
+    """Why an attempt was decided at `t`; see `rvmon.monitor.attempt_judge.Clerk.decided`."""
     match judge:
         case NetworkJudge():
             return network_decision(judge, attempt, verdict, t)
@@ -23,7 +25,7 @@ def why_decided(judge: Bench, attempt: Open, verdict: bool, t: int, before: Toke
             raise TypeError(f"no explanation for {type(judge).__name__}")
 
 
-def why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> Explanation:
+def why_open(judge: AttemptJudge, attempt: Open, now: int, end: int | None = None) -> Explanation:
     """What an undecided attempt waits for.
 
     Args:
@@ -41,7 +43,7 @@ def why_open(judge: Bench, attempt: Open, now: int, end: int | None = None) -> E
             raise TypeError(f"no explanation for {type(judge).__name__}")
 
 
-def outlook(judge: Bench, attempt: Open, now: int) -> Verdict | None:
+def outlook(judge: AttemptJudge, attempt: Open, now: int) -> Verdict | None:
     """What every continuation brings an open attempt to, where that can be said.
 
     Args:

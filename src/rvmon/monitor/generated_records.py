@@ -7,10 +7,10 @@ from operator import itemgetter
 from typing import Any
 
 from rvmon.automaton.machine import Token
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
-from rvmon.monitor.bench import Open
+from rvmon.codegen.unit_plan import Plan
+from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.ledger import Ledger
@@ -24,7 +24,7 @@ Pick = Callable[[list[Any]], tuple[Any, ...]]
 Noted = Callable[..., tuple[Any, ...]]
 
 
-class Seat(Witness):
+class GeneratedRecords(Witness):
     """Stands where the judge of a requirement would, and writes the records of its decisions.
 
     Args:
@@ -103,7 +103,7 @@ class Seat(Witness):
         self._unit.news = True
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
-        """Hear of a decision; see `rvmon.monitor.bench.Clerk`."""
+        """Hear of a decision; see `rvmon.monitor.attempt_judge.Clerk`."""
         if verdict and attempt.void:
             self._ledger.say_nothing(self.judge_now(rule), attempt)
             self._unit.news = True  # no record, but something that is kept; so it is below

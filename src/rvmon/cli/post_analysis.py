@@ -44,7 +44,7 @@ def can_be_read_again(trace: str) -> bool:
     return trace != "-" and not Path(trace).is_fifo()
 
 
-def second_look(
+def post_analysis(
     spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
 ) -> Report:
     """The report with the cover goals, and with what only the whole recording tells.
@@ -121,7 +121,7 @@ def _silent(spec: Spec, report: Report) -> dict[str, frozenset[str] | None]:
     names = [name for name in report.verdicts if report.is_silent(name)]
     if not names:
         return {}
-    from rvmon.explain.miss import read_as_values
+    from rvmon.explain.nearest_miss import read_as_values
 
     return {name: read_as_values(spec.checked, spec.requirements[name]) for name in names}
 
@@ -165,7 +165,7 @@ def _misses(
     """What the triggers lacked that never came true; the same trigger is looked at once."""
     if not silent:
         return {}
-    from rvmon.explain.miss import nearest_miss
+    from rvmon.explain.nearest_miss import nearest_miss
     from rvmon.spec.printer import format_formula
 
     known: dict[str, str] = {}

@@ -5,7 +5,7 @@ import random
 import pytest
 
 import rvmon
-from rvmon.codegen import python_cones
+from rvmon.codegen import python_leaf_cases
 from rvmon.codegen.runtime.unit import Unit, closures
 from rvmon.errors import TraceError
 from rvmon.testing.generate_formula import Shape, formula
@@ -54,11 +54,11 @@ def test_they_judge_as_tables_do(time, count, monkeypatch):
     assert met == {False, True}
 
 
-@pytest.mark.parametrize("deepest", [0, python_cones._DEEPEST])
+@pytest.mark.parametrize("deepest", [0, python_leaf_cases._DEEPEST])
 @pytest.mark.parametrize("count", [1, 3])
 def test_they_judge_as_tables_do_however_deep_blocks_stand(count, deepest, monkeypatch):
     """What depends on one node alone stands within its block, or behind it and asks for it."""
-    monkeypatch.setattr(python_cones, "_DEEPEST", deepest)
+    monkeypatch.setattr(python_leaf_cases, "_DEEPEST", deepest)
     for seed in range(40):
         text, samples = many(random.Random(f"deep/{count}/{seed}"), "held", count)
         spec = rvmon.loads(text)

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import loads
-from rvmon.explain.miss import nearest_miss
+from rvmon.explain.nearest_miss import nearest_miss
 from rvmon.trace.sample import Sample
 
 SPEC = """

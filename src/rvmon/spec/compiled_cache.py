@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cache import cache_folder, files_told, keep, read_kept
 from rvmon.spec.checked import CheckedSpec
-from rvmon.spec.stored import restored, stored
+from rvmon.spec.plain_data import restored, stored
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from rvmon.dataflow.pieces import (
+from rvmon.dataflow.piecewise import (
     FAR,
     PAST,
     all_of_window,

@@ -6,8 +6,8 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.explain.log import Truth, state_truths
 from rvmon.explain.spans import Spans
+from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.explain.states import state_of, values_read
 from rvmon.formula.factory import Factory
 from rvmon.spec.checked import (

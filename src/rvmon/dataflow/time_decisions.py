@@ -7,7 +7,7 @@ from functools import cached_property
 from rvmon.dataflow.evaluate import Range, evaluated
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Leaf, Shift, Sweep, Window, operands_of
-from rvmon.dataflow.pieces import FAR, Pieces, clip, soonest, stamp, up_to
+from rvmon.dataflow.piecewise import FAR, Pieces, clip, soonest, stamp, up_to
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.sweep import Carried, Known
 

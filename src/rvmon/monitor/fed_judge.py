@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from rvmon.automaton.machine import Token
-from rvmon.codegen.plan import Plan
 from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
+from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.outages import Outage
-from rvmon.monitor.bench import Bench, Clerk, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.episode import Episode
 from rvmon.monitor.judge import Judge
@@ -53,7 +53,7 @@ class Standing(Flow):
         return found
 
 
-class HostedRule(Rule):
+class FedJudge(Rule):
     """Stands where generated code drives attempts, and leaves that to a judge.
 
     Args:
@@ -77,11 +77,11 @@ class HostedRule(Rule):
         self._ledger = ledger
         self._unit = unit
         self._standing: Standing | None = None
-        self._judge: Bench | None = None
+        self._judge: AttemptJudge | None = None
         self._episode: Episode | None = None
 
     @property
-    def judge(self) -> Bench:
+    def judge(self) -> AttemptJudge:
         """Has the open attempts; it is made when it is first asked for."""
         if self._judge is None:
             self._standing = Standing(self._plan, self._unit)
@@ -182,13 +182,15 @@ class _Hearing:
         self._unit = unit
         self._ledger = ledger
 
-    def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
-        """See `rvmon.monitor.bench.Clerk`."""
+    def decided(
+        self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
+    ) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
         self._unit.news = True
         self._ledger.decided(judge, attempt, verdict, t, before)
 
 
-def _judge(compiled: CompiledRequirement, flow: Flow, clerk: Clerk) -> Bench:
+def _judge(compiled: CompiledRequirement, flow: Flow, clerk: Clerk) -> AttemptJudge:
     # No automaton is built while a monitor runs, as it would be here for attempts in doubt.
     if compiled.is_beside or compiled.automaton is None:
         return NetworkJudge(compiled, compiled.network_plan, flow, clerk, {})

@@ -7,8 +7,8 @@ import pytest
 
 import rvmon
 from rvmon.cli.judging import Options, judge
-from rvmon.cli.second_look import in_order
-from rvmon.explain.miss import nearest_miss, read_as_values
+from rvmon.cli.post_analysis import in_order
+from rvmon.explain.nearest_miss import nearest_miss, read_as_values
 from rvmon.monitor import batch_file
 from rvmon.readers.blocks import Block
 from rvmon.readers.changes import Changes
@@ -167,7 +167,7 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
 
 def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, monkeypatch):
     """What came late is told of at least one failure of each requirement."""
-    monkeypatch.setattr("rvmon.cli.second_look.MOST_LATE_IN_ALL", 4)
+    monkeypatch.setattr("rvmon.cli.post_analysis.MOST_LATE_IN_ALL", 4)
     text = "spec s\nevent e\nsignal p : bool\n" + "".join(
         f"requirement R{n}\n  upon e then within {n + 1} ms p\n" for n in range(9)
     )

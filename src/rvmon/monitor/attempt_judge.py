@@ -77,14 +77,16 @@ class Holder(Protocol):
 class Clerk(Protocol):
     """Keeps the records."""
 
-    def decided(self, judge: Bench, attempt: Open, verdict: bool, t: int, before: Token) -> None:
+    def decided(
+        self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
+    ) -> None:
         """Take a decision at `t`; `before` is the token of the run that brought it, before that.
 
         Between the position of `before` and `t` the letters were as the judge has them.
         """
 
 
-class Bench(ABC):
+class AttemptJudge(ABC):
     """The open attempts of one requirement, driven through positions and time.
 
     Attributes:
@@ -192,7 +194,7 @@ def doubt_in(flow: Flow, leaves: Sequence[tuple[int, str]], position: int) -> Do
     return Doubt(position, tuple(found.values()), tuple(texts))
 
 
-def held_by(judge: Bench) -> tuple[str, Holder, Open | None]:
+def held_by(judge: AttemptJudge) -> tuple[str, Holder, Open | None]:
     """The requirement of a judge, the judge, and the attempt of an episode that runs."""
     running = None if judge.episode is None else judge.episode.current
     return judge.compiled.requirement.id, judge, running

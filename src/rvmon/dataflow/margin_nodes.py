@@ -19,7 +19,7 @@ from enum import Enum
 from typing import Self, assert_never
 
 from rvmon.dataflow.nodes import Junction, Leaf, Node, Shift, Sweep, Window
-from rvmon.dataflow.pieces import FAR
+from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.steps import INFINITE, Step, Steps, add, at_positions, negated, replaced, split
 
