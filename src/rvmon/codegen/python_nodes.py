@@ -139,7 +139,7 @@ class NodeWriter:
                     raise ValueError("instances are not generated")
                 yield "    n = 0"
                 yield "else:"
-                yield f"    n = self.doubt_({place}, t, m, {state.pulse}, False)"
+                yield f"    n = self.doubt_({place}, t, m, {state.pulse})"
                 yield f"w[{place}] = m"
             case StateOp.PREVIOUS:
                 (operand,) = self.plan.graph.operands[place]

@@ -194,10 +194,10 @@ class Nodes:
             for event in events
         )
 
-    def doubt_(self, place: int, t: int, now: int, pulse: bool, every: bool) -> int:
+    def doubt_(self, place: int, t: int, now: int, pulse: bool) -> int:
         """Whether a trigger may have been hidden at `t`, where its truth is `now`."""
-        found = doubt(self.w[place] or FALSE, now, self.v[place], pulse, every)
-        stays = doubt(now, now, found, pulse, every) == found
+        found = doubt(self.w[place] or FALSE, now, self.v[place], pulse)
+        stays = doubt(now, now, found, pulse) == found
         self.set_wake(place, NEVER if stays else t + (self.GAP or 1))
         return found
 

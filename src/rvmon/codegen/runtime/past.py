@@ -159,7 +159,7 @@ def beyond(
     return start, start <= t, start if start > t else NEVER
 
 
-def doubt(before: int, now: int, value: int, pulse: bool, every: bool) -> int:
+def doubt(before: int, now: int, value: int, pulse: bool) -> int:
     """Whether a trigger may have been hidden at a position.
 
     Args:
@@ -167,19 +167,14 @@ def doubt(before: int, now: int, value: int, pulse: bool, every: bool) -> int:
         now: its truth.
         value: what this was at the position before.
         pulse: whether the trigger starts an attempt wherever it is true.
-        every: whether no trigger is sure.
 
-    >>> doubt(FALSE, UNKNOWN, FALSE, False, False), doubt(UNKNOWN, FALSE, UNKNOWN, False, False)
+    >>> doubt(FALSE, UNKNOWN, FALSE, False), doubt(UNKNOWN, FALSE, UNKNOWN, False)
     (1, 0)
     """
     if now == FALSE:
         return FALSE
-    if pulse:
-        hidden = every or now == UNKNOWN
-    elif every:
-        hidden = before != TRUE
-    else:
-        hidden = before == UNKNOWN or (now == UNKNOWN and before == FALSE)
+    starts = now == UNKNOWN and (pulse or before == FALSE)
+    hidden = starts or (before == UNKNOWN and not pulse)
     return UNKNOWN if hidden else TRUE if value else FALSE
 
 
