@@ -50,6 +50,22 @@ def test_what_is_still_possible(formula, time, engine):
     assert (attempt.forecast and attempt.forecast.value) == CASES[formula]
 
 
+@pytest.mark.parametrize("most", [0, 1, 3])
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_search_that_outgrows_its_limit_says_nothing(engine, most, monkeypatch):
+    """What is not searched to the end is not forecast; what is, is forecast as ever."""
+    for name in ("MOST_TRIED", "_MOST_APART"):
+        monkeypatch.setattr(f"rvmon.automaton.emptiness.{name}", most)
+    said = []
+    for formula, forecast in CASES.items():
+        monitor = loads(HEAD.format("held", formula)).monitor(engine=engine)
+        monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})
+        (attempt,) = monitor.open
+        said.append(attempt.forecast and attempt.forecast.value)
+        assert said[-1] in (None, forecast)
+    assert (most < 3) is (said != list(CASES.values()))
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("time", "forecast"), [("held", "F"), ("sampled", None)])
 def test_a_window_without_a_position_asks_for_nothing(time, forecast, engine):
