@@ -58,11 +58,6 @@ class CapturedAttempt:
         flow, doubt = self._parent.flow, self._doubt
         return (doubt is None or flow.values[doubt] == UNKNOWN) and not self._is_same(flow)
 
-    def _lapse(self, t: int) -> None:
-        self._lane.flow.cut_at(t)
-        self._lane.blurs = False
-        self._cause = doubt_in(self._parent.flow, self._leaves, t)
-
     def keeps(self, t: int) -> bool:
         """See `rvmon.monitor.lane.Captive`."""
         flow, lane = self._parent.flow, self._lane

@@ -306,7 +306,7 @@ class Lanes:
         captured: Captured,
         instance: Instance | None,
     ) -> CapturedAttempt | None:
-        """Have it seen in the parent whether the values of a captured attempt stay known."""
+        """What sees whether the values of an attempt stay known, where that can end."""
         doubted = instance is not None and instance.value is None
         obligation = compiled.obligation
         doubt = obligation.doubt or obligation.trigger
