@@ -29,7 +29,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.engines import ENGINES, PACKAGE, RELATED, files_of
+from benchmarks.engines import COLUMNS, ENGINES, PACKAGE, RELATED, files_of
 from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
@@ -87,6 +87,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--engine", choices=ENGINES, default="automaton")
     parser.add_argument("--time", choices=("held", "sampled", "clocked"))
     parser.add_argument("--without", nargs="*", default=[], metavar="FEATURE")
+    parser.add_argument("--since", metavar="REVISION", help="only in lines that are newer")
     return parser.parse_args(argv)
 
 
@@ -97,13 +98,15 @@ def _python_files(path: Path) -> list[Path]:
 def _command(options: argparse.Namespace, stage: Stage | Tests) -> list[str]:
     if isinstance(stage, Tests):
         return ["-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *stage.folders]
-    command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
-    command += ["--traces", "4", "--pairs", str(stage.pairs), "--seed", str(options.seed)]
+    drawn = ["--pairs", str(stage.pairs), "--seed", str(options.seed)]
     if options.time:
-        command += ["--time", options.time]
+        drawn += ["--time", options.time]
+    if stage.engines == (COLUMNS,):
+        return ["-m", "benchmarks.columns", *drawn]
     if options.without:
-        command += ["--without", *options.without]
-    return [*command, "--engine", *stage.engines]
+        drawn += ["--without", *options.without]
+    command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
+    return [*command, "--traces", "4", *drawn, "--engine", *stage.engines]
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +149,31 @@ def _tests_of(files: Iterable[Path]) -> list[str]:
 
 def _changes(files: Sequence[Path], options: argparse.Namespace) -> Iterator[Mutant]:
     executed = _executed_lines([file for file in files if file.suffix == ".py"], options)
+    newer = None if options.since is None else _newer_lines(options.since)
     for file in files:
-        yield from mutants(file, executed[file]) if file in executed else c_mutants(file)
+        for mutant in mutants(file, executed[file]) if file in executed else c_mutants(file):
+            if newer is None or mutant.line in newer.get(file, ()):
+                yield mutant
+
+
+def _newer_lines(revision: str) -> dict[Path, set[int]]:
+    """The lines of the package that are not as they were then; moved files are recognised."""
+    told = subprocess.run(
+        ["git", "diff", "--unified=0", "--find-renames", revision, "--", str(PACKAGE)],  # noqa: S607
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    found: dict[Path, set[int]] = {}
+    lines: set[int] = set()
+    for line in told.splitlines():
+        if name := re.match(r"\+\+\+ b/(.+)", line):
+            lines = found.setdefault(ROOT / name[1], set())
+        elif hunk := re.match(r"@@ -\S+ \+(\d+)(?:,(\d+))? @@", line):
+            first = int(hunk[1])
+            lines.update(range(first, first + int(hunk[2] or 1)))
+    return found
 
 
 def _executed_lines(files: Sequence[Path], options: argparse.Namespace) -> dict[Path, set[int]]:
