@@ -50,12 +50,13 @@ class Network(Knowledge):
         if self.ahead - self.grown > _FARTHER * (ahead - self.grown):
             self._take_back()
         first = positions.first == FAR
+        # Before there is a position: behind an interrupt, too, each has a letter.
+        old, self._letter = self._letter, letter
         behind = positions.visit(position)
         self._tidy_up(position if wanted is None else wanted // positions.gap)
         if first:
             self._begin()
         before, self.ahead = self.ahead, max(self.ahead, ahead, 2 * t + 1)
-        old, self._letter = self._letter, letter
         if positions.sparse:
             arrived = behind, position
             for (place, _), value in zip(self.plan.leaves, letter, strict=True):

@@ -28,6 +28,9 @@ from rvmon.verdict.attempt import Attempt
 Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 Told = Callable[[int], Sequence[Attempt]]
 
+_HELD = BUSY + 1
+"""As `BUSY`, while the monitor is called itself; behind a call that was interrupted as it ended."""
+
 
 class Forms:
     """What is generated for one choice of requirements and sources; serves any number of monitors.
@@ -164,7 +167,7 @@ class GeneratedLanes(Lanes):
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a valid sample; time has come to `t − 1` before."""
         self.unit.take(t, values)
-        self.unit.after = BUSY  # the call goes on
+        self.unit.after = _HELD  # the call goes on
         super().sample(t, values)
 
     def finish(self, end: int, reached: int) -> None:
@@ -282,8 +285,8 @@ class GeneratedMonitor(Monitor):
         after = unit.after
         if after == BUSY:
             raise overlap()
-        unit.after = BUSY
-        if after != self._floor:
+        unit.after = _HELD
+        if after not in (self._floor, _HELD):
             self._last = self._reached = self._floor = after
         if self._health.began is None:
             self._health.began = unit.began

@@ -75,8 +75,7 @@ class Monitor:
 
     def reset(self) -> None:
         """Forget the run; the next sample starts another. Callbacks stay."""
-        with self.one_call:
-            self._begin()
+        self.one_call(self._begin)
 
     def _begin(self) -> None:
         self._ledger = Ledger()
@@ -124,8 +123,7 @@ class Monitor:
                 no whole number.
             OverlapError: another call is under way. In all cases the monitor is as it was.
         """
-        with self.one_call:
-            decided = self._step(t_ns, values)
+        decided = self.one_call(self._step, t_ns, values)
         self._tell(decided)
         return decided
 
@@ -249,8 +247,7 @@ class Monitor:
 
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
-        with self.one_call:
-            decided = self._advance(t_ns)
+        decided = self.one_call(self._advance, t_ns)
         self._tell(decided)
         return decided
 
@@ -284,17 +281,19 @@ class Monitor:
         Returns:
             The report; the same again if the run was finished before.
         """
-        with self.one_call:
-            if self._report is not None:
-                return self._report
-            if t_ns is not None:
-                t_ns = self._taken_time(t_ns)
-            for sample in () if self._intake is None else self._intake.close():
-                self._judge(sample.t, sample.values)
-            report, decided = self._conclude(t_ns)
-            self._report = report
+        report, decided = self.one_call(self._finish, t_ns)
         self._tell(decided)
         return report
+
+    def _finish(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        if self._report is not None:
+            return self._report, ()
+        if t_ns is not None:
+            t_ns = self._taken_time(t_ns)
+        for sample in () if self._intake is None else self._intake.close():
+            self._judge(sample.t, sample.values)
+        self._report, decided = self._conclude(t_ns)
+        return self._report, decided
 
     def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
         """Judge the run that ends, all samples of which were taken; also what this decided."""
@@ -341,8 +340,10 @@ class Monitor:
         F
         F
         """
-        with self.one_call:
-            return self._verdicts_so_far() if self._report is None else self._report.verdicts
+        return self.one_call(self._verdicts)
+
+    def _verdicts(self) -> Mapping[str, Verdict]:
+        return self._verdicts_so_far() if self._report is None else self._report.verdicts
 
     def _verdicts_so_far(self) -> Mapping[str, Verdict]:
         return self._kept.verdicts(self._names)
@@ -372,10 +373,7 @@ class Monitor:
         Raises:
             SnapshotError: the run is finished.
         """
-        with self.one_call:
-            if self._report is not None:
-                raise SnapshotError("the run is finished: keep its report, or call reset()")
-            return self._put_away()
+        return self.one_call(self._put_away)
 
     def __reduce__(self) -> NoReturn:
         """Refused: pickles and copies would share or lack what is under way.
@@ -389,6 +387,8 @@ class Monitor:
         )
 
     def _put_away(self) -> bytes:
+        if self._report is not None:
+            raise SnapshotError("the run is finished: keep its report, or call reset()")
         from rvmon.monitor.snapshot import snapshot
 
         self._kept.tidy(self._lanes)
@@ -397,8 +397,7 @@ class Monitor:
     @property
     def open(self) -> Sequence[Attempt]:
         """The attempts that are undecided now."""
-        with self.one_call:
-            return self._open()
+        return self.one_call(self._open)
 
     def _open(self) -> Sequence[Attempt]:
         if self._reached is None:
@@ -413,8 +412,7 @@ class Monitor:
     @property
     def next_due(self) -> int | None:
         """The next instant (ticks) at which time alone can decide something."""
-        with self.one_call:
-            return self._next_due()
+        return self.one_call(self._next_due)
 
     def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from threading import Lock
-from typing import Protocol
+from collections.abc import Callable
+from typing import ParamSpec, Protocol, TypeVar
 
 from rvmon.errors import OverlapError, RvmonError, SnapshotError
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 class Guarded(Protocol):
@@ -31,27 +34,38 @@ class OneCall:
     def __init__(self, guarded: Guarded) -> None:
         self.restored = False
         self._guarded = guarded
-        self._lock = Lock()
+        self._turn: dict[None, object] = {}
 
-    def __enter__(self) -> None:
-        if not self._lock.acquire(blocking=False):
-            raise overlap()
+    def __call__(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
+        """Make a call, and no other until it is over.
+
+        Raises:
+            OverlapError: another one is under way.
+        """
+        # An interrupt strikes where a call begins or ends. So that none can come between taking the
+        # turn and seeing that it is given back, one call takes it within the `try`, and none is
+        # needed to tell whose it is, or to give it back.
+        own = object()
         try:
+            if self._turn.setdefault(None, own) is not own:
+                raise overlap()
             self._guarded._enter()
-        except BaseException:
-            self._lock.release()
+            try:
+                return call(*args, **kwargs)
+            finally:
+                self._guarded._leave()
+        except RvmonError:
             raise
-
-    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
-        try:
-            self._guarded._leave()
-        finally:
-            self._lock.release()
-        if self.restored and isinstance(error, Exception) and not isinstance(error, RvmonError):
+        except Exception as error:
+            if not self.restored:
+                raise
             raise SnapshotError(
                 "the snapshot that this monitor was made of was damaged: what it held fits no "
                 "monitor; begin a new run"
             ) from error
+        finally:
+            if None in self._turn and self._turn[None] is own:
+                del self._turn[None]
 
 
 def overlap() -> OverlapError:

@@ -82,8 +82,7 @@ class CompiledMonitor(Monitor):
 
     def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample by the way of every monitor; who asked for that tells what it decides."""
-        with self.one_call:
-            return self._step(t_ns, values)
+        return self.one_call(self._step, t_ns, values)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         # C takes `str` alone, no subclasses of it, such as members of an enumeration.

@@ -180,32 +180,6 @@ def test_a_call_that_fails_leaves_the_monitor_open(engine: str) -> None:
     assert monitor.finish_ns(4).counts["R1"]["F"] == 1
 
 
-def _step_on(monitor: Monitor, clock: Iterator[int]) -> None:
-    """Step until an alarm comes in between."""
-    signal.setitimer(signal.ITIMER_REAL, 0.0003)
-    while True:
-        number = next(clock)
-        monitor.step_ns(number, {"x": 4.0 * (number % 2)})
-
-
-@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no signal.setitimer")
-def test_an_interrupt_leaves_the_monitor_open() -> None:
-    """After Ctrl-C, wherever it comes within a step, the next call is taken."""
-    monitor = _monitor()
-    clock = count(1)
-    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
-    try:
-        for _ in range(200):
-            with pytest.raises(KeyboardInterrupt):
-                _step_on(monitor, clock)
-            monitor.step_ns(next(clock), {"x": 1.0})
-            assert monitor.next_due is None or monitor.next_due > 0
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
-    assert monitor.finish_ns(next(clock)).verdicts["R1"] == "F"
-
-
 def test_a_monitor_is_handed_from_thread_to_thread() -> None:
     """One call after the other is right, whichever threads make them."""
     monitor = _monitor()

@@ -42,9 +42,14 @@ class Run:
 
     def append(self, triggered: int, number: int, seen: int) -> None:
         """Add the youngest."""
-        self.triggers.append(triggered)
-        self.numbers.append(number)
-        self.seen.append(seen)
+        size = len(self.triggers)
+        try:
+            self.triggers.append(triggered)
+            self.numbers.append(number)
+            self.seen.append(seen)
+        except BaseException:  # an interrupt in between
+            del self.triggers[size:], self.numbers[size:], self.seen[size:]
+            raise
 
     def older(self, t: int) -> int:
         """The place of the first that was triggered after `t`."""
