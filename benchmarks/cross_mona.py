@@ -23,6 +23,7 @@ from pathlib import Path
 
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.positions import Judge, ask_engine, ask_oracle
+from tests.tools.generate_ltl import random_ltl
 
 from rvmon.spec.checked import (
     Binary,
@@ -42,7 +43,6 @@ from rvmon.spec.checked import (
     UnaryOp,
 )
 from rvmon.testing.dice import Dice, chance
-from rvmon.testing.generate_ltl import random_ltl
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import both, no, to_core, until
 from rvmon.testing.peers.dialects import LTLF, spelling, translate

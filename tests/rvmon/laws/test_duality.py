@@ -9,17 +9,7 @@ from typing import Any
 import pytest
 from hypothesis import assume
 from hypothesis import strategies as st
-
-from rvmon.spec.checked import (
-    BinaryOp,
-    CheckedSpec,
-    EndPolicy,
-    Formula,
-    Interval,
-    TimeModel,
-    UnaryOp,
-)
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     eventually,
     fall,
@@ -36,6 +26,16 @@ from rvmon.testing.build import (
     start,
     true,
     two,
+)
+
+from rvmon.spec.checked import (
+    BinaryOp,
+    CheckedSpec,
+    EndPolicy,
+    Formula,
+    Interval,
+    TimeModel,
+    UnaryOp,
 )
 from rvmon.testing.case import Case
 from rvmon.testing.generate_formula import Shape, interval

@@ -4,12 +4,12 @@ import random
 import re
 
 import pytest
+from tests.tools.spec_text import meaning, scribbled, spec_text
 
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.formatter import format_text
 from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.spec_text import meaning, scribbled, spec_text
 
 EXAMPLE = """# Head
 

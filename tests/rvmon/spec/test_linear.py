@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.tools.ltl3 import Tableau
 
 from rvmon import loads
 from rvmon.errors import SpecError
@@ -12,7 +13,6 @@ from rvmon.spec.ctl import PathBinary, PathUnary, StateAtom, StateBinary, StateN
 from rvmon.spec.linear import linear_form
 from rvmon.spec.printer import format_formula
 from rvmon.spec.rules.rule import Refusal
-from rvmon.testing.ltl3 import Tableau
 
 HEAD = "spec s\ntime sampled\nsignal a, b, c : bool\n"
 

@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.tools.spec_text import meaning, spec_text
 
 from rvmon.spec.checked import Arithmetic, Compare, Literal, SignalValue
 from rvmon.spec.compile import compile_text
@@ -10,7 +11,6 @@ from rvmon.spec.printer import format_duration, format_formula, format_numeric
 from rvmon.spec.tense import subformulas
 from rvmon.spec.units import unit_table
 from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.spec_text import meaning, spec_text
 
 
 @pytest.mark.parametrize("seed", range(150))

@@ -4,15 +4,15 @@ import random
 from dataclasses import replace
 
 import pytest
+from tests.tools import build
+from tests.tools.law import judge
 
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.checked import Constant, TimeModel, Unary, UnaryOp, UpdateValue
 from rvmon.spec.compile import compile_text
 from rvmon.spec.traps import traps_at_start, traps_at_trigger
-from rvmon.testing import build
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
-from rvmon.testing.law import judge
 from rvmon.testing.walk import numerics
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import pytest
+from tests.tools.build import requirement, spec_of, timeline
 
 from rvmon.spec.checked import Formula, Requirement, TimeModel
-from rvmon.testing.build import requirement, spec_of, timeline
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Decision

@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from tests.tools.build import always, eventually, following, no, p, q, two
 
 from rvmon.spec.checked import Formula, TimeModel
-from rvmon.testing.build import always, eventually, following, no, p, q, two
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}

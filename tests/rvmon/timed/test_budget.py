@@ -4,8 +4,8 @@ import mmap
 from pathlib import Path
 
 import pytest
+from tests.tools.timed_dice import random_model
 
-from rvmon.testing.timed_dice import random_model
 from rvmon.timed.load import load_network, loads_network
 from rvmon.timed.outcome import Policy
 from rvmon.timed.search import Budget, Progress

@@ -3,9 +3,9 @@
 from fractions import Fraction
 
 import pytest
+from tests.tools.timed_dice import random_model
 
 from rvmon.errors import ModelError
-from rvmon.testing.timed_dice import random_model
 from rvmon.timed.concrete import replay
 from rvmon.timed.conform import conform
 from rvmon.timed.conformance import Allowed, Recorded

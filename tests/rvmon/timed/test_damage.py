@@ -3,10 +3,10 @@
 from random import Random
 
 import pytest
+from tests.tools.timed_damage import damaged, survives
+from tests.tools.timed_dice import random_model
 
 from rvmon.export.uppaal import uppaal_xml
-from rvmon.testing.timed_damage import damaged, survives
-from rvmon.testing.timed_dice import random_model
 from rvmon.timed.load import loads_network
 
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
+from tests.tools.timed_runs import shows
 
-from rvmon.testing.timed_runs import shows
 from rvmon.timed.load import load_network, loads_network
 from rvmon.timed.outcome import Policy
 from rvmon.timed.verify import verify

@@ -1,10 +1,10 @@
 """Cases in which the model checker once was wrong, found by comparison with the region graph."""
 
 import pytest
+from tests.tools.timed_dice import random_model
+from tests.tools.timed_regions import decide
+from tests.tools.timed_runs import shows
 
-from rvmon.testing.timed_dice import random_model
-from rvmon.testing.timed_regions import decide
-from rvmon.testing.timed_runs import shows
 from rvmon.timed.load import loads_network
 from rvmon.timed.verify import verify
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import pytest
 
 from rvmon.spec.checked import TimeModel
-from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
+from tests.tools.differential import campaign
 
 PAIRS = 70
 

@@ -12,13 +12,13 @@ from rvmon.testing.compare import Key, Outcome, outcomes
 from rvmon.testing.follow import Followed, Followings
 from rvmon.testing.health import expected_health, may_be_simplified
 from rvmon.testing.kleene import Truth
-from rvmon.testing.law import word
-from rvmon.testing.moments import Moment
 from rvmon.testing.oracle import judge_views, report_on
-from rvmon.testing.seen import Seen
-from rvmon.testing.waiting import Waiting
 from rvmon.trace.health import Health
 from rvmon.verdict.report import Report
+from tests.tools.law import word
+from tests.tools.moments import Moment
+from tests.tools.seen import Seen
+from tests.tools.waiting import Waiting
 
 
 class Judgement:

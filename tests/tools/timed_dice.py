@@ -13,7 +13,7 @@ def random_model(seed: int) -> str:
     All parts of the model occur: integer guards and updates, resets to a number, binary, broadcast
     and urgent channels, urgent and committed locations, strict and equal bounds.
     """
-    return _Dice(Random(seed)).model()  # noqa: S311 - repeatable, not secret
+    return _Dice(Random(seed)).model()
 
 
 class _Dice:

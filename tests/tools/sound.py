@@ -13,11 +13,11 @@ from rvmon.spec.checked import (
 )
 from rvmon.testing.case import Case
 from rvmon.testing.dice import Dice
-from rvmon.testing.law import judge as oracle
-from rvmon.testing.refill import refilled
 from rvmon.testing.walk import parts_of, subformulas
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from tests.tools.law import judge as oracle
+from tests.tools.refill import refilled
 
 
 def is_spoken_of(spec: CheckedSpec) -> bool:

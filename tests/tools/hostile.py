@@ -68,7 +68,7 @@ def hostile_names(count: int, seed: int = 0) -> Iterator[str]:
     >>> len(set(hostile_names(1000)))
     1000
     """
-    dice = random.Random(seed)  # noqa: S311 - no secret
+    dice = random.Random(seed)
     known: set[str] = set()
     waiting = list(reversed(FORGERIES))
     while len(known) < count:

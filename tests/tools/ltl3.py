@@ -173,7 +173,7 @@ def _is_temporal(part: Formula) -> bool:
 def unrolled(formula: Formula) -> Formula:
     """The same formula without bounds, where every tick is a position: windows as nests of `X`.
 
-    >>> from rvmon.testing.build import eventually, p
+    >>> from tests.tools.build import eventually, p
     >>> from rvmon.testing.show import show
     >>> show(unrolled(eventually(p, 1, 2)))
     '(X (p or (X p)))'

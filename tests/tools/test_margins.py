@@ -6,15 +6,15 @@ from rvmon.monitor.robustness import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked import Mode, TimeModel
 from rvmon.testing.compare import key_of
-from rvmon.testing.differential import case_of
 from rvmon.testing.drive import tell
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.judgement import Judgement
-from rvmon.testing.margins import margins
 from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
+from tests.tools.differential import case_of
+from tests.tools.judgement import Judgement
+from tests.tools.margins import margins
 
 PAIRS = 90
 

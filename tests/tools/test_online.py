@@ -14,21 +14,21 @@ from rvmon.monitor import Monitor
 from rvmon.session import Spec
 from rvmon.spec.checked import TimeModel
 from rvmon.testing.attempts import is_upon_end
-from rvmon.testing.build import always, eventually, no, p, q, requirement, spec_of, timeline, two
 from rvmon.testing.case import Case
 from rvmon.testing.compare import outcomes
-from rvmon.testing.differential import campaign_of, case_of
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.health import health_differences
 from rvmon.testing.held_back import HeldBack
-from rvmon.testing.judgement import Judgement
-from rvmon.testing.law import judge
-from rvmon.testing.moments import Moment, moments
-from rvmon.testing.online import online_differences
 from rvmon.verdict.attempt import Attempt, Decision
+from tests.tools.build import always, eventually, no, p, q, requirement, spec_of, timeline, two
+from tests.tools.differential import campaign_of, case_of
+from tests.tools.judgement import Judgement
+from tests.tools.law import judge
+from tests.tools.moments import Moment, moments
+from tests.tools.online import online_differences
 
 
 def test_what_is_owed_and_its_deadline_are_compared() -> None:

@@ -20,13 +20,13 @@ from rvmon.spec.checked import (
 )
 from rvmon.testing.attempts import Start, counts_in_favour, is_upon_end
 from rvmon.testing.compare import Key
-from rvmon.testing.judgement import Judgement
 from rvmon.testing.kleene import Truth, truth_of
-from rvmon.testing.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated, within
 from rvmon.testing.truths import EVER
 from rvmon.testing.walk import is_proposition
 from rvmon.testing.word import Word
 from rvmon.trace.sample import Scalar
+from tests.tools.judgement import Judgement
+from tests.tools.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated, within
 
 
 def margins(judgement: Judgement) -> dict[Key, tuple[float, float, float]]:

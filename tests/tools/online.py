@@ -10,13 +10,13 @@ from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, Outcome, key_of
 from rvmon.testing.drive import Monitored, is_asked, tell
 from rvmon.testing.held_back import HeldBack
-from rvmon.testing.judgement import Judgement
-from rvmon.testing.moments import moments
-from rvmon.testing.waiting import Waiting
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from tests.tools.judgement import Judgement
+from tests.tools.moments import moments
+from tests.tools.waiting import Waiting
 
 
 def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:

@@ -7,7 +7,7 @@ import pytest
 from rvmon.spec.format_words import pieces_of
 from rvmon.spec.formatter import format_text
 from rvmon.spec.parse import grammar
-from rvmon.testing.generate_text import HEAD, random_text, syntax_of
+from tests.tools.generate_text import HEAD, random_text, syntax_of
 
 
 def test_most_texts_can_be_read_and_all_words_occur():

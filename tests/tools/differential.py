@@ -12,17 +12,17 @@ from rvmon.spec.checked import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
 from rvmon.testing.drive import Monitored, drive, is_asked
-from rvmon.testing.features import Feature, features
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.health import health_differences
 from rvmon.testing.held_back import HeldBack
-from rvmon.testing.judgement import Judgement
-from rvmon.testing.online import differences_after_end, online_differences
 from rvmon.testing.show import show_case
-from rvmon.testing.shrink import shrink
 from rvmon.testing.walk import intervals
 from rvmon.verdict.attempt import Attempt, Decision
+from tests.tools.features import Feature, features
+from tests.tools.judgement import Judgement
+from tests.tools.online import differences_after_end, online_differences
+from tests.tools.shrink import shrink
 
 MakeMonitor = Callable[[Case], Monitored | None]
 """A fresh monitor for the spec and the sources of a case; `None`: it judges no such specs."""
@@ -109,7 +109,7 @@ def cases_of(
     seed: object, profile: Profile, traces: TraceProfile, number: int = 1
 ) -> Iterator[Case]:
     """The random cases of a seed, the same for ever: one specification, so many traces."""
-    dice = random.Random(str(seed))  # noqa: S311 - a seed is meant to be repeated
+    dice = random.Random(str(seed))
     spec = random_spec(dice, profile)
     for _ in range(number):
         yield random_trace(dice, spec, traces)

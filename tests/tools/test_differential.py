@@ -10,7 +10,20 @@ import pytest
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.session import Spec
 from rvmon.spec.checked import UnaryOp
-from rvmon.testing.build import (
+from rvmon.testing.case import Case
+from rvmon.testing.compare import differences, frame_differences
+from rvmon.testing.drive import drive
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.health import expected_health, health_differences
+from rvmon.testing.show import show_case
+from rvmon.testing.walk import subformulas
+from rvmon.trace.sample import Sample, Value
+from rvmon.verdict.assemble import report_of
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+from tests.tools.build import (
     always,
     e,
     eventually,
@@ -20,29 +33,16 @@ from rvmon.testing.build import (
     spec_of,
     timeline,
 )
-from rvmon.testing.case import Case
-from rvmon.testing.compare import differences, frame_differences
-from rvmon.testing.differential import (
+from tests.tools.differential import (
     campaign,
     campaign_of,
     decided_on_bound,
     disagreements,
 )
-from rvmon.testing.drive import drive
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.health import expected_health, health_differences
-from rvmon.testing.judgement import Judgement
-from rvmon.testing.law import judge, word
-from rvmon.testing.online import differences_after_end, online_differences
-from rvmon.testing.show import show_case
-from rvmon.testing.shrink import shrink
-from rvmon.testing.walk import subformulas
-from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.assemble import report_of
-from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
-from rvmon.verdict.verdict import Verdict
+from tests.tools.judgement import Judgement
+from tests.tools.law import judge, word
+from tests.tools.online import differences_after_end, online_differences
+from tests.tools.shrink import shrink
 
 
 class Echo:

@@ -10,10 +10,10 @@ from rvmon.spec.checked import Binary, BinaryOp, Formula, Mode, Unary, UnaryOp
 from rvmon.spec.printer import format_formula
 from rvmon.testing.attempts import Readings, Start, counts_in_favour, obligation
 from rvmon.testing.kleene import Truth
-from rvmon.testing.moments import Moment
 from rvmon.testing.truths import Rest
 from rvmon.testing.walk import intervals, subformulas
 from rvmon.trace.time import format_ticks
+from tests.tools.moments import Moment
 
 _PART = re.compile(r"(`[^`]*`(?: (?:by|until) .*?)?)(?:(?: and |, or )(?=`)|$)")
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from rvmon.testing.timed_regions import RegionGraph
 from rvmon.timed.concrete import (
     Configuration,
     act,
@@ -19,6 +18,7 @@ from rvmon.timed.outcome import Outcome
 from rvmon.timed.run import Run
 from rvmon.timed.syntax import PathOp
 from rvmon.timed.zone_unions import has_paths, speaks_of_deadlock
+from tests.tools.timed_regions import RegionGraph
 
 Instants = list[tuple[Fraction, Configuration]]
 
@@ -30,7 +30,7 @@ def shows(network: Network, outcome: Outcome) -> bool:
         InvalidRunError: the run breaks a rule of the network.
     """
     run = outcome.run
-    assert run is not None  # noqa: S101 - asked of outcomes with a run
+    assert run is not None
     replay(network, run)
     instants = instants_of(network, run)
     match outcome.query.formula:
