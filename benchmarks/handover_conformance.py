@@ -18,7 +18,7 @@ from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.model import handover_network
 from handover.model.conformance import check_run
 from handover.robot.mutants import MUTATIONS
-from rvmon.timed.model import Network
+from rvmon.timed.model.network import Network
 
 
 def main() -> int:

@@ -10,9 +10,9 @@ from random import Random
 from rvmon.errors import ModelError
 from rvmon.export.network_dot import network_dot
 from rvmon.export.uppaal import uppaal_xml
-from rvmon.timed.load import load_network, loads_network
-from rvmon.timed.search import Budget
-from rvmon.timed.verify import verify
+from rvmon.timed.language.load import load_network, loads_network
+from rvmon.timed.search.problem import Budget
+from rvmon.timed.search.verify import verify
 
 SMALL = Budget(states=300, seconds=5.0)
 """What each query of a damaged model may cost."""

@@ -1,8 +1,8 @@
 """A slow and obvious decision procedure for small networks of timed automata: the region graph.
 
 Every question is decided by walking through all regions, one representative valuation each, with
-the plain rules of `rvmon.timed.concrete`. It shares no zone, no search and no abstraction with the
-model checker, and so can say whether that is right.
+the plain rules of `rvmon.timed.runs.concrete`. It shares no zone, no search and no abstraction with
+the model checker, and so can say whether that is right.
 
 Source: Alur and Dill, A Theory of Timed Automata, 1994, section 4.3.
 """
@@ -17,7 +17,11 @@ from math import floor
 
 import networkx as nx
 
-from rvmon.timed.concrete import (
+from rvmon.timed.model.expressions import BinaryOperation, Constant, Expression, PathFormula
+from rvmon.timed.model.guards import normal_form, with_deadlock
+from rvmon.timed.model.network import Edge, LeadsToFormula, Network, Query
+from rvmon.timed.model.operators import BinaryOp, PathOp
+from rvmon.timed.runs.concrete import (
     Configuration,
     InvalidRunError,
     act,
@@ -27,20 +31,8 @@ from rvmon.timed.concrete import (
     satisfies,
     wait,
 )
-from rvmon.timed.guards import normal_form, with_deadlock
-from rvmon.timed.model import (
-    BinaryOperation,
-    Constant,
-    Edge,
-    Expression,
-    LeadsToFormula,
-    Network,
-    PathFormula,
-    Query,
-)
-from rvmon.timed.run import Action
-from rvmon.timed.syntax import BinaryOp, PathOp
-from rvmon.timed.zone_unions import compares_of, has_paths, speaks_of_deadlock
+from rvmon.timed.runs.run import Action
+from rvmon.timed.zones.zone_unions import compares_of, has_paths, speaks_of_deadlock
 
 
 class TooManyRegionsError(Exception):

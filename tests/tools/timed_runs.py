@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from rvmon.timed.concrete import (
+from rvmon.timed.model.expressions import Expression, PathFormula
+from rvmon.timed.model.guards import normal_form, with_deadlock
+from rvmon.timed.model.network import LeadsToFormula, Network
+from rvmon.timed.model.operators import PathOp
+from rvmon.timed.runs.concrete import (
     Configuration,
     act,
     initial_configuration,
@@ -12,12 +16,9 @@ from rvmon.timed.concrete import (
     satisfies,
     wait,
 )
-from rvmon.timed.guards import normal_form, with_deadlock
-from rvmon.timed.model import Expression, LeadsToFormula, Network, PathFormula
-from rvmon.timed.outcome import Outcome
-from rvmon.timed.run import Run
-from rvmon.timed.syntax import PathOp
-from rvmon.timed.zone_unions import has_paths, speaks_of_deadlock
+from rvmon.timed.runs.run import Run
+from rvmon.timed.search.outcome import Outcome
+from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
 from tests.tools.timed_regions import RegionGraph
 
 Instants = list[tuple[Fraction, Configuration]]

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
     from pathlib import Path
 
-    from rvmon.timed.model import Network
-    from rvmon.timed.run import Run
+    from rvmon.timed.model.network import Network
+    from rvmon.timed.runs.run import Run
 
 REQUIREMENTS = ("R1", "R2", "R3", "R4")
 """The queries whose witnesses become templates; R5 has none, for the model knows no distances."""
@@ -93,8 +93,8 @@ def templates(policy: PolicyName = "likely") -> tuple[Template, ...]:
         AbstractTestError: a query has no witness.
     """
     from handover.model import handover_network
-    from rvmon.timed.outcome import Policy
-    from rvmon.timed.verify import verify
+    from rvmon.timed.search.outcome import Policy
+    from rvmon.timed.search.verify import verify
 
     network = handover_network()
     found = []

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from handover.driver.run import Run
-    from rvmon.timed.conformance import Conformance, Recorded
-    from rvmon.timed.model import Network
+    from rvmon.timed.conformance.outcome import Conformance, Recorded
+    from rvmon.timed.model.network import Network
 
 OBSERVED = (
     "grip_closed",
@@ -30,7 +30,7 @@ TOLERANCE_NS = 110_000_000
 
 def actions_of(run: Run) -> list[Recorded]:
     """The robot's observed messages in a run, in order."""
-    from rvmon.timed.conformance import Recorded
+    from rvmon.timed.conformance.outcome import Recorded
 
     return [
         Recorded(t_ns, name) for t_ns, values in run.samples for name in OBSERVED if name in values
@@ -39,7 +39,7 @@ def actions_of(run: Run) -> list[Recorded]:
 
 def check_run(network: Network, run: Run) -> Conformance:
     """Hold a simulated run against the handover network."""
-    from rvmon.timed.conform import conform
+    from rvmon.timed.conformance.conform import conform
 
     return conform(
         network,
