@@ -34,7 +34,7 @@ def test_the_grammar_has_no_conflicts(caplog):
     """The LALR table of every start rule is built without a conflict being resolved."""
     from importlib import resources
 
-    grammar = resources.files("rvmon.timed").joinpath("ta.lark").read_text()
+    grammar = resources.files("rvmon.timed.language").joinpath("ta.lark").read_text()
     lark.logger.setLevel(logging.DEBUG)
     try:
         with caplog.at_level(logging.DEBUG, logger="lark"):
