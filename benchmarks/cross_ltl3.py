@@ -24,17 +24,8 @@ from tests.tools.ltl3 import Letter, Tableau, unrolled
 
 from rvmon.monitor import compile_spec
 from rvmon.session import Spec
-from rvmon.spec.checked import (
-    Bound,
-    BoundAtom,
-    CheckedSpec,
-    Formula,
-    Mode,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
+from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.testing.dice import Dice, chance
 from rvmon.testing.show import show
 from rvmon.testing.vocabulary import BOOLS

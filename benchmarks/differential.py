@@ -24,7 +24,7 @@ from tests.tools.features import Feature, possible
 from rvmon.children import workers
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled import ENGINES
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.forms import FORMS, INTERRUPT, NEXT, Compiler, Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

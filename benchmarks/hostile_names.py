@@ -43,7 +43,7 @@ from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.report.table_csv import tables_csv
 from rvmon.report.table_html import table_html
 from rvmon.report.table_latex import table_latex
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.assemble import report_of

@@ -29,7 +29,7 @@ from rvmon.explain.analysed import analyse
 from rvmon.explain.codes import every_rule
 from rvmon.monitor import compile_spec
 from rvmon.spec.compile import compile_text
-from rvmon.spec.formatter import format_text
+from rvmon.spec.print.formatter import format_text
 from rvmon.spec.rules.registry import all_rules
 from rvmon.testing.generate_spec import Profile, random_spec
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import assert_never
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BoundAtom,
     Compare,

@@ -9,7 +9,7 @@ from benchmarks.workload import Workload
 from tests.tools.build import eventually, no, two
 
 from benchmarks import robot, timescales
-from rvmon.spec.checked import Formula, SignalAtom
+from rvmon.spec.checked.formula import Formula, SignalAtom
 
 SIGNALS = 20
 """Of the stream that many monitors read."""

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 from tests.tools.build import always, eventually, historically, no, once, two
 
-from rvmon.spec.checked import Formula, SignalAtom
+from rvmon.spec.checked.formula import Formula, SignalAtom
 
 BOUNDS = (10, 100, 1000)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from benchmarks.peers.positions import Question
 from tests.tools.shrink import smaller_formulas
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     Compare,
     CompareOp,

@@ -28,7 +28,8 @@ from tests.tools.build import (
     x,
 )
 
-from rvmon.spec.checked import Formula, TimeModel
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.dialects import spelling
 from rvmon.testing.peers.ways import Cell, Columns

@@ -10,12 +10,11 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 from typing import Any
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
-    CheckedSpec,
     Compare,
     CompareOp,
     Constant,
@@ -24,17 +23,15 @@ from rvmon.spec.checked import (
     Formula,
     Interval,
     Literal,
-    Mode,
     Numeric,
     Probe,
     ProbeAtom,
-    Requirement,
     SignalAtom,
     SignalValue,
-    TimeModel,
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.pulse import is_pulse
 from rvmon.testing.vocabulary import BOOLS, CARRIER, FIELD, LABEL, LABELS, NUMBERS, events, signals
 from rvmon.trace.sample import Sample, Value

@@ -8,7 +8,7 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from rvmon.errors import RvmonError
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
 from rvmon.testing.drive import Monitored, drive, is_asked

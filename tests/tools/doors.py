@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.dice import Dice, chance
 from rvmon.trace.sample import Value

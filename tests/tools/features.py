@@ -6,20 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.spec.checked import (
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    CheckedSpec,
-    EndPolicy,
-    Interval,
-    Mode,
-    Requirement,
-    TimeModel,
-    Unary,
-    UnaryOp,
-)
+from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Interval, Unary, UnaryOp
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement, TimeModel
 from rvmon.testing.walk import subformulas
 
 WINDOWS = ("[0,0]", "[0,b]", "[0,∞)", "[a,a]", "[a,b]", "[a,∞)")

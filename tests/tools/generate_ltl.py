@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from rvmon.spec.checked import Binary, BinaryOp, Formula, Interval, SignalAtom, Unary, UnaryOp
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Formula,
+    Interval,
+    SignalAtom,
+    Unary,
+    UnaryOp,
+)
 from rvmon.testing.dice import Dice, chance, pick
 from rvmon.testing.vocabulary import BOOLS
 

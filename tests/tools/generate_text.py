@@ -9,8 +9,8 @@ from functools import cache
 from typing import Any
 
 from rvmon.diagnostics.span import Source, Span
-from rvmon.spec.findings import Findings
-from rvmon.spec.parse import grammar, parse_spec
+from rvmon.spec.rules.findings import Findings
+from rvmon.spec.syntax.parse import grammar, parse_spec
 from rvmon.testing.dice import Dice, chance, pick
 
 HEAD = """spec demo

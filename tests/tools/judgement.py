@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
-from rvmon.spec.checked import Requirement
+from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, Outcome, outcomes

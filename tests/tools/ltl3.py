@@ -12,8 +12,16 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.spec.checked import Binary, BinaryOp, Constant, Formula, Interval, SignalAtom, Unary
-from rvmon.spec.checked import UnaryOp as Op
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Constant,
+    Formula,
+    Interval,
+    SignalAtom,
+    Unary,
+)
+from rvmon.spec.checked.formula import UnaryOp as Op
 from rvmon.testing.peers.core import both, either, to_core
 from rvmon.testing.walk import subformulas
 

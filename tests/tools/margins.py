@@ -9,15 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import assert_never
 
-from rvmon.spec.checked import (
-    Binary,
-    BinaryOp,
-    Formula,
-    Interval,
-    Mode,
-    Unary,
-    UnaryOp,
-)
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.spec.checked.specification import Mode
 from rvmon.testing.attempts import Start, counts_in_favour, is_upon_end
 from rvmon.testing.compare import Key
 from rvmon.testing.kleene import Truth, truth_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from rvmon.spec.checked import CheckedSpec, Event, Type
+from rvmon.spec.checked.specification import CheckedSpec, Event, Type
 from rvmon.testing.case import Case
 from rvmon.testing.dice import Dice, chance, pick
 from rvmon.trace.sample import Payload, Sample, Scalar, Value

@@ -4,17 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rvmon.spec.checked import (
-    BoundAtom,
-    CheckedSpec,
-    Compare,
-    EventAtom,
-    Formula,
-    ProbeAtom,
-    Requirement,
-    SignalAtom,
-)
-from rvmon.spec.printer import format_formula
+from rvmon.spec.checked.formula import BoundAtom, Compare, EventAtom, Formula, ProbeAtom, SignalAtom
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.attempts import Start
 from rvmon.testing.compare import Key, key_of
 from rvmon.testing.health import may_be_simplified

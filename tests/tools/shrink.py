@@ -5,20 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
     Captured,
     Constant,
-    EndPolicy,
     Formula,
     Interval,
-    Mode,
-    Requirement,
     Unary,
 )
+from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
 from rvmon.testing.case import Case
 from rvmon.testing.pulse import is_pulse
 from rvmon.testing.walk import numerics

@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from rvmon.spec.checked import (
-    CheckedSpec,
-    Compare,
-    Probe,
-    ProbeAtom,
-    UpdateValue,
-)
+from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.dice import Dice
 from rvmon.testing.walk import parts_of, subformulas

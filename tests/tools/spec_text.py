@@ -7,8 +7,9 @@ from collections.abc import Hashable
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Event, Requirement, Signal
-from rvmon.spec.printer import format_duration, format_formula, format_numeric
+from rvmon.spec.checked.formula import Binary, BinaryOp
+from rvmon.spec.checked.specification import CheckedSpec, Event, Requirement, Signal
+from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
 from rvmon.testing.dice import Dice, chance, pick
 from rvmon.trace.schema import Kind
 

@@ -9,7 +9,7 @@ import pytest
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.session import Spec
-from rvmon.spec.checked import UnaryOp
+from rvmon.spec.checked.formula import UnaryOp
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
 from rvmon.testing.drive import drive

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

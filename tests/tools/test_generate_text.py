@@ -4,9 +4,9 @@ import random
 
 import pytest
 
-from rvmon.spec.format_words import pieces_of
-from rvmon.spec.formatter import format_text
-from rvmon.spec.parse import grammar
+from rvmon.spec.print.format_words import pieces_of
+from rvmon.spec.print.formatter import format_text
+from rvmon.spec.syntax.parse import grammar
 from tests.tools.generate_text import HEAD, random_text, syntax_of
 
 

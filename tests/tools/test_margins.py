@@ -4,7 +4,7 @@ import pytest
 
 from rvmon.monitor.robustness import RobustnessMonitor
 from rvmon.session import Spec
-from rvmon.spec.checked import Mode, TimeModel
+from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.compare import key_of
 from rvmon.testing.drive import tell
 from rvmon.testing.generate_spec import Profile

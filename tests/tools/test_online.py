@@ -12,7 +12,7 @@ import pytest
 
 from rvmon.monitor import Monitor
 from rvmon.session import Spec
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.case import Case
 from rvmon.testing.compare import outcomes

@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-from rvmon.spec.checked import Binary, BinaryOp, Formula, Mode, Unary, UnaryOp
-from rvmon.spec.printer import format_formula
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import Mode
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.attempts import Readings, Start, counts_in_favour, obligation
 from rvmon.testing.kleene import Truth
 from rvmon.testing.truths import Rest

@@ -15,20 +15,17 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.lower import has_future, lower
 from rvmon.formula.state import State
 from rvmon.monitor.instances import Instance
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
-    CheckedSpec,
     Formula,
     Interval,
-    Mode,
-    Requirement,
-    TimeModel,
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 

@@ -13,7 +13,7 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.four import Four, Reader
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, State, StateOp, Unborn
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
@@ -22,15 +22,14 @@ from rvmon.spec.checked import (
     Constant,
     Formula,
     Interval,
-    Mode,
     Probe,
     ProbeAtom,
-    Requirement,
     SignalAtom,
     Unary,
     UnaryOp,
 )
-from rvmon.spec.tense import subformulas
+from rvmon.spec.checked.specification import Mode, Requirement
+from rvmon.spec.checked.tense import subformulas
 
 _FUTURE = {
     UnaryOp.NEXT,

@@ -13,9 +13,9 @@ from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.cause import Cause
 from rvmon.monitor.sentence import AfterTrigger, Base, LastWith, Place, Sentence, Turned
-from rvmon.spec.checked import EventAtom, Formula, Unary, UnaryOp
-from rvmon.spec.printer import format_formula
-from rvmon.spec.tense import is_pulse
+from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.tense import is_pulse
+from rvmon.spec.print.printer import format_formula
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 

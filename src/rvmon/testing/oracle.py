@@ -11,11 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from rvmon.errors import TraceError
-from rvmon.spec.checked import (
-    CheckedSpec,
-    EndPolicy,
-    Requirement,
-)
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement
 from rvmon.testing.attempts import Start, is_upon_end, obligation
 from rvmon.testing.follow import Followed, Followings, follow
 from rvmon.testing.kleene import Truth

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from enum import Enum, auto
 from typing import Protocol, assert_never
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,

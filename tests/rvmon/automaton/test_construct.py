@@ -16,7 +16,7 @@ from rvmon.automaton.table import TableMachine
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.spec.checked import SignalAtom
+from rvmon.spec.checked.formula import SignalAtom
 
 SECOND = 10**9
 

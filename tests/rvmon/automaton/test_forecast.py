@@ -11,7 +11,7 @@ from tests.tools.ltl3 import Tableau, unrolled
 
 from rvmon import loads
 from rvmon.session import Spec
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.strategies import cases

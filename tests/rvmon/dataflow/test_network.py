@@ -14,7 +14,7 @@ from rvmon.dataflow.network import Network
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.session import Spec
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile

@@ -14,7 +14,7 @@ from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.export.hoa import hoa
 from rvmon.monitor import compile_spec
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 
 GRAMMAR = Lark(
     r"""

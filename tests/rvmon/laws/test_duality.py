@@ -28,15 +28,8 @@ from tests.tools.build import (
     two,
 )
 
-from rvmon.spec.checked import (
-    BinaryOp,
-    CheckedSpec,
-    EndPolicy,
-    Formula,
-    Interval,
-    TimeModel,
-    UnaryOp,
-)
+from rvmon.spec.checked.formula import BinaryOp, Formula, Interval, UnaryOp
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate_formula import Shape, interval
 from rvmon.testing.strategies import formulas, specs, traces

@@ -9,7 +9,8 @@ from tests.tools.build import requirement, spec_of
 from tests.tools.generate_ltl import random_mtl
 
 from rvmon.session import Spec
-from rvmon.spec.checked import EventAtom, TimeModel
+from rvmon.spec.checked.formula import EventAtom
+from rvmon.spec.checked.specification import TimeModel
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton", "network"])

@@ -26,7 +26,7 @@ from tests.tools.build import (
 from tests.tools.differential import disagreements
 
 from rvmon.monitor import build_monitor, compile_spec
-from rvmon.spec.checked import Capture, EndPolicy, ForEach, TimeModel
+from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
 

@@ -22,7 +22,8 @@ from tests.tools.build import (
     x,
 )
 
-from rvmon.spec.checked import Formula, TimeModel
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.peers.core import UntranslatableError, names_in, to_core
 from rvmon.testing.peers.dialects import (
     LTLF,

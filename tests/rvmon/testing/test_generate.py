@@ -16,17 +16,8 @@ from tests.tools.features import Feature, features, possible
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge
 
-from rvmon.spec.checked import (
-    Binary,
-    BinaryOp,
-    Compare,
-    EndPolicy,
-    Formula,
-    Mode,
-    TimeModel,
-    Unary,
-    UnaryOp,
-)
+from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import EndPolicy, Mode, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.generate_spec import Profile, random_spec

@@ -17,7 +17,8 @@ from tests.tools.build import (
     two,
 )
 
-from rvmon.spec.checked import EndPolicy, Formula, TimeModel
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import EndPolicy, TimeModel
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}

@@ -25,17 +25,17 @@ from tests.tools.build import (
 )
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.spec.arithmetic import NumericOp
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Formula,
     Literal,
     Numeric,
     SignalValue,
-    TimeModel,
     UpdateFunction,
     UpdateValue,
 )
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.sample_words import MOST_TICKS
 from rvmon.trace.sample import Sample, Trace

@@ -25,7 +25,8 @@ from tests.tools.build import (
     two,
 )
 
-from rvmon.spec.checked import Formula, TimeModel
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from tests.tools.differential import case_of
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.spec.checked import Requirement
+from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.compare import differences
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

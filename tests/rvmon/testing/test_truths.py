@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from tests.tools.differential import case_of
 
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.attempts import Readings, obligation
 from rvmon.testing.follow import follow
 from rvmon.testing.generate_spec import Profile

@@ -12,7 +12,7 @@ import lark
 
 from rvmon.diagnostics import Source, Span
 from rvmon.errors import ModelError
-from rvmon.spec.grammar_cache import parser_of
+from rvmon.spec.syntax.grammar_cache import parser_of
 from rvmon.timed.language.foreign import reason_at
 from rvmon.timed.language.mistakes import all_mistakes
 from rvmon.timed.language.syntax import Document, QueryText

@@ -12,7 +12,8 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import lower
 from rvmon.formula.state import StateOp
-from rvmon.spec.checked import BoundAtom, CheckedSpec, Requirement, TimeModel
+from rvmon.spec.checked.formula import BoundAtom
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.timed.conformance.recordings import labels_of
 from rvmon.timed.language.elaborate import signal_on
 from rvmon.timed.model.evaluate import Evaluator, evaluator

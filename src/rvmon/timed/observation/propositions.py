@@ -9,7 +9,7 @@ from typing import assert_never
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.state import FALSE, TRUE, Lapsed, Lost, Missing, StateOp, Unborn
 from rvmon.formula.state import State as Proposition
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Compare,
     CompareOp,
     Constant,
