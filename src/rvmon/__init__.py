@@ -70,7 +70,7 @@ _HOMES = {
     "ModelError": "rvmon.errors",
     "Monitor": "rvmon.monitor",
     "Report": "rvmon.verdict.report",
-    "Requirement": "rvmon.spec.checked.formula",
+    "Requirement": "rvmon.spec.checked.specification",
     "RvmonError": "rvmon.errors",
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",
