@@ -46,8 +46,7 @@ from rvmon.report.table_latex import table_latex
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind
-from rvmon.verdict.assemble import report_of
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
 BATCH = 1000

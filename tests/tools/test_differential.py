@@ -19,9 +19,8 @@ from rvmon.testing.health import expected_health, health_differences
 from rvmon.testing.show import show_case
 from rvmon.testing.walk import subformulas
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 from tests.tools.build import (
     always,

@@ -8,6 +8,8 @@ from math import floor, inf
 from typing import TYPE_CHECKING, Literal
 
 from handover.generator.abstract_test import (
+    SEND_DELAY_S,
+    SEND_PAUSE_S,
     AbstractTest,
     Action,
     ReceiveSignal,
@@ -225,8 +227,6 @@ def choose_times(template: Template, rng: random.Random) -> list[int]:
 
 def _script(template: Template, times: Sequence[int]) -> list[Action]:
     """The script that does each action at its time, as far as the driver's own delays allow."""
-    from handover.driver.script import SEND_DELAY_S, SEND_PAUSE_S
-
     script: list[Action] = []
     now = 0
     for step, time in zip(template.steps, times[1:], strict=True):

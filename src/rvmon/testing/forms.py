@@ -23,9 +23,8 @@ from rvmon.testing.drive import Asked, Monitored
 from rvmon.testing.held_back import HeldBack
 from rvmon.testing.interrupt import Interrupted
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
 FORMS = (*ENGINES, "file", "c", "c rows")

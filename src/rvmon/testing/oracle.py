@@ -19,9 +19,8 @@ from rvmon.testing.sample_words import word_of
 from rvmon.testing.truths import Rest
 from rvmon.testing.word import Word
 from rvmon.trace.sample import Sample, Trace, Value
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
 

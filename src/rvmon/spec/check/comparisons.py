@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.durations import ticks_of
+from rvmon.spec.check.operands import Operands
 from rvmon.spec.check.quantities import Placed, compare
 from rvmon.spec.check.values import Age, Quantity, Scope, Value
 from rvmon.spec.checked.formula import (
@@ -25,9 +24,6 @@ from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax.expressions import Comparison, Expression, Name
 
-if TYPE_CHECKING:
-    from rvmon.spec.check.expressions import Checker
-
 _MIRRORED = {
     CompareOp.LT: CompareOp.GT,
     CompareOp.LE: CompareOp.GE,
@@ -39,14 +35,14 @@ _MIRRORED = {
 _EQUALITY = (CompareOp.EQ, CompareOp.NE)
 
 
-def compared(checker: Checker, node: Comparison, scope: Scope) -> Formula:
+def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
     """What a comparison stands for.
 
     Raises:
         Refusal: the sides cannot be compared.
         Reported: a side is wrong.
     """
-    left, right = _sides(checker, node, scope)
+    left, right = _sides(operands, node, scope)
     if isinstance(left, Age):
         limit = _comparable(right, node.right.span)
         return _age(left, node.op, limit, node.span)
@@ -58,27 +54,27 @@ def compared(checker: Checker, node: Comparison, scope: Scope) -> Formula:
     return _quantities(node.op, first, second, node.span)
 
 
-def _sides(checker: Checker, node: Comparison, scope: Scope) -> list[Value]:
+def _sides(operands: Operands, node: Comparison, scope: Scope) -> list[Value]:
     """Both values; a name that is a label of the other side's signal is that label."""
     for first, second in ((node.left, node.right), (node.right, node.left)):
-        name, place = checker.peeled(second, scope)
-        other, _ = checker.peeled(first, scope)
-        if not isinstance(name, Name) or not _may_be_signal(checker, other, scope):
+        name, place = operands.peeled(second, scope)
+        other, _ = operands.peeled(first, scope)
+        if not isinstance(name, Name) or not _may_be_signal(operands, other, scope):
             continue
-        value = checker.values((first,), scope)[0]
+        value = operands.values((first,), scope)[0]
         if not isinstance(value, Quantity) or not value.labels:
             continue
         if name.text in value.labels:
             label = Quantity(Literal(name.text), labels=value.labels)
             return [value, label] if first is node.left else [label, value]
-        if not checker.known(name.text, place):
+        if not operands.known(name.text, place):
             raise Refusal(name_rules.unknown_label(name.span, name.text, value.labels))
-    return checker.values((node.left, node.right), scope)
+    return operands.values((node.left, node.right), scope)
 
 
-def _may_be_signal(checker: Checker, expression: Expression, scope: Scope) -> bool:
+def _may_be_signal(operands: Operands, expression: Expression, scope: Scope) -> bool:
     """Whether evaluating it is worth while in search of a signal with labels."""
-    return not isinstance(expression, Name) or checker.known(expression.text, scope)
+    return not isinstance(expression, Name) or operands.known(expression.text, scope)
 
 
 def _comparable(value: Value, span: Span) -> Placed:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
+from rvmon.spec.check.operands import Operands
 from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.values import Age, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
@@ -29,9 +28,6 @@ from rvmon.spec.syntax.units import parse_unit, quotient
 from rvmon.spec.syntax.words import FUNCTIONS
 from rvmon.trace.schema import Kind
 
-if TYPE_CHECKING:
-    from rvmon.spec.check.expressions import Checker
-
 _ARGUMENTS = {
     "rise": 1,
     "fall": 1,
@@ -48,7 +44,7 @@ _ARGUMENTS = {
 """How many arguments a function takes; those that are not here take two or more."""
 
 
-def applied(checker: Checker, call: Call, scope: Scope) -> Value:
+def applied(operands: Operands, call: Call, scope: Scope) -> Value:
     """What a call of a function of the language stands for.
 
     Raises:
@@ -57,28 +53,30 @@ def applied(checker: Checker, call: Call, scope: Scope) -> Value:
     """
     name = call.function.text
     if name not in FUNCTIONS:
-        if name in checker.table.doubtful:
+        if name in operands.table.doubtful:
             raise Reported
-        raise Refusal(_unknown(checker, call))
+        raise Refusal(_unknown(operands, call))
     _check_count(call)
     match name:
         case "rise" | "fall":
-            return Unary(UnaryOp(name), checker.formula(call.args[0], scope), None, call.span)
+            return Unary(UnaryOp(name), operands.formula(call.args[0], scope), None, call.span)
         case "held":
-            operand = checker.formula(call.args[0], scope)
-            ticks = checker.duration(call.args[1], scope)
+            operand = operands.formula(call.args[0], scope)
+            ticks = operands.duration(call.args[1], scope)
             return Unary(UnaryOp.HELD, operand, Interval(0, ticks), call.span)
         case "known" | "changed":
-            signal, _ = _named(checker, call, scope, events=False)
+            signal, _ = _named(operands, call, scope, events=False)
             return ProbeAtom(Probe(name), signal, call.span)
         case "updated":
-            return ProbeAtom(Probe.UPDATED, _named(checker, call, scope, events=True)[0], call.span)
+            return ProbeAtom(
+                Probe.UPDATED, _named(operands, call, scope, events=True)[0], call.span
+            )
         case "age":
-            return Age(_named(checker, call, scope, events=True)[0])
+            return Age(_named(operands, call, scope, events=True)[0])
         case "prev" | "delta" | "rate":
-            return _of_updates(checker, call, scope)
+            return _of_updates(operands, call, scope)
         case _:
-            quantities = checker.quantities(call.args, scope)
+            quantities = operands.quantities(call.args, scope)
             placed = zip(quantities, (arg.span for arg in call.args), strict=True)
             return arithmetic(NumericOp.of(name), list(placed), call.span)
 
@@ -94,25 +92,25 @@ def _check_count(call: Call) -> None:
         raise Refusal(rules.argument_count(call.span, name, takes, given))
 
 
-def _named(checker: Checker, call: Call, scope: Scope, *, events: bool) -> tuple[str, Span]:
+def _named(operands: Operands, call: Call, scope: Scope, *, events: bool) -> tuple[str, Span]:
     """The only argument, which has to be the name of a signal (or of an event)."""
     needed = "the name of a signal or event" if events else "the name of a signal"
-    name, inner = checker.peeled(call.args[0], scope)
+    name, inner = operands.peeled(call.args[0], scope)
     if isinstance(name, Name) and name.text not in inner.names:
-        table = checker.table
+        table = operands.table
         if name.text in table.signals or (events and name.text in table.events):
             return name.text, name.span
-        checker.values((name,), inner)
+        operands.values((name,), inner)
     raise Refusal(rules.argument_kind(call.args[0].span, call.function.text, needed))
 
 
-def _of_updates(checker: Checker, call: Call, scope: Scope) -> Quantity:
-    name, span = _named(checker, call, scope, events=False)
-    signal = checker.table.signals[name]
+def _of_updates(operands: Operands, call: Call, scope: Scope) -> Quantity:
+    name, span = _named(operands, call, scope, events=False)
+    signal = operands.table.signals[name]
     function = UpdateFunction(call.function.text)
     if function is not UpdateFunction.PREV and signal.type.kind in (Kind.BOOL, Kind.LABEL):
         raise Refusal(rules.argument_kind(span, function, "a signal with numbers"))
-    unit = checker.table.units.get(name, PLAIN)
+    unit = operands.table.units.get(name, PLAIN)
     rate = function is UpdateFunction.RATE
     return Quantity(
         UpdateValue(function, name),
@@ -123,13 +121,13 @@ def _of_updates(checker: Checker, call: Call, scope: Scope) -> Quantity:
     )
 
 
-def _unknown(checker: Checker, call: Call) -> Diagnostic:
+def _unknown(operands: Operands, call: Call) -> Diagnostic:
     name = call.function.text
-    if name in checker.table.declared:
+    if name in operands.table.declared:
         rest = call.span.text[len(name) :]
         return name_rules.unknown_function(
             call.function.span, name, f"put a space before the bracket: `{name} {rest[:20]}`"
         )
-    mend = did_you_mean(name, [*FUNCTIONS, *checker.table.declared])
+    mend = did_you_mean(name, [*FUNCTIONS, *operands.table.declared])
     mend = NEVER if name == "never" else mend
     return name_rules.unknown_function(call.function.span, name, mend)

@@ -2,11 +2,11 @@
 
 import pytest
 
+from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.model import handover_network
-from handover.model.conformance import check_run
 
 
 @pytest.fixture(scope="module")
