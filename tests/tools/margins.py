@@ -14,12 +14,13 @@ from rvmon.spec.checked.specification import Mode
 from rvmon.testing.attempts import Start, counts_in_favour, is_upon_end
 from rvmon.testing.compare import Key
 from rvmon.testing.kleene import Truth, truth_of
+from rvmon.testing.past import is_within
 from rvmon.testing.truths import EVER
 from rvmon.testing.walk import is_proposition
 from rvmon.testing.word import Word
 from rvmon.trace.sample import Scalar
 from tests.tools.judgement import Judgement
-from tests.tools.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated, within
+from tests.tools.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
 
 
 def margins(judgement: Judgement) -> dict[Key, tuple[float, float, float]]:
@@ -203,7 +204,7 @@ class _Ranges:
         ways = [
             least([right(j), *(left(k) for k in range(i, j))])
             for j in range(i, len(self.letters))
-            if within(self.letters[j].instant - now, window)
+            if is_within(self.letters[j].instant - now, window)
         ]
         if window.high is None or self.reached <= now + window.high:
             ways.append(least([rest, *(left(k) for k in range(i, len(self.letters)))]))
@@ -214,7 +215,7 @@ class _Ranges:
         return most(
             least([right(j), *(left(k) for k in range(j + 1, i + 1))])
             for j in range(i + 1)
-            if within(now - self.letters[j].instant, window)
+            if is_within(now - self.letters[j].instant, window)
         )
 
 

@@ -19,6 +19,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.testing.kleene import Truth, conjunction, negation
 from rvmon.testing.numbers import events_of, number
+from rvmon.testing.past import is_within
 from rvmon.testing.truths import EVER, Truths
 from rvmon.testing.word import Letter, Word
 from rvmon.trace.sample import Payload, Scalar
@@ -47,11 +48,6 @@ def most(values: Iterable[Range]) -> Range:
     """That of a disjunction; of nothing `BOTTOM`."""
     lows, highs = zip(BOTTOM, *values, strict=True)
     return max(lows), max(highs)
-
-
-def within(distance: int, window: Interval) -> bool:
-    """Whether a distance in ticks lies in an interval."""
-    return window.low <= distance and (window.high is None or distance <= window.high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +165,7 @@ class Past:
         return most(
             least([right(j), *kept[j + 1 :]])
             for j in range(i + 1)
-            if within(now - self._letters[j].instant, window)
+            if is_within(now - self._letters[j].instant, window)
         )
 
     def _before(self, operand: Formula, i: int) -> Seen:
@@ -181,7 +177,7 @@ class Past:
 
     def _held(self, operand: Formula, i: int, window: Interval, unborn: Truth) -> Range:
         start, now = self._letters[0].instant, self._letters[i].instant
-        inside = [k for k in range(i + 1) if within(now - self._letters[k].instant, window)]
+        inside = [k for k in range(i + 1) if is_within(now - self._letters[k].instant, window)]
         begun = TOP if now - start >= (window.high or 0) else BOTTOM
         value = least([begun, *(self.range(operand, k, Truth.FALSE) for k in inside)])
         states = {self._truths.state(operand, k) for k in inside}

@@ -24,7 +24,8 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
-from rvmon.formula.lower import Obligation, UnmonitorableError, lower
+from rvmon.formula.lower import lower
+from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.state import State
 from rvmon.monitor.obligation_words import Words
 from rvmon.spec.checked.formula import Compare

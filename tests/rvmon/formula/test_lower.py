@@ -21,7 +21,8 @@ from tests.tools.build import (
 from rvmon.formula.core import Literal, Release, Sense, Since, Until
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
-from rvmon.formula.lower import UnmonitorableError, lower
+from rvmon.formula.lower import lower
+from rvmon.formula.obligation import UnmonitorableError
 
 
 def owed(formula, **more):

@@ -21,7 +21,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.tense import future_part
+from rvmon.spec.checked.tense import has_future
 
 _ALL = Interval()
 
@@ -68,7 +68,7 @@ def _until_closed(formula: Formula, closing: Formula) -> Formula:
     What must come has to come before that (`U` takes `not closing` on both sides); what must hold
     has to hold until then (the dual).
     """
-    if future_part(formula) is None:
+    if not has_future(formula):
         return formula
     match formula:
         case Unary(op=op, operand=operand, interval=interval, span=span):

@@ -82,6 +82,11 @@ def future_part(formula: Formula) -> Formula | None:
     return None
 
 
+def has_future(formula: Formula) -> bool:
+    """Whether a formula looks ahead."""
+    return future_part(formula) is not None
+
+
 def end_part(formula: Formula) -> Formula | None:
     """The first `end` in a formula."""
     for part in subformulas(formula):

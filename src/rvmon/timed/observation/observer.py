@@ -17,7 +17,7 @@ from math import ceil
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
-from rvmon.formula.lower import Obligation
+from rvmon.formula.obligation import Obligation
 from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.timed.conformance.conform import names_of
 from rvmon.timed.model.expressions import TRUE
