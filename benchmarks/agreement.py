@@ -24,7 +24,7 @@ from benchmarks.workload import Workload
 
 from rvmon import loads
 from rvmon.errors import RvmonError
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import UntranslatableError, names_in
 from rvmon.testing.peers.ways import Cell

@@ -20,9 +20,10 @@ from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING
 
+from tests.tools.differential import campaign
+
 from benchmarks import columns
 from rvmon.children import interrupted_by_sigterm, workers
-from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

@@ -19,6 +19,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from tests.tools.build import p, requirement, start
+
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.forecast import Forecaster
@@ -28,8 +30,7 @@ from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.monitor.obligation_words import Words
-from rvmon.spec.checked import Binary, Formula, Unary
-from rvmon.testing.build import p, requirement, start
+from rvmon.spec.checked.formula import Binary, Formula, Unary
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.show import show
 

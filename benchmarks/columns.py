@@ -20,6 +20,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from benchmarks.differential import MODELS
+from tests.tools.differential import cases_of
+from tests.tools.filled import filled, judge_columns
+from tests.tools.law import judge
 
 from rvmon.errors import RvmonError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
@@ -27,11 +30,8 @@ from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.readers.alternation import REMARK
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
-from rvmon.testing.differential import cases_of
-from rvmon.testing.filled import filled, judge_columns
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.law import judge
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
 

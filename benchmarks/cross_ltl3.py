@@ -4,7 +4,7 @@
     python -m benchmarks.cross_ltl3 --formulas 1000 --words 20 --timed
 
 After every position of random words, the verdict or the forecast of the engine is compared with
-what the tableau of `rvmon.testing.ltl3` says that infinite continuations leave possible. With
+what the tableau of `tests.tools.ltl3` says that infinite continuations leave possible. With
 `--timed`, formulas have windows of a few ticks and are judged in held time; the tableau is given
 them with the windows unrolled, and a forecast that the engine does not give is counted as missed.
 Prints the counts and every disagreement; exits 1 if there is one.
@@ -19,22 +19,14 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from tests.tools.generate_ltl import random_ltl, random_mtl
+from tests.tools.ltl3 import Letter, Tableau, unrolled
+
 from rvmon.monitor import compile_spec
 from rvmon.session import Spec
-from rvmon.spec.checked import (
-    Bound,
-    BoundAtom,
-    CheckedSpec,
-    Formula,
-    Mode,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
+from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.testing.dice import Dice, chance
-from rvmon.testing.generate_ltl import random_ltl, random_mtl
-from rvmon.testing.ltl3 import Letter, Tableau, unrolled
 from rvmon.testing.show import show
 from rvmon.testing.vocabulary import BOOLS
 from rvmon.trace.schema import Kind

@@ -23,26 +23,21 @@ from pathlib import Path
 
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.positions import Judge, ask_engine, ask_oracle
+from tests.tools.generate_ltl import random_ltl
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
-    CheckedSpec,
     Formula,
     Interval,
-    Mode,
-    Requirement,
-    Signal,
     SignalAtom,
-    TimeModel,
-    Type,
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.testing.dice import Dice, chance
-from rvmon.testing.generate_ltl import random_ltl
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import both, no, to_core, until
 from rvmon.testing.peers.dialects import LTLF, spelling, translate

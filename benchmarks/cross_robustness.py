@@ -17,26 +17,21 @@ from dataclasses import dataclass, field
 from benchmarks.peers.environment import prepare
 
 from rvmon.session import Spec
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
-    CheckedSpec,
     Compare,
     CompareOp,
     Formula,
     Interval,
     Literal,
-    Mode,
-    Requirement,
-    Signal,
     SignalValue,
-    TimeModel,
-    Type,
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import UntranslatableError
 from rvmon.testing.peers.dialects import spelling, translate

@@ -18,12 +18,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from tests.tools.differential import Campaign, Mix, campaign_of
+from tests.tools.features import Feature, possible
+
 from rvmon.children import workers
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled import ENGINES
-from rvmon.spec.checked import TimeModel
-from rvmon.testing.differential import Campaign, Mix, campaign_of
-from rvmon.testing.features import Feature, possible
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.forms import FORMS, INTERRUPT, NEXT, Compiler, Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

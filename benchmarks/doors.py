@@ -20,10 +20,11 @@ from itertools import count, islice
 from pathlib import Path
 from typing import Any
 
+from tests.tools.differential import cases_of
+from tests.tools.doors import Content, content_of, doors, whole
+
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
-from rvmon.testing.differential import cases_of
-from rvmon.testing.doors import Content, content_of, doors, whole
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 

@@ -10,15 +10,15 @@ from __future__ import annotations
 import argparse
 import time
 
+from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest
 from handover.generator.files import directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.model import handover_network
-from handover.model.conformance import check_run
 from handover.robot.mutants import MUTATIONS
-from rvmon.timed.model import Network
+from rvmon.timed.model.network import Network
 
 
 def main() -> int:

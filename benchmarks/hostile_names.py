@@ -25,6 +25,8 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+from tests.tools.hostile import STEERING, hostile_names
+
 import rvmon
 from rvmon.cli import main as command
 from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -41,12 +43,10 @@ from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.report.table_csv import tables_csv
 from rvmon.report.table_html import table_html
 from rvmon.report.table_latex import table_latex
-from rvmon.spec.checked import CheckedSpec
-from rvmon.testing.hostile import STEERING, hostile_names
-from rvmon.timed.load import loads_network
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind
-from rvmon.verdict.assemble import report_of
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
 BATCH = 1000

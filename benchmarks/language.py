@@ -19,6 +19,9 @@ from collections import Counter
 from collections.abc import Hashable, Sequence
 from pathlib import Path
 
+from tests.tools.generate_text import random_text, syntax_of
+from tests.tools.spec_text import meaning, scribbled, spec_text
+
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.render import render_concise, render_full, render_json
 from rvmon.errors import SpecError
@@ -26,11 +29,9 @@ from rvmon.explain.analysed import analyse
 from rvmon.explain.codes import every_rule
 from rvmon.monitor import compile_spec
 from rvmon.spec.compile import compile_text
-from rvmon.spec.formatter import format_text
+from rvmon.spec.print.formatter import format_text
 from rvmon.spec.rules.registry import all_rules
 from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.generate_text import random_text, syntax_of
-from rvmon.testing.spec_text import meaning, scribbled, spec_text
 
 ROOT = Path(__file__).parents[1]
 TIMELINE = re.compile(r"\b(?:P|F|NT|I) (everywhere|before r|after q until r|after q|between q r):")

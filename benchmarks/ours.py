@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import assert_never
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BoundAtom,
     Compare,
@@ -47,7 +47,7 @@ def specification(
 def text(formula: Formula) -> str:
     """A formula in our language, every operand in brackets.
 
-    >>> from rvmon.testing.build import eventually, p, q, two
+    >>> from tests.tools.build import eventually, p, q, two
     >>> text(two(p, "->", eventually(q, 0, 3)))
     '((p) -> (F[0 ns, 3 ns] (q)))'
     """
@@ -97,7 +97,7 @@ def _window(interval: Interval | None) -> str:
 def always_text(formula: Formula) -> str:
     """The bare formula that it holds at every position, as people write it.
 
-    >>> from rvmon.testing.build import eventually, p, q, two
+    >>> from tests.tools.build import eventually, p, q, two
     >>> always_text(two(p, "->", eventually(q, 0, 3)))
     'always ((p) -> (F[0 ns, 3 ns] (q)))'
     """

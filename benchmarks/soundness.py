@@ -15,12 +15,13 @@ from collections import Counter
 from collections.abc import Iterable
 from functools import partial
 
+from tests.tools.differential import case_of
+from tests.tools.sound import is_spoken_of, overturned
+
 from rvmon.children import workers
-from rvmon.testing.differential import case_of
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.show import show_case
-from rvmon.testing.sound import is_spoken_of, overturned
 
 
 def run_part(options: argparse.Namespace, seeds: Iterable[str]) -> tuple[Counter[str], list[str]]:

@@ -6,10 +6,10 @@ import random
 from collections.abc import Iterator, Sequence
 
 from benchmarks.workload import Workload
+from tests.tools.build import eventually, no, two
 
 from benchmarks import robot, timescales
-from rvmon.spec.checked import Formula, SignalAtom
-from rvmon.testing.build import eventually, no, two
+from rvmon.spec.checked.formula import Formula, SignalAtom
 
 SIGNALS = 20
 """Of the stream that many monitors read."""

@@ -13,12 +13,13 @@ import sys
 import time
 from collections import Counter
 
-from rvmon.testing.timed_dice import random_model
-from rvmon.testing.timed_regions import TooManyRegionsError, decide
-from rvmon.testing.timed_runs import shows
-from rvmon.timed.load import loads_network
-from rvmon.timed.outcome import Policy
-from rvmon.timed.verify import verify
+from tests.tools.timed_dice import random_model
+from tests.tools.timed_regions import TooManyRegionsError, decide
+from tests.tools.timed_runs import shows
+
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.verify import verify
 
 KINDS = (
     "E<> p", "A[] p", "A<> p", "E[] p", "p --> q", "p -->[<=T] q", "E<>[<=T] p", "A<>[<=T] p",

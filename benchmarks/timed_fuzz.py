@@ -16,10 +16,11 @@ from collections import Counter
 from pathlib import Path
 from random import Random
 
+from tests.tools.timed_damage import damaged, survives
+from tests.tools.timed_dice import random_model
+
 from rvmon.export.uppaal import uppaal_xml
-from rvmon.testing.timed_damage import damaged, survives
-from rvmon.testing.timed_dice import random_model
-from rvmon.timed.load import loads_network
+from rvmon.timed.language.load import loads_network
 
 ROOT = Path(__file__).parents[1]
 

@@ -13,10 +13,10 @@ import time
 from pathlib import Path
 
 from handover.model import handover_network
-from rvmon.timed.load import load_network
-from rvmon.timed.model import Network
-from rvmon.timed.outcome import Outcome
-from rvmon.timed.verify import verify
+from rvmon.timed.language.load import load_network
+from rvmon.timed.model.network import Network
+from rvmon.timed.search.outcome import Outcome
+from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[1] / "examples" / "models"
 

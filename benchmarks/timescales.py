@@ -15,8 +15,9 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rvmon.spec.checked import Formula, SignalAtom
-from rvmon.testing.build import always, eventually, historically, no, once, two
+from tests.tools.build import always, eventually, historically, no, once, two
+
+from rvmon.spec.checked.formula import Formula, SignalAtom
 
 BOUNDS = (10, 100, 1000)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.spec.checked import Formula
+from rvmon.spec.checked.formula import Formula
 
 Column = Sequence[bool | float]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rvmon.spec.words import FUNCTIONS, INFIX_WORDS, RESERVED
+from rvmon.spec.syntax.words import FUNCTIONS, INFIX_WORDS, RESERVED
 
 ROOT = Path(__file__).parents[1]
 VSCODE = ROOT / "editors" / "vscode"

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from benchmarks.peers.positions import Question
+from tests.tools.shrink import smaller_formulas
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     Compare,
     CompareOp,
@@ -24,7 +25,6 @@ from rvmon.testing.peers.client import Peer
 from rvmon.testing.peers.core import UntranslatableError, names_in
 from rvmon.testing.peers.dialects import translate
 from rvmon.testing.peers.ways import WAYS, Way, truths
-from rvmon.testing.shrink import smaller_formulas
 from rvmon.testing.vocabulary import CARRIER, EVENTS, FURTHER, NUMBERS
 
 

@@ -13,9 +13,7 @@ from dataclasses import dataclass
 
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.peers.positions import Question, answers, ask_oracle
-
-from rvmon.spec.checked import Formula, TimeModel
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     compared,
     eventually,
@@ -29,6 +27,9 @@ from rvmon.testing.build import (
     two,
     x,
 )
+
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.dialects import spelling
 from rvmon.testing.peers.ways import Cell, Columns

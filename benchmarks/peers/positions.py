@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import EventAtom, Formula
+from rvmon.spec.checked.specification import (
     CheckedSpec,
     Event,
-    EventAtom,
-    Formula,
     Mode,
     Requirement,
     Signal,

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rvmon.loading import load, loads
     from rvmon.monitor import Monitor
     from rvmon.session import Spec
-    from rvmon.spec.checked import Requirement
+    from rvmon.spec.checked.specification import Requirement
     from rvmon.trace.sample import Sample
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -70,7 +70,7 @@ _HOMES = {
     "ModelError": "rvmon.errors",
     "Monitor": "rvmon.monitor",
     "Report": "rvmon.verdict.report",
-    "Requirement": "rvmon.spec.checked",
+    "Requirement": "rvmon.spec.checked.specification",
     "RvmonError": "rvmon.errors",
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from rvmon.spec.asked import requirements_asked, sources_asked
+from rvmon.spec.checked.selection import requirements_asked, sources_asked
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rvmon.readers.columns import TableRecording
     from rvmon.readers.reading import Reading, ReadingArguments, Telling
     from rvmon.readers.recording import FileRecording
-    from rvmon.spec.checked import CheckedSpec, Requirement
+    from rvmon.spec.checked.specification import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
     from rvmon.verdict.report import Report
 

@@ -9,8 +9,8 @@ import pytest
 from benchmarks.agreement import COMPILED, Agreement, Referee
 from benchmarks.measure import Figure
 from benchmarks.workload import Workload
+from tests.tools.build import once, p
 
-from rvmon.testing.build import once, p
 from rvmon.testing.peers.client import Peer
 
 BOUND = 500

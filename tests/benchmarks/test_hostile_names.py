@@ -6,8 +6,7 @@ import shutil
 
 import pytest
 from benchmarks.hostile_names import WRITERS, Documents, main
-
-from rvmon.testing.hostile import FORGERIES
+from tests.tools.hostile import FORGERIES
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from benchmarks.contenders import Pass
 from benchmarks.measure import Plan, measure
 from benchmarks.workload import Workload
+from tests.tools.build import p
 
-from rvmon.testing.build import p
 from rvmon.testing.peers.client import PeerError
 from rvmon.testing.peers.core import UntranslatableError
 

@@ -6,7 +6,7 @@ import pytest
 from benchmarks.peers.positions import Question, answers, ask_oracle
 from benchmarks.timescales import FAMILIES, Family, low_bound, trace
 
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 
 HIGH = 6
 

@@ -12,7 +12,7 @@ def check_model(requirements: Iterable[str]) -> dict[str, bool | None]:
         requirements: ids; one that the model has no query for cannot be expressed: `None`.
     """
     from handover.model import handover_network
-    from rvmon.timed.verify import verify
+    from rvmon.timed.search.verify import verify
 
     network = handover_network()
     queries = {query.id: query for query in network.queries}

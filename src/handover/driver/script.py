@@ -6,15 +6,20 @@ import random
 from collections.abc import Iterable
 from typing import assert_never
 
-from handover.generator.abstract_test import Action, ReceiveSignal, SendSignal, SetParam
+from handover.generator.abstract_test import (
+    SEND_DELAY_S,
+    SEND_PAUSE_S,
+    Action,
+    ReceiveSignal,
+    SendSignal,
+    SetParam,
+)
 from handover.world import parameters as p
 from handover.world.bus import Node
 from handover.world.human import Human
 from handover.world.process import Program
 from handover.world.world import HUMAN_SIGNALS
 
-SEND_DELAY_S = 2.0
-SEND_PAUSE_S = 0.2
 POLL_S = 0.2
 POLL_LIMIT = 500
 TIME_UNIT_S = 0.05

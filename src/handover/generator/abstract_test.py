@@ -35,6 +35,12 @@ Strategy = Literal[
     "directed",
 ]
 
+SEND_DELAY_S = 2.0
+"""Seconds that the human takes to send a signal."""
+
+SEND_PAUSE_S = 0.2
+"""Seconds in which nothing else is done after it."""
+
 
 class SendSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="send_signal"):
     """The human sends a signal to the robot; `setv` sends nothing."""

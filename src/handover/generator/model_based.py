@@ -8,6 +8,8 @@ from math import floor, inf
 from typing import TYPE_CHECKING, Literal
 
 from handover.generator.abstract_test import (
+    SEND_DELAY_S,
+    SEND_PAUSE_S,
     AbstractTest,
     Action,
     ReceiveSignal,
@@ -29,8 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
     from pathlib import Path
 
-    from rvmon.timed.model import Network
-    from rvmon.timed.run import Run
+    from rvmon.timed.model.network import Network
+    from rvmon.timed.runs.run import Run
 
 REQUIREMENTS = ("R1", "R2", "R3", "R4")
 """The queries whose witnesses become templates; R5 has none, for the model knows no distances."""
@@ -93,8 +95,8 @@ def templates(policy: PolicyName = "likely") -> tuple[Template, ...]:
         AbstractTestError: a query has no witness.
     """
     from handover.model import handover_network
-    from rvmon.timed.outcome import Policy
-    from rvmon.timed.verify import verify
+    from rvmon.timed.search.outcome import Policy
+    from rvmon.timed.search.verify import verify
 
     network = handover_network()
     found = []
@@ -225,8 +227,6 @@ def choose_times(template: Template, rng: random.Random) -> list[int]:
 
 def _script(template: Template, times: Sequence[int]) -> list[Action]:
     """The script that does each action at its time, as far as the driver's own delays allow."""
-    from handover.driver.script import SEND_DELAY_S, SEND_PAUSE_S
-
     script: list[Action] = []
     now = 0
     for step, time in zip(template.steps, times[1:], strict=True):

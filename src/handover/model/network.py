@@ -6,14 +6,14 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rvmon.timed.model import Network
+    from rvmon.timed.model.network import Network
 
 MODEL_FILE = "handover.ta"
 
 
 def handover_network() -> Network:
     """Read the network of robot, workflow, gaze, location, pressure and sensors."""
-    from rvmon.timed.load import loads_network
+    from rvmon.timed.language.load import loads_network
 
     text = resources.files("handover.model").joinpath(MODEL_FILE).read_text(encoding="utf-8")
     return loads_network(text, name=MODEL_FILE)

@@ -12,9 +12,8 @@ from rvmon.analysis.solve import Variable, parts_of, turning_values
 from rvmon.dataflow.inputs import Inputs
 from rvmon.dataflow.leaves import captured_names, evaluator, reads
 from rvmon.formula.state import Elapsed, Leaf
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     BoundAtom,
-    CheckedSpec,
     Compare,
     Constant,
     FieldValue,
@@ -23,9 +22,9 @@ from rvmon.spec.checked import (
     Probe,
     ProbeAtom,
     SignalValue,
-    Type,
     UpdateValue,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
 

@@ -19,7 +19,8 @@ from rvmon.analysis.solve import is_solved
 from rvmon.dataflow.inputs import Inputs
 from rvmon.dataflow.leaves import captured_names, evaluator, reads
 from rvmon.formula.state import TRUE, Lapsed, Leaf, Missing, State, StateOp, Unborn
-from rvmon.spec.checked import CheckedSpec, Compare, Constant, EventAtom, SignalAtom, TimeModel
+from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 MOST_COMBINATIONS = 1 << 12
 """Of more combinations, of one group of formulas or of all together, nothing is said."""

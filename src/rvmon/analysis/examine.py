@@ -11,7 +11,7 @@ from rvmon.analysis.possible import Possible, possible
 from rvmon.analysis.sets import ConflictSearch
 from rvmon.analysis.subject import Conflict, Implication, Subject
 from rvmon.analysis.together import Together
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 
 
 @dataclass(frozen=True, slots=True)

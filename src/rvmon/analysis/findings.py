@@ -9,20 +9,11 @@ from rvmon.analysis.examine import Examination
 from rvmon.analysis.subject import Conflict, Implication
 from rvmon.diagnostics.diagnostic import Diagnostic, Label
 from rvmon.diagnostics.span import Span
-from rvmon.spec.checked import (
-    Binary,
-    BoundAtom,
-    CheckedSpec,
-    Constant,
-    EndPolicy,
-    Formula,
-    Mode,
-    Requirement,
-    Unary,
-)
-from rvmon.spec.printer import format_duration
+from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Unary
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
+from rvmon.spec.checked.tense import FUTURE, subformulas
+from rvmon.spec.print.printer import format_duration
 from rvmon.spec.rules.rule import finding
-from rvmon.spec.tense import FUTURE, subformulas
 
 
 def findings_of(spec: CheckedSpec, found: Examination) -> list[Diagnostic]:

@@ -12,7 +12,7 @@ from rvmon.analysis.regions import Regions, row_of
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.state import FALSE, TRUE, State
-from rvmon.spec.checked import CheckedSpec, EndPolicy, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 
 _STARTED = -1
 """In the place of a region: of a clock that was started at this position."""

@@ -9,18 +9,17 @@ from typing import assert_never
 
 from rvmon.dataflow.inputs import Inputs
 from rvmon.dataflow.numbers import reader
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
-    CheckedSpec,
     Compare,
     FieldValue,
     Literal,
     Numeric,
     SignalValue,
-    TimeModel,
     UpdateValue,
 )
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 Variable = SignalValue | FieldValue
 
@@ -48,7 +47,7 @@ def turning_values(
         comparisons: all those that may read it.
         whole: whether its values are whole numbers.
 
-    >>> from rvmon.spec.checked import CompareOp
+    >>> from rvmon.spec.checked.formula import CompareOp
     >>> limit = Compare(CompareOp.LT, SignalValue("x"), Literal(0.5, "m"))
     >>> turning_values(SignalValue("x"), [limit], whole=False)
     [0.6, 0.5, 0.4]

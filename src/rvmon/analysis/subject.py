@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.state import State
-from rvmon.spec.checked import BoundAtom, Constant, Mode, Requirement
+from rvmon.spec.checked.formula import BoundAtom, Constant
+from rvmon.spec.checked.specification import Mode, Requirement
 
 
 @dataclass(frozen=True, slots=True, eq=False)

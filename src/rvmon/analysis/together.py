@@ -19,7 +19,7 @@ from rvmon.analysis.regions import Regions, after_edge, row_of
 from rvmon.analysis.subject import Subject
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
-from rvmon.spec.checked import CheckedSpec, EndPolicy, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 
 MOST_STATES = 4000
 FOREVER = 1 << 63

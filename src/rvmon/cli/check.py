@@ -15,7 +15,7 @@ from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
-    from rvmon.spec.checked import CheckedSpec
+    from rvmon.spec.checked.specification import CheckedSpec
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -12,8 +12,8 @@ from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
 
 if TYPE_CHECKING:
-    from rvmon.timed.conformance import Allowed, Conformance
-    from rvmon.timed.model import Network
+    from rvmon.timed.conformance.outcome import Allowed, Conformance
+    from rvmon.timed.model.network import Network
     from rvmon.trace.schema import Stamps
 
 
@@ -60,8 +60,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare, show, and return the exit code."""
-    from rvmon.timed.load import load_network
-    from rvmon.timed.recorded import labels_of
+    from rvmon.timed.conformance.recordings import labels_of
+    from rvmon.timed.language.load import load_network
     from rvmon.trace.stamps import stamps_of
     from rvmon.trace.time import ticks_of_seconds
 
@@ -106,8 +106,8 @@ def _compare(
     tolerance: int,
 ) -> Conformance:
     from rvmon.readers.recording import FileRecording
-    from rvmon.timed.conform import conform
-    from rvmon.timed.recorded import actions_in
+    from rvmon.timed.conformance.conform import conform
+    from rvmon.timed.conformance.recordings import actions_in
     from rvmon.trace.schema import Schema
 
     wanted = frozenset(labels) if chosen is None else chosen

@@ -15,7 +15,7 @@ from rvmon.cli.say import say, say_json
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
-    from rvmon.spec.checked import CheckedSpec
+    from rvmon.spec.checked.specification import CheckedSpec
     from rvmon.testing.cross import Crossing
     from rvmon.testing.peers.client import Peer
     from rvmon.trace.health import Health

@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Lay out, and return the exit code."""
     from rvmon.diagnostics.text_file import text_of_file, text_of_input
     from rvmon.errors import SpecError
-    from rvmon.spec.formatter import format_text
+    from rvmon.spec.print.formatter import format_text
 
     changed = wrong = 0
     for name in arguments.specs:

@@ -18,7 +18,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.explain.late import Known
     from rvmon.readers.changes import Changes
-    from rvmon.spec.checked import Formula
+    from rvmon.spec.checked.formula import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -166,7 +166,7 @@ def _misses(
     if not silent:
         return {}
     from rvmon.explain.nearest_miss import nearest_miss
-    from rvmon.spec.printer import format_formula
+    from rvmon.spec.print.printer import format_formula
 
     known: dict[str, str] = {}
     found = {}

@@ -14,9 +14,9 @@ from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
-    from rvmon.timed.model import Network
-    from rvmon.timed.outcome import Outcome
-    from rvmon.timed.search import Budget, Watch
+    from rvmon.timed.model.network import Network
+    from rvmon.timed.search.outcome import Outcome
+    from rvmon.timed.search.problem import Budget, Watch
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -93,8 +93,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Decide, show, and return the exit code."""
-    from rvmon.timed.load import load_network
-    from rvmon.timed.search import Budget
+    from rvmon.timed.language.load import load_network
+    from rvmon.timed.search.problem import Budget
 
     _refuse_unused(arguments)
     constants = dict(_constant(text) for text in arguments.const)
@@ -142,9 +142,9 @@ def _refuse_unused(arguments: argparse.Namespace) -> None:
 
 
 def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
-    from rvmon.timed.outcome import Policy
-    from rvmon.timed.queries import chosen_queries
-    from rvmon.timed.verify import verify
+    from rvmon.timed.language.queries import chosen_queries
+    from rvmon.timed.search.outcome import Policy
+    from rvmon.timed.search.verify import verify
 
     queries = chosen_queries(network, arguments.query)
     outcomes = []
@@ -207,7 +207,7 @@ def _print_json(network: Network, outcomes: Sequence[Outcome]) -> None:
 
 def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
     from rvmon.timed.describe import run_lines, suite_data
-    from rvmon.timed.suite import Criterion, build_suite, item_text
+    from rvmon.timed.search.suite import Criterion, build_suite, item_text
 
     criterion = Criterion(arguments.suite)
     with _shown() as watch:
@@ -229,8 +229,8 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
 
 
 def _simulate(network: Network, arguments: argparse.Namespace) -> int:
-    from rvmon.timed.queries import chosen_queries
-    from rvmon.timed.simulate import estimate
+    from rvmon.timed.language.queries import chosen_queries
+    from rvmon.timed.runs.simulate import estimate
 
     answers = []
     for query in chosen_queries(network, arguments.query):

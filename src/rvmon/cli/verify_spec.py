@@ -11,10 +11,10 @@ from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-    from rvmon.timed.model import Network
-    from rvmon.timed.observation import Observation
-    from rvmon.timed.run import Run
-    from rvmon.timed.search import Budget, Watch
+    from rvmon.timed.model.network import Network
+    from rvmon.timed.observation.outcome import Observation
+    from rvmon.timed.runs.run import Run
+    from rvmon.timed.search.problem import Budget, Watch
 
 
 def check_spec(
@@ -23,7 +23,7 @@ def check_spec(
     """Decide, show, and return the exit code."""
     from rvmon.loading import load
     from rvmon.timed.describe import observation_data
-    from rvmon.timed.observe import observe
+    from rvmon.timed.observation.observe import observe
 
     spec = load(arguments.spec)
     bindings = dict(_binding(text) for text in arguments.bind)
@@ -51,7 +51,7 @@ def _binding(text: str) -> tuple[str, str]:
 
 def _print_observation(one: Observation, spec: Spec) -> None:
     from rvmon.timed.describe import run_lines
-    from rvmon.timed.observe import UNDECIDED_IN_THE_END
+    from rvmon.timed.observation.observe import UNDECIDED_IN_THE_END
 
     word = {True: "holds on all runs", False: "fails on some run", None: ""}[one.holds]
     if one.remark == UNDECIDED_IN_THE_END:
@@ -78,8 +78,8 @@ def _timeline(one: Observation, shown: Run, spec: Spec) -> list[str]:
     from rvmon.explain.example import Example
     from rvmon.report.concerned import concerned_names
     from rvmon.report.example_text import picture_of
-    from rvmon.timed.observe import signals_of
-    from rvmon.timed.recorded import recording_of
+    from rvmon.timed.conformance.recordings import recording_of
+    from rvmon.timed.observation.observe import signals_of
     from rvmon.trace.sample import Sample
     from rvmon.trace.schema import Kind
 

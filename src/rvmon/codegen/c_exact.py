@@ -10,8 +10,8 @@ from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import TraceError
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import Missing
-from rvmon.spec.arithmetic import NumericOp
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
     Compare,

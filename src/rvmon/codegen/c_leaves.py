@@ -24,8 +24,8 @@ from rvmon.formula.state import (
     StateOp,
     Unborn,
 )
-from rvmon.spec.arithmetic import NumericOp
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
     Arithmetic,
     BoundAtom,
     Captured,

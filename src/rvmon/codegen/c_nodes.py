@@ -16,7 +16,7 @@ from rvmon.codegen.c_leaves import node_body
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State, StateOp
-from rvmon.spec.checked import ProbeAtom
+from rvmon.spec.checked.formula import ProbeAtom
 
 GROUP = 32
 """Nodes of a group: what changed in one stands in a word of so many bits."""

@@ -25,7 +25,7 @@ from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
 from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError
-from rvmon.spec.checked import Type
+from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 

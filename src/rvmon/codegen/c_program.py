@@ -13,8 +13,8 @@ from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
 from rvmon.codegen.unit_plan import Plan
 from rvmon.diagnostics.shown import shown_json
-from rvmon.spec.checked import Type
-from rvmon.spec.reads import names_of_requirement
+from rvmon.spec.checked.reads import names_of_requirement
+from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt_json import encoded
 from rvmon.verdict.verdict import LAW

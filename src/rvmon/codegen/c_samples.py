@@ -13,7 +13,7 @@ from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import UNKNOWN, Leaf, Missing, State, Unborn
-from rvmon.spec.checked import Arithmetic, Compare, SignalAtom
+from rvmon.spec.checked.formula import Arithmetic, Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
 

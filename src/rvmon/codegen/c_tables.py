@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from rvmon.codegen.tables import TableData, tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
-from rvmon.spec.checked import EndPolicy, Mode
+from rvmon.spec.checked.specification import EndPolicy, Mode
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.end import settle_at_end
 from rvmon.verdict.verdict import Verdict

@@ -24,7 +24,7 @@ from rvmon.formula.state import (
     StateOp,
     Unborn,
 )
-from rvmon.spec.checked import Compare, Constant, Probe, ProbeAtom, SignalAtom
+from rvmon.spec.checked.formula import Compare, Constant, Probe, ProbeAtom, SignalAtom
 
 
 def words_source(plan: Plan, names: Names) -> Iterator[str]:

@@ -8,7 +8,8 @@ from rvmon.codegen.unit_plan import Plan, PlannedRule, Uses
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf, Missing, Unborn
-from rvmon.spec.checked import CheckedSpec, Compare, Probe, ProbeAtom, TimeModel, UpdateValue
+from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:

@@ -11,7 +11,7 @@ from rvmon.codegen.python_source import judges, unit_source
 from rvmon.codegen.tables import tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import RvmonError
-from rvmon.spec.checked import Type
+from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 
 _RUNTIME = ("past", "table", "rule", "solo", "bulk", "nodes", "unit", "standalone")

@@ -10,7 +10,7 @@ from rvmon.codegen.python_leaves import known_test
 from rvmon.codegen.python_nodes import NodeWriter, Roles, bits
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
 from rvmon.codegen.unit_plan import Plan, asks_knowledge
-from rvmon.spec.checked import SignalAtom
+from rvmon.spec.checked.formula import SignalAtom
 
 _BEFORE = re.compile(r"(?<![.\w])before\b")
 

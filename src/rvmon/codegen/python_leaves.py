@@ -10,7 +10,7 @@ from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import events_of
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Missing, Unborn
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Arithmetic,
     BoundAtom,
     Captured,

@@ -9,7 +9,7 @@ from typing import assert_never
 from rvmon.codegen.python_leaves import leaf_expression
 from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import Elapsed, State, StateOp
-from rvmon.spec.checked import Constant
+from rvmon.spec.checked.formula import Constant
 
 NEVER = 1 << 63
 

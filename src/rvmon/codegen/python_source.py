@@ -20,8 +20,9 @@ from rvmon.codegen.runtime.solo import only_location
 from rvmon.codegen.tables import tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State
-from rvmon.spec.checked import Compare, Mode, ProbeAtom, SignalAtom
-from rvmon.spec.printer import format_formula
+from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
+from rvmon.spec.checked.specification import Mode
+from rvmon.spec.print.printer import format_formula
 
 _TABULATED = 5
 """The letters of so many propositions stand in a table."""

@@ -10,7 +10,7 @@ from rvmon.codegen.python_visit import indented
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.state import UNKNOWN, Leaf, Missing, Unborn
-from rvmon.spec.checked import Compare, SignalAtom
+from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
 _CLASSES = {

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from rvmon.codegen.python_nodes import NEVER, NodeWriter, Roles, bits, keeps_stretches
 from rvmon.codegen.unit_plan import Plan
-from rvmon.spec.checked import Mode
+from rvmon.spec.checked.specification import Mode
 
 _ARRAYS = (
     *("v", "s", "w", "b", "wakes", "queued", "timers", "before"),

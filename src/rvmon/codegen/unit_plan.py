@@ -9,7 +9,8 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.dataflow.graph import Graph
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.state import Leaf, Missing, State, Unborn
-from rvmon.spec.checked import CheckedSpec, Literal, Requirement, SignalAtom, SignalValue
+from rvmon.spec.checked.formula import Literal, SignalAtom, SignalValue
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,7 +14,7 @@ from rvmon.dataflow.leaves import Evaluate, before_birth, evaluator
 from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.since import Previous, Since
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, Leaf, State, StateOp
-from rvmon.spec.checked import Compare, ProbeAtom, SignalAtom
+from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.trace.sample import Scalar
 
 Memory = Since | Previous | Hidden

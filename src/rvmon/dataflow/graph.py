@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.dataflow.leaves import Reads, captured_names, reads
 from rvmon.formula.state import Elapsed, Shown, State, StateOp
-from rvmon.spec.printer import format_formula
+from rvmon.spec.print.printer import format_formula
 
 
 @dataclass(frozen=True, slots=True, eq=False)

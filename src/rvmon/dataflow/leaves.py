@@ -22,7 +22,7 @@ from rvmon.formula.state import (
     Missing,
     Unborn,
 )
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     BoundAtom,
     Compare,
     Constant,

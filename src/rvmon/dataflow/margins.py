@@ -10,10 +10,9 @@ from rvmon.dataflow.inputs import Inputs, payloads_of
 from rvmon.dataflow.numbers import COMPARE, events_of, reader
 from rvmon.dataflow.steps import INFINITE
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
-from rvmon.spec.arithmetic import UnitRule
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import UnitRule
+from rvmon.spec.checked.formula import (
     Arithmetic,
-    CheckedSpec,
     Compare,
     CompareOp,
     FieldValue,
@@ -22,7 +21,8 @@ from rvmon.spec.checked import (
     SignalValue,
     UpdateValue,
 )
-from rvmon.spec.units import parse_unit
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.syntax.units import parse_unit
 from rvmon.trace.sample import Payload, Scalar
 
 Margin = tuple[float, float]

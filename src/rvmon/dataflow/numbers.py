@@ -9,7 +9,7 @@ from typing import Any, assert_never
 
 from rvmon.dataflow.inputs import Inputs, Slot
 from rvmon.formula.numeric import operands
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
     CompareOp,

@@ -9,8 +9,9 @@ from rvmon.explain.late import late_arrivals
 from rvmon.explain.spans import both, outside
 from rvmon.explain.tempo import small_step
 from rvmon.explain.truth_over_trace import Eye, subformulas
-from rvmon.spec.checked import BoundAtom, CheckedSpec, Constant, Formula
-from rvmon.spec.printer import format_formula
+from rvmon.spec.checked.formula import BoundAtom, Constant, Formula
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.print.printer import format_formula
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 

@@ -7,7 +7,7 @@ from rvmon.dataflow.graph import graph_of
 from rvmon.formula.horizon import horizon
 from rvmon.formula.state import State, StateOp
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.spec.printer import format_duration
+from rvmon.spec.print.printer import format_duration
 
 Facts = dict[str, str]
 

@@ -14,8 +14,9 @@ from rvmon.formula.core import Core, Literal, Sense
 from rvmon.formula.residual import Clause
 from rvmon.formula.state import FALSE, TRUE, Shown, State
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.spec.checked import Binary, BinaryOp, CheckedSpec, Constant, Mode, Requirement
-from rvmon.spec.printer import format_duration, format_formula
+from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
+from rvmon.spec.print.printer import format_duration, format_formula
 
 MOST_PROPOSITIONS = 8
 """Conditions over more propositions are counted, not spelled out."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rvmon.spec.printer import format_duration
+from rvmon.spec.print.printer import format_duration
 
 
 def label_of(t: int) -> str:

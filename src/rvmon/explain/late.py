@@ -10,19 +10,11 @@ from rvmon.explain.state_truths import state_truths
 from rvmon.explain.states import state_of
 from rvmon.explain.truth_over_trace import positions_of, subformulas
 from rvmon.formula.factory import Factory
-from rvmon.formula.lower import has_future
 from rvmon.monitor.instances import Instance
-from rvmon.spec.checked import (
-    Binary,
-    BinaryOp,
-    CheckedSpec,
-    ForEach,
-    Formula,
-    Requirement,
-    Unary,
-    UnaryOp,
-)
-from rvmon.spec.printer import format_formula
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement
+from rvmon.spec.checked.tense import has_future
+from rvmon.spec.print.printer import format_formula
 from rvmon.trace.sample import Sample, Scalar
 from rvmon.verdict.attempt import Attempt
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rvmon.timed.rules import RULES
+from rvmon.timed.model.rules import RULES
 
 _ABOUT = {
     "TA001": "The text is no model or query: what was found and what could have stood there.",

@@ -10,19 +10,18 @@ from rvmon.explain.spans import Spans
 from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.explain.states import state_of, values_read
 from rvmon.formula.factory import Factory
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
-    CheckedSpec,
     EventAtom,
     Formula,
-    Requirement,
     SignalAtom,
 )
-from rvmon.spec.printer import format_formula
-from rvmon.spec.reads import names_read
+from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.spec.print.printer import format_formula
 from rvmon.trace.gaps import is_unknown
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import format_ticks

@@ -16,7 +16,7 @@ from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.trace.sample import Sample
-from rvmon.verdict.assemble import report_of
+from rvmon.verdict.report import report_of
 
 
 @dataclass(frozen=True, slots=True)

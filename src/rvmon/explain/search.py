@@ -12,7 +12,7 @@ from rvmon.explain.example import Budget, Example, Found
 from rvmon.explain.play import play
 from rvmon.explain.tempo import small_step
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.spec.checked import CheckedSpec, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT
 from rvmon.verdict.verdict import Verdict

@@ -13,7 +13,7 @@ from rvmon.formula.state import FALSE, TRUE, State
 from rvmon.monitor.instances import Instance, seen_by
 from rvmon.monitor.lane import Lane
 from rvmon.readers.coalesce import updates_in
-from rvmon.spec.checked import CheckedSpec, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.trace.sample import Sample, Scalar
 
 

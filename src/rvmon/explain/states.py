@@ -10,9 +10,8 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Missing, State, Unborn
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     BoundAtom,
-    CheckedSpec,
     Compare,
     Constant,
     EventAtom,
@@ -20,11 +19,10 @@ from rvmon.spec.checked import (
     Literal,
     Probe,
     ProbeAtom,
-    Requirement,
     SignalAtom,
     SignalValue,
-    TimeModel,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 
 
 def state_of(formula: Formula, factory: Factory, spec: CheckedSpec) -> State:

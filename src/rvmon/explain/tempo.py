@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.spec.checked import (
-    Binary,
-    CheckedSpec,
-    Formula,
-    Interval,
-    Requirement,
-    TimeModel,
-    Unary,
-)
+from rvmon.spec.checked.formula import Binary, Formula, Interval, Unary
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.trace.time import TICKS_PER_SECOND
 
 

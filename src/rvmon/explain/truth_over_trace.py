@@ -12,23 +12,21 @@ from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.core import Literal, Sense
 from rvmon.formula.factory import Factory
-from rvmon.formula.lower import has_future, lower
+from rvmon.formula.lower import lower
 from rvmon.formula.state import State
 from rvmon.monitor.instances import Instance
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
-    CheckedSpec,
     Formula,
     Interval,
-    Mode,
-    Requirement,
-    TimeModel,
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.spec.checked.tense import has_future
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
@@ -12,19 +12,17 @@ from rvmon.spec.checked import (
     Compare,
     CompareOp,
     Constant,
-    EndPolicy,
     EventAtom,
     Formula,
     Interval,
-    Mode,
     Probe,
     ProbeAtom,
-    Requirement,
     SignalAtom,
     Unary,
     UnaryOp,
 )
-from rvmon.spec.printer import format_duration, format_numeric
+from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
+from rvmon.spec.print.printer import format_duration, format_numeric
 
 _COMPARED = {
     CompareOp.LT: "is below",

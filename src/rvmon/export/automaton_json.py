@@ -6,7 +6,7 @@ from rvmon.automaton.location import FAILED, PASSED
 from rvmon.errors import RvmonError
 from rvmon.explain.graph import graph_of
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.verdict import Verdict
 
 

@@ -9,7 +9,7 @@ from itertools import groupby
 from math import prod
 from typing import assert_never
 
-from rvmon.timed.model import (
+from rvmon.timed.model.expressions import (
     BinaryOperation,
     Choice,
     ClockCompare,
@@ -18,13 +18,13 @@ from rvmon.timed.model import (
     Expression,
     InLocation,
     Lookup,
-    Network,
     PathFormula,
     Slot,
     UnaryOperation,
     VariableValue,
 )
-from rvmon.timed.syntax import BinaryOp, UnaryOp
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
 _KEYWORDS = (
     "after_update and assign before_update bool break broadcast case chan clock "

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from rvmon.explain.graph_text import quoted
 from rvmon.export.names import Names
 from rvmon.export.uppaal import condition_text, sync_text, updates_text
-from rvmon.timed.model import Automaton, Network
-from rvmon.timed.syntax import LocationKind
+from rvmon.timed.model.network import Automaton, Network
+from rvmon.timed.model.operators import LocationKind
 
 _MARKS = {LocationKind.NORMAL: "", LocationKind.URGENT: "U ", LocationKind.COMMITTED: "C "}
 

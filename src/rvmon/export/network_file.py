@@ -9,7 +9,7 @@ from pathlib import Path
 from rvmon.errors import RvmonError
 from rvmon.export.network_dot import network_dot
 from rvmon.export.uppaal import uppaal_xml
-from rvmon.timed.model import Network
+from rvmon.timed.model.network import Network
 from rvmon.writing import write_whole
 
 PATIENCE_S = 120

@@ -1,4 +1,4 @@
-"""A network as UPPAAL's XML, which `rvmon.timed.load` reads back.
+"""A network as UPPAAL's XML, which `rvmon.timed.language.load` reads back.
 
 Each automaton becomes a template without parameters, all that was local becomes global. What
 UPPAAL does not know stands in comments that our reader understands: the unit of time, weights and
@@ -13,21 +13,20 @@ from xml.sax.saxutils import escape
 
 from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.names import Names, Thing
-from rvmon.timed.model import (
+from rvmon.timed.model.expressions import Expression, PathFormula
+from rvmon.timed.model.network import (
     Automaton,
     Edge,
-    Expression,
     Guard,
     LeadsToFormula,
     Network,
-    PathFormula,
     Query,
     Reset,
     Update,
     Variable,
 )
-from rvmon.timed.syntax import LocationKind
-from rvmon.timed.zone_unions import has_paths
+from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.zones.zone_unions import has_paths
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _HEAD = """<?xml version="1.0" encoding="utf-8"?>

@@ -20,8 +20,8 @@ from rvmon.formula.core import (
 from rvmon.formula.factory import Factory
 from rvmon.formula.numeric import reads_fields
 from rvmon.formula.state import State, StateOp
-from rvmon.spec.checked import Compare
-from rvmon.spec.checked import Constant as ConstantLeaf
+from rvmon.spec.checked.formula import Compare
+from rvmon.spec.checked.formula import Constant as ConstantLeaf
 
 
 def expanded(core: Core) -> Core:

@@ -24,7 +24,7 @@ from rvmon.formula.core import (
     Until,
 )
 from rvmon.formula.state import UNKNOWN, Leaf, Lost, State, StateOp
-from rvmon.spec.checked import Constant as ConstantLeaf
+from rvmon.spec.checked.formula import Constant as ConstantLeaf
 
 
 class Factory:

@@ -15,7 +15,7 @@ from typing import assert_never
 from rvmon.formula.factory import Factory
 from rvmon.formula.numeric import reads_fields, signals_of
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Missing, Shown, State
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Atom,
     Binary,
     BinaryOp,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Compare,
     FieldValue,

@@ -5,7 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from rvmon.spec.checked import BoundAtom, Compare, Constant, EventAtom, ProbeAtom, SignalAtom
+from rvmon.spec.checked.formula import (
+    BoundAtom,
+    Compare,
+    Constant,
+    EventAtom,
+    ProbeAtom,
+    SignalAtom,
+)
 
 FALSE, UNKNOWN, TRUE = 0, 1, 2
 """Kleene's truth values: `and` is the minimum, `or` the maximum, `not` is 2 − x."""

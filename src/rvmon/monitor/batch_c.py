@@ -15,7 +15,7 @@ from rvmon.monitor.codegen_support import plan_alone
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.recorded import report_of_records
 from rvmon.monitor.validate import Validator
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Recording, Sample
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict.report import Report

@@ -9,7 +9,7 @@ from rvmon.monitor.codegen_support import can_feed
 from rvmon.monitor.compiled import ALL_ENGINES, CompiledSpec, expect_engine
 from rvmon.monitor.generated import Forms, GeneratedMonitor
 from rvmon.monitor.monitor import Monitor
-from rvmon.spec.asked import requirements_asked
+from rvmon.spec.checked.selection import requirements_asked
 
 _GENERATED = ("auto", "python")
 

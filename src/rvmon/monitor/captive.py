@@ -12,7 +12,7 @@ from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.attempt_judge import Open, doubt_in, leaves_in
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.lane import Lane
-from rvmon.spec.checked import Numeric
+from rvmon.spec.checked.formula import Numeric
 from rvmon.trace.sample import Payload, Scalar
 
 Captured = Mapping[str, Scalar]

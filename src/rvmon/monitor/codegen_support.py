@@ -10,7 +10,7 @@ from rvmon.codegen.planning import plan_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.spec.asked import requirements_asked
+from rvmon.spec.checked.selection import requirements_asked
 
 
 def can_feed(requirement: CompiledRequirement) -> bool:

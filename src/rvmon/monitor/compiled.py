@@ -24,10 +24,12 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
-from rvmon.formula.lower import Obligation, UnmonitorableError, lower
+from rvmon.formula.lower import lower
+from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.state import State
 from rvmon.monitor.obligation_words import Words
-from rvmon.spec.checked import CheckedSpec, Compare, Mode, Requirement, TimeModel
+from rvmon.spec.checked.formula import Compare
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 
 RUN_BYTES = 20
 """Of an attempt in a run: the instant of its trigger, its number, what was seen."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.dataflow.outages import Outage
-from rvmon.spec.printer import format_duration
+from rvmon.spec.print.printer import format_duration
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from rvmon.spec.checked import Bound, BoundAtom, CheckedSpec, Mode, Requirement
+from rvmon.spec.checked.formula import Bound, BoundAtom
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 

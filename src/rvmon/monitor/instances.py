@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rvmon.dataflow.inputs import Reported, payloads_of
-from rvmon.spec.checked import FieldValue
+from rvmon.spec.checked.formula import FieldValue
 from rvmon.trace.sample import Payload, Scalar, Value
 
 

@@ -12,7 +12,8 @@ from rvmon.formula.state import Leaf, Missing, State, StateOp
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.instances import Instance, values_in
 from rvmon.monitor.lane import Lane
-from rvmon.spec.checked import Captured, Compare, CompareOp, EventAtom, FieldValue, ForEach
+from rvmon.spec.checked.formula import Captured, Compare, CompareOp, EventAtom, FieldValue
+from rvmon.spec.checked.specification import ForEach
 from rvmon.trace.sample import Scalar, Value
 
 MOST_OPEN = 50_000

@@ -19,7 +19,7 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.roster import Roster
 from rvmon.monitor.trigger import Trigger
-from rvmon.spec.checked import CheckedSpec, Mode, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, Mode, TimeModel
 from rvmon.trace.sample import Scalar, Value
 
 Captured = Mapping[str, Scalar]

@@ -20,7 +20,7 @@ from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.robustness_values import Robustness
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar
 
 _SIDES = {Rest.LEAST: 0, Rest.GREATEST: 1, Rest.END: 0}

@@ -13,7 +13,7 @@ from rvmon.errors import MissingNameError
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.values import shorten
-from rvmon.spec.asked import sources_asked
+from rvmon.spec.checked.selection import sources_asked
 
 if TYPE_CHECKING:
     from rvmon.readers.columns import TableRecording

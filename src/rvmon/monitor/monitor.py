@@ -16,12 +16,11 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.one_call import OneCall
 from rvmon.monitor.retention import Kept
 from rvmon.monitor.validate import Validator
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
 Callback = Callable[[Attempt], object]

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.core import Constant, Core, Literal, Release, Sense, Until
-from rvmon.formula.lower import Origin, has_future
+from rvmon.formula.obligation import Origin
 from rvmon.formula.progress import after, value
 from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.cause import Cause
 from rvmon.monitor.sentence import AfterTrigger, Base, LastWith, Place, Sentence, Turned
-from rvmon.spec.checked import EventAtom, Formula, Unary, UnaryOp
-from rvmon.spec.printer import format_formula
-from rvmon.spec.tense import is_pulse
+from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.tense import has_future, is_pulse
+from rvmon.spec.print.printer import format_formula
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 

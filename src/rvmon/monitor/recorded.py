@@ -95,7 +95,7 @@ class RecordedAttempts(LazyAttempts):
 
 
 def report_of_records(ids: Sequence[str], told: Told, *, origin: int) -> Report:
-    """Sort and fold records, as `rvmon.verdict.assemble.report_of` does attempts.
+    """Sort and fold records, as `rvmon.verdict.report.report_of` does attempts.
 
     Args:
         ids: of all requirements that were judged, by number.

@@ -25,7 +25,7 @@ from rvmon.monitor.ledger import Ledger, verdict_at_end
 from rvmon.monitor.margin_judge import MarginJudge
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.robustness_values import Margins, Measured, Robustness, margins_from
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 from rvmon.verdict.verdict import Verdict

@@ -27,7 +27,7 @@ from rvmon.verdict.verdict import LAW
 if TYPE_CHECKING:
     from rvmon.dataflow.nodes import Plan
     from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-    from rvmon.spec.checked import CheckedSpec
+    from rvmon.spec.checked.specification import CheckedSpec
 
 _KIND = b"rvmon snapshot 1"
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from rvmon.errors import TraceError
 from rvmon.readers.coalesce import updates_in
-from rvmon.spec.checked import CheckedSpec, Type
+from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks

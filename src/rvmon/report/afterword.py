@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rvmon.spec.printer import format_duration
+from rvmon.spec.print.printer import format_duration
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rvmon.explain.analysed import Analysis
 from rvmon.report.example_text import picture_of
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 
 
 def analysis_lines(analysis: Analysis, spec: CheckedSpec) -> list[str]:

@@ -5,16 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rvmon.report.tracks import Threshold
-from rvmon.spec.checked import (
-    Binary,
-    Compare,
-    Literal,
-    Requirement,
-    SignalValue,
-    Unary,
-)
-from rvmon.spec.reads import names_read
-from rvmon.spec.tense import subformulas
+from rvmon.spec.checked.formula import Binary, Compare, Literal, SignalValue, Unary
+from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.specification import Requirement
+from rvmon.spec.checked.tense import subformulas
 from rvmon.verdict.attempt import Blame
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from rvmon.diagnostics.shown import shown_line
 from rvmon.monitor.compiled import CompileReport
-from rvmon.spec.printer import format_duration
+from rvmon.spec.print.printer import format_duration
 
 _HEAD = ("", "engine", "locations", "clocks", "letters", "decided within", "open attempts")
 

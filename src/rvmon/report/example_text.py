@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.explain.example import Example
 from rvmon.explain.instants import label_of, legend_of
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar, Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict

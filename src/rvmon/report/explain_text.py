@@ -15,7 +15,8 @@ from rvmon.explain.search import difference_of, shortest_examples, verdict_of
 from rvmon.explain.words import requirement_in_words
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.report.example_text import picture_of
-from rvmon.spec.checked import BoundAtom, Constant, Mode, Requirement
+from rvmon.spec.checked.formula import BoundAtom, Constant
+from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:

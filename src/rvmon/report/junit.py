@@ -13,7 +13,7 @@ from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.spec.checked import CheckedSpec
+    from rvmon.spec.checked.specification import CheckedSpec
 
 
 def junit_xml(

@@ -11,7 +11,7 @@ from rvmon.report.markup import Child, e, page
 from rvmon.report.run_html import run_page
 from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.report.style import MARKS
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict

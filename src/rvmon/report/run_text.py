@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rich.table import Table
     from rich.text import Text
 
-    from rvmon.spec.checked import CheckedSpec, Requirement
+    from rvmon.spec.checked.specification import CheckedSpec, Requirement
 
 SHOWN_PER_REQUIREMENT = 3
 """Failed or undecided attempts that are shown in full; the rest is counted."""

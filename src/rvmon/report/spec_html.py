@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 
 from rvmon.report.markup import Child, e
-from rvmon.spec.checked import Requirement
+from rvmon.spec.checked.specification import Requirement
 from rvmon.verdict.attempt import Blame
 
 

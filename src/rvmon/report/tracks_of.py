@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from rvmon.readers.coalesce import updates_in
 from rvmon.report.concerned import concerned_names, thresholds
 from rvmon.report.tracks import Track, TrackKind
-from rvmon.spec.checked import CheckedSpec, Requirement, Signal
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind

@@ -12,7 +12,7 @@ from rvmon.report.afterword import with_afterword
 from rvmon.report.forecast import forecast_sentence
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.wrapped import wrapped
-from rvmon.spec.checked import Requirement
+from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.time import format_ticks
 
 if TYPE_CHECKING:

@@ -10,14 +10,14 @@ from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.render import render_full
 from rvmon.diagnostics.span import Source, Span
 from rvmon.errors import SpecError
-from rvmon.spec.check import check
-from rvmon.spec.checked import CheckedSpec
-from rvmon.spec.constants import overridden
-from rvmon.spec.findings import MOST, Enough, Findings
-from rvmon.spec.load import load_files
-from rvmon.spec.resolve import resolve
+from rvmon.spec.check.specification import check
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.names.constants import overridden
+from rvmon.spec.names.resolve import resolve
+from rvmon.spec.names.unused import unused_names
+from rvmon.spec.rules.findings import MOST, Enough, Findings
 from rvmon.spec.rules.syntax import empty_file, too_many
-from rvmon.spec.unused import unused_names
+from rvmon.spec.syntax.imports import load_files
 
 
 def compile_text(

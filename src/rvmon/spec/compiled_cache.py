@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cache import cache_folder, files_told, keep, read_kept
-from rvmon.spec.checked import CheckedSpec
-from rvmon.spec.plain_data import restored, stored
+from rvmon.spec.checked.plain_data import restored, stored
+from rvmon.spec.checked.specification import CheckedSpec
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic

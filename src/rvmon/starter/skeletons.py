@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from rvmon.spec.checked import Literal, SignalAtom
-from rvmon.spec.printer import format_duration, format_formula, format_numeric
+from rvmon.spec.checked.formula import Literal, SignalAtom
+from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
 from rvmon.starter.column import Column, Profile
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND

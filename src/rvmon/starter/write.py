@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from rvmon.spec.formatter import format_text
-from rvmon.spec.printer import format_duration
+from rvmon.spec.print.formatter import format_text
+from rvmon.spec.print.printer import format_duration
 from rvmon.starter.column import Column, Profile
 from rvmon.starter.skeletons import Skeleton, name_text, round_up, skeletons_of
 from rvmon.trace.schema import Kind

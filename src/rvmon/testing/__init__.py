@@ -1,1 +1,1 @@
-"""Tools to test monitors with: the reference oracle, random specs and traces, comparison."""
+"""For testing monitors: the reference oracle, Hypothesis strategies, the agreement of engines."""

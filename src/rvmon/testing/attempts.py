@@ -6,15 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from rvmon.spec.checked import (
-    Bound,
-    BoundAtom,
-    Compare,
-    FieldValue,
-    Mode,
-    Requirement,
-    SignalAtom,
-)
+from rvmon.spec.checked.formula import Bound, BoundAtom, Compare, FieldValue, SignalAtom
+from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.testing.kleene import Truth, conjunction, disjunction, negation
 from rvmon.testing.numbers import is_born, known_scalar, number
 from rvmon.testing.truths import Rest, Truths

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from rvmon.errors import RvmonError
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences
 from rvmon.testing.drive import drive

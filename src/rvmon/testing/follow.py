@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from rvmon.errors import RvmonError
-from rvmon.spec.checked import Mode, Requirement
+from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.testing.attempts import (
     Start,
     View,

@@ -17,15 +17,14 @@ from rvmon.monitor.codegen_support import can_stand_alone, plan_alone
 from rvmon.monitor.compiled import ENGINES
 from rvmon.monitor.online_c import CompiledMonitor
 from rvmon.monitor.recorded import report_of_records
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.drive import Asked, Monitored
 from rvmon.testing.held_back import HeldBack
 from rvmon.testing.interrupt import Interrupted
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
 FORMS = (*ENGINES, "file", "c", "c rows")

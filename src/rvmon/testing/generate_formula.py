@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from rvmon.spec.arithmetic import NumericOp
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Binary,
     BinaryOp,

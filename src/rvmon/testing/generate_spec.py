@@ -4,26 +4,28 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
     BoundAtom,
-    Capture,
     Captured,
-    CheckedSpec,
     Compare,
     CompareOp,
-    EndPolicy,
     EventAtom,
     FieldValue,
-    ForEach,
     Formula,
-    Mode,
     Numeric,
-    Requirement,
     SignalAtom,
     SignalValue,
+)
+from rvmon.spec.checked.specification import (
+    Capture,
+    CheckedSpec,
+    EndPolicy,
+    ForEach,
+    Mode,
+    Requirement,
     TimeModel,
 )
 from rvmon.testing.dice import Dice, chance, pick, weighted

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.spec.checked import CheckedSpec, Interval, Literal, Type
+from rvmon.spec.checked.formula import Interval, Literal
+from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.testing.case import Case
 from rvmon.testing.dice import Dice, chance, pick
 from rvmon.testing.walk import intervals, numerics

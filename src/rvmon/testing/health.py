@@ -6,21 +6,19 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     BoundAtom,
-    CheckedSpec,
     Compare,
     Constant,
     EventAtom,
     FieldValue,
     Numeric,
     ProbeAtom,
-    Requirement,
     SignalAtom,
     SignalValue,
-    TimeModel,
     UpdateValue,
 )
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.sample_words import heard
 from rvmon.testing.walk import parts_of, subformulas

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.drive import Asked
 from rvmon.testing.health import readers_of
 from rvmon.trace.health import Health, HealthKind

@@ -52,3 +52,13 @@ def _first(values: Iterable[Truth], order: Iterable[Truth], default: Truth) -> T
 def truth_of(value: bool) -> Truth:
     """TRUE or FALSE."""
     return Truth.TRUE if value else Truth.FALSE
+
+
+def born_or_true(value: Truth) -> Truth:
+    """TRUE in place of UNBORN."""
+    return Truth.TRUE if value is Truth.UNBORN else value
+
+
+def born_or_false(value: Truth) -> Truth:
+    """FALSE in place of UNBORN."""
+    return Truth.FALSE if value is Truth.UNBORN else value

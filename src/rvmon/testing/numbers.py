@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from itertools import product
 from typing import assert_never
 
-from rvmon.spec.arithmetic import NumericOp
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
     Compare,

@@ -11,11 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from rvmon.errors import TraceError
-from rvmon.spec.checked import (
-    CheckedSpec,
-    EndPolicy,
-    Requirement,
-)
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement
 from rvmon.testing.attempts import Start, is_upon_end, obligation
 from rvmon.testing.follow import Followed, Followings, follow
 from rvmon.testing.kleene import Truth
@@ -23,9 +19,8 @@ from rvmon.testing.sample_words import word_of
 from rvmon.testing.truths import Rest
 from rvmon.testing.word import Word
 from rvmon.trace.sample import Sample, Trace, Value
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     BoundAtom,

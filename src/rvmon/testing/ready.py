@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.spec.checked import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
 from rvmon.testing.walk import speaks_of_future
 
 _RELEASES = {UnaryOp.ALWAYS, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL}

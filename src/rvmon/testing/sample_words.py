@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from itertools import dropwhile, pairwise
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.spec.checked import CheckedSpec, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.testing.kleene import Truth, disjunction, truth_of
 from rvmon.testing.numbers import known_scalar
 from rvmon.testing.word import EventState, Letter, Occurrence, SignalState, Update, Word

@@ -9,16 +9,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import gcd
 
-from rvmon.spec.checked import (
-    Binary,
-    CheckedSpec,
-    Formula,
-    Interval,
-    TimeModel,
-    Unary,
-    UpdateFunction,
-    UpdateValue,
-)
+from rvmon.spec.checked.formula import Binary, Formula, Interval, Unary, UpdateFunction, UpdateValue
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.walk import intervals, numerics, subformulas
 from rvmon.trace.sample import Sample

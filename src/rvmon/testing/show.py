@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import assert_never
 
-from rvmon.spec.arithmetic import NumericOp
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Binary,
     BoundAtom,
     Captured,
-    CheckedSpec,
     Compare,
     Constant,
-    EndPolicy,
     EventAtom,
     FieldValue,
     Formula,
@@ -22,15 +20,13 @@ from rvmon.spec.checked import (
     Literal,
     Numeric,
     ProbeAtom,
-    Requirement,
-    Signal,
     SignalAtom,
     SignalValue,
-    TimeModel,
     Unary,
     UnaryOp,
     UpdateValue,
 )
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement, Signal, TimeModel
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind

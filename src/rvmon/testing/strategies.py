@@ -10,7 +10,8 @@ from collections.abc import Callable
 from hypothesis import note
 from hypothesis import strategies as st
 
-from rvmon.spec.checked import CheckedSpec, Formula
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.generate_spec import Profile, random_spec

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from enum import Enum, auto
 from typing import Protocol, assert_never
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
@@ -22,8 +22,17 @@ from rvmon.spec.checked import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.kleene import Truth, conjunction, disjunction, negation, truth_of
+from rvmon.testing.kleene import (
+    Truth,
+    born_or_false,
+    born_or_true,
+    conjunction,
+    disjunction,
+    negation,
+    truth_of,
+)
 from rvmon.testing.numbers import compare
+from rvmon.testing.past import Operand, always_true, held, historically, inverted, is_within, since
 from rvmon.testing.walk import is_proposition, speaks_of_future
 from rvmon.testing.word import Letter, Word
 from rvmon.trace.sample import Scalar
@@ -140,10 +149,10 @@ class Truths:
             case Constant(value=value):
                 return truth_of(value)
             case SignalAtom(name=name):
-                held = letter.signals[name]
-                if held.value is None:
-                    return Truth.UNKNOWN if held.born else Truth.UNBORN
-                return truth_of(bool(held.value))
+                state = letter.signals[name]
+                if state.value is None:
+                    return Truth.UNKNOWN if state.born else Truth.UNBORN
+                return truth_of(bool(state.value))
             case EventAtom(name=name):
                 return disjunction(o.truth for o in letter.events[name].occurrences)
             case Compare():
@@ -200,23 +209,23 @@ class Truths:
             case UnaryOp.NEXT:
                 return self._next(operand, i, positive)
             case UnaryOp.EVENTUALLY:
-                return self._until(_true, operand, i, interval, positive)
+                return self._until(always_true, operand, i, interval, positive)
             case UnaryOp.ALWAYS:
                 return self._release(_false, operand, i, interval, positive)
             case UnaryOp.PREVIOUS:
                 return operand(i - 1) if i else Truth.FALSE
             case UnaryOp.ONCE:
-                return self._since(_true, operand, i, interval)
+                return since(self._letters, always_true, operand, i, interval)
             case UnaryOp.HISTORICALLY:
-                return self._historically(operand, i, interval)
+                return historically(self._letters, operand, i, interval)
             case UnaryOp.HELD:
                 mortal = not speaks_of_future(formula.operand)
-                return self._held(operand, i, interval, mortal)
+                return held(self._letters, operand, i, interval, mortal=mortal)
             case UnaryOp.RISE:  # φ and not previous φ
-                before = _born_or_true(negated(i - 1)) if i else Truth.TRUE
+                before = born_or_true(negated(i - 1)) if i else Truth.TRUE
                 return conjunction([operand(i), before])
             case UnaryOp.FALL:  # not φ and previous φ
-                before = _born_or_false(operand(i - 1)) if i else Truth.FALSE
+                before = born_or_false(operand(i - 1)) if i else Truth.FALSE
                 return conjunction([negated(i), before])
             case _:
                 assert_never(formula.op)
@@ -262,7 +271,7 @@ class Truths:
                     right, lambda k: conjunction([left(k), right(k)]), i, interval, positive
                 )
             case BinaryOp.SINCE:
-                return self._since(left, right, i, interval)
+                return since(self._letters, left, right, i, interval)
             case _:
                 assert_never(formula.op)
 
@@ -286,7 +295,7 @@ class Truths:
     ) -> Truth:
         """`left R right` = `!(!left U !right)`."""
         rest = self._rest_of_release(i, interval) if positive else negation(self._other_rest())
-        until = self._some(_not(left), _not(right), i, interval, negation(rest))
+        until = self._some(inverted(left), inverted(right), i, interval, negation(rest))
         return negation(until)
 
     def _rest_of_release(self, i: int, interval: Interval) -> Truth:
@@ -305,56 +314,13 @@ class Truths:
         now = self._letters[i].instant
         value, so_far = Truth.FALSE, Truth.TRUE
         for j in range(i, self._known):
-            if _within(self._letters[j].instant - now, interval):
+            if is_within(self._letters[j].instant - now, interval):
                 value = disjunction([value, conjunction([so_far, right(j)])])
             so_far = conjunction([so_far, left(j)])
             if value is Truth.TRUE or so_far is Truth.FALSE:
                 return value
         over = interval.high is not None and self._reached > now + interval.high
         return value if over else disjunction([value, conjunction([so_far, rest])])
-
-    def _since(self, left: Operand, right: Operand, i: int, interval: Interval) -> Truth:
-        """Some position of the window had `right`, and all after it, up to `i`, have `left`.
-
-        Positions at which an operand is not born are passed over; if `right` is at none of the
-        window, the whole is not.
-        """
-        now = self._letters[i].instant
-        value, so_far = Truth.FALSE, Truth.TRUE
-        unborn = 0
-        born = False
-        for j in range(i, -1, -1):
-            if _within(now - self._letters[j].instant, interval):
-                there = right(j)
-                if there is Truth.UNBORN:
-                    unborn += 1
-                else:
-                    born = True
-                    value = disjunction([value, conjunction([so_far, there])])
-            so_far = conjunction([so_far, _born_or_true(left(j))])
-            if value is Truth.TRUE or (born and so_far is Truth.FALSE):
-                return value
-        return Truth.UNBORN if unborn and not born else value
-
-    def _historically(self, operand: Operand, i: int, interval: Interval) -> Truth:
-        return negation(self._since(_true, _not(operand), i, interval))
-
-    def _held(self, operand: Operand, i: int, interval: Interval, mortal: bool) -> Truth:
-        """All positions of the window had it, which has to lie behind its birth whole.
-
-        What is unknown may not be born either: it tells nothing of where the birth was.
-        """
-        start, now = self._letters[0].instant, self._letters[i].instant
-        window = [k for k in range(i + 1) if _within(now - self._letters[k].instant, interval)]
-        values = [operand(k) for k in window]
-        if mortal and not {Truth.TRUE, Truth.FALSE}.intersection(values):
-            return disjunction(values)
-        long_enough = interval.high is not None and now - start >= interval.high
-        return conjunction([truth_of(long_enough), *(_born_or_false(value) for value in values)])
-
-
-Operand = Callable[[int], Truth]
-"""The truth of an operand at a position."""
 
 
 class Sub(Protocol):
@@ -364,28 +330,8 @@ class Sub(Protocol):
         """Work it out."""
 
 
-def _true(_: int) -> Truth:
-    return Truth.TRUE
-
-
 def _false(_: int) -> Truth:
     return Truth.FALSE
-
-
-def _not(operand: Operand) -> Operand:
-    return lambda k: negation(operand(k))
-
-
-def _born_or_true(value: Truth) -> Truth:
-    return Truth.TRUE if value is Truth.UNBORN else value
-
-
-def _born_or_false(value: Truth) -> Truth:
-    return Truth.FALSE if value is Truth.UNBORN else value
-
-
-def _within(distance: int, interval: Interval) -> bool:
-    return interval.low <= distance and (interval.high is None or distance <= interval.high)
 
 
 def _probe(probe: Probe, name: str, letter: Letter) -> Truth:

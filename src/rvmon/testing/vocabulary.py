@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping
 
-from rvmon.spec.checked import Event, Signal, Type
+from rvmon.spec.checked.specification import Event, Signal, Type
 from rvmon.trace.schema import Kind
 
 BOOLS = ("p", "q", "r")

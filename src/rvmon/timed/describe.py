@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from rvmon.timed.model import Network, Variable
-from rvmon.timed.observation import Observation
-from rvmon.timed.outcome import Outcome
-from rvmon.timed.run import Action, Ending, Position, Run, RunStep, Window
-from rvmon.timed.suite import Suite, item_text
+from rvmon.timed.model.network import Network, Variable
+from rvmon.timed.observation.outcome import Observation
+from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
+from rvmon.timed.search.outcome import Outcome
+from rvmon.timed.search.suite import Suite, item_text
 from rvmon.trace.time import TICKS_PER_SECOND
 
 

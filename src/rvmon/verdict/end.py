@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.spec.checked import EndPolicy
+from rvmon.spec.checked.specification import EndPolicy
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
 

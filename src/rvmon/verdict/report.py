@@ -1,19 +1,22 @@
-"""What a monitor says of one run."""
+"""What a monitor says of one run: attempts in order, counted and folded per requirement."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.lazy import LazyAttempts
-from rvmon.verdict.verdict import LAW, Verdict
+from rvmon.verdict.verdict import LAW, Verdict, fold
+
+_ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """All verdicts on one run; made by `rvmon.verdict.assemble.report_of`.
+    """All verdicts on one run; made by `report_of`.
 
     Attributes:
         verdicts: by requirement, in the order of the file; those never triggered are `NT`.
@@ -76,17 +79,117 @@ class Report:
 
         JSON knows no infinities: such captured values and robustnesses become null.
         """
+        from rvmon.verdict.attempt_json import attempt_text
         from rvmon.verdict.report_json import encode
 
-        return encode(self)
+        if isinstance(self.attempts, LazyAttempts):
+            texts = self.attempts.texts(self.origin)
+        else:
+            texts = ((one.requirement, attempt_text(one, self.origin)) for one in self.attempts)
+        return encode(
+            {"law": self.law, "trace": self.trace, "origin": self.origin, "end": self.end},
+            {name: (verdict, self._rest_of(name)) for name, verdict in self.verdicts.items()},
+            texts,
+            {"health": self.health, **({"goals": self.goals} if self.goals else {})},
+        )
+
+    def _rest_of(self, requirement: str) -> dict[str, object]:
+        """What JSON says of a requirement behind its attempts."""
+        rest: dict[str, object] = {"counts": self.counts[requirement]}
+        if self.dropped.get(requirement):
+            rest["dropped"] = self.dropped[requirement]
+        if requirement in self.misses:
+            rest["nearest_miss"] = self.misses[requirement]
+        if self.late.get(requirement):
+            rest["late"] = self.late[requirement]
+        return rest
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Report:
         """Read back what `to_json` wrote.
+
+        Verdicts and counts are folded anew from the attempts, and from how many were dropped.
 
         Raises:
             TraceError: the text is no report.
         """
         from rvmon.verdict.report_json import decode
 
-        return decode(text)
+        document, attempts = decode(text)
+        entries = document.requirements.items()
+        report = report_of(
+            tuple(document.requirements),
+            attempts,
+            dropped={
+                name: {Verdict(verdict): count for verdict, count in entry.dropped.items()}
+                for name, entry in entries
+                if entry.dropped
+            },
+            health=document.health,
+            untold=[name for name, entry in entries if entry.verdict is Verdict.INCONCLUSIVE],
+            trace=document.trace,
+            origin=document.origin,
+            end=document.end,
+        )
+        misses = {name: entry.nearest_miss for name, entry in entries if entry.nearest_miss}
+        late = {name: entry.late for name, entry in entries if entry.late}
+        return replace(report, misses=misses, late=late, goals=document.goals, law=document.law)
+
+
+def report_of(
+    requirements: Sequence[str],
+    attempts: Iterable[Attempt],
+    *,
+    dropped: Mapping[str, Mapping[Verdict, int]] | None = None,
+    health: Sequence[Health] = (),
+    untold: Collection[str] = (),
+    trace: str = "",
+    origin: int = 0,
+    end: int | None = None,
+) -> Report:
+    """Sort, count and fold the attempts of one run.
+
+    Args:
+        requirements: all ids that were judged, in the order of the file.
+        attempts: of these requirements, in any order.
+        dropped: by requirement, how many attempts more there were, by verdict.
+        health: findings about the input.
+        untold: the ids of those whose trigger was never true or false: without attempts, they are
+            inconclusive.
+        trace: name of the recording.
+        origin: the instant from which people count seconds, ticks.
+        end: the last instant of the trace, ticks.
+
+    Source: SEMANTICS, section 3.
+
+    >>> passed = Attempt("R1", 1, 0, 5, Verdict.PASS)
+    >>> report = report_of(["R1", "R2"], [passed])
+    >>> {name: verdict.value for name, verdict in report.verdicts.items()}
+    {'R1': 'P', 'R2': 'NT'}
+    """
+    rank = {name: index for index, name in enumerate(requirements)}
+
+    def order(attempt: Attempt) -> tuple[bool, int, int, bool, int]:
+        decided, place = attempt.decided, rank[attempt.requirement]
+        return (decided is None, decided or 0, place, attempt.in_doubt, attempt.number)
+
+    ordered = tuple(sorted(attempts, key=order))
+    not_kept = {name: {**found} for name, found in (dropped or {}).items()}
+    by_requirement = {name: Counter(not_kept.get(name)) for name in requirements}
+    for attempt in ordered:
+        by_requirement[attempt.requirement][attempt.verdict] += 1
+    return Report(
+        verdicts={
+            name: fold(seen, told=name not in untold) for name, seen in by_requirement.items()
+        },
+        attempts=ordered,
+        counts={
+            name: {verdict: seen[verdict] for verdict in _ATTEMPT_VERDICTS}
+            for name, seen in by_requirement.items()
+        },
+        dropped=not_kept,
+        health=tuple(health),
+        trace=trace,
+        origin=origin,
+        end=end,
+    )

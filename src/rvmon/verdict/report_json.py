@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import msgspec
 
 from rvmon.errors import TraceError
 from rvmon.trace.health import Health
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.attempt_json import attempt_text, encoded, record
-from rvmon.verdict.lazy import LazyAttempts
-from rvmon.verdict.report import Report
+from rvmon.verdict.attempt_json import encoded, record
 from rvmon.verdict.verdict import LAW, Verdict
 
 
-class _AttemptsJson(msgspec.Struct):
+class RequirementJson(msgspec.Struct):
+    """One requirement of a report."""
+
     attempts: list[dict[str, Any]]
     verdict: Verdict
     nearest_miss: str = ""
@@ -26,8 +24,10 @@ class _AttemptsJson(msgspec.Struct):
     dropped: dict[Literal["P", "F", "I"], Annotated[int, msgspec.Meta(gt=0)]] = {}
 
 
-class _ReportJson(msgspec.Struct):
-    requirements: dict[str, _AttemptsJson]
+class ReportJson(msgspec.Struct):
+    """A report as it stands in JSON; counts are not read, but made anew."""
+
+    requirements: dict[str, RequirementJson]
     health: list[Health]
     law: int = 1  # the first law's reports did not say
     trace: str = ""
@@ -36,50 +36,44 @@ class _ReportJson(msgspec.Struct):
     goals: dict[str, Verdict] = {}
 
 
-def encode(report: Report) -> str:
-    """Write a report as JSON text."""
-    attempts: dict[str, list[str]] = {name: [] for name in report.verdicts}
-    for name, text in _texts(report):
-        attempts[name].append(text)
+def encode(
+    head: Mapping[str, object],
+    requirements: Mapping[str, tuple[Verdict, Mapping[str, object]]],
+    attempts: Iterable[tuple[str, str]],
+    tail: Mapping[str, object],
+) -> str:
+    """Write a report as JSON text.
+
+    Args:
+        head: what stands before the requirements, never empty.
+        requirements: by id, the verdict, and what stands behind the attempts, never empty.
+        attempts: the requirement and the text of each.
+        tail: what stands behind the requirements, never empty.
+    """
+    texts: dict[str, list[str]] = {name: [] for name in requirements}
+    for name, text in attempts:
+        texts[name].append(text)
     # Not encoded as one document: the attempts may be many megabytes, which are copied once.
-    return "".join(_document(report, attempts))
+    return "".join(_document(head, requirements, texts, tail))
 
 
-def _document(report: Report, attempts: Mapping[str, Sequence[str]]) -> Iterator[str]:
+def _document(
+    head: Mapping[str, object],
+    requirements: Mapping[str, tuple[Verdict, Mapping[str, object]]],
+    texts: Mapping[str, Sequence[str]],
+    tail: Mapping[str, object],
+) -> Iterator[str]:
     """The parts of a report's text, in order."""
-    head = {
-        "law": report.law,
-        "trace": report.trace,
-        "origin": report.origin,
-        "end": report.end,
-    }
     yield f'{encoded(head)[:-1]},"requirements":{{'
-    for number, (name, verdict) in enumerate(report.verdicts.items()):
+    for number, (name, (verdict, rest)) in enumerate(requirements.items()):
         comma = "," if number else ""
         yield f'{comma}{encoded(name)}:{{"verdict":{encoded(verdict)},"attempts":['
-        for place, text in enumerate(attempts[name]):
+        for place, text in enumerate(texts[name]):
             if place:
                 yield ","
             yield text
-        rest: dict[str, object] = {"counts": report.counts[name]}
-        if report.dropped.get(name):
-            rest["dropped"] = report.dropped[name]
-        if name in report.misses:
-            rest["nearest_miss"] = report.misses[name]
-        if report.late.get(name):
-            rest["late"] = report.late[name]
         yield f"],{encoded(rest)[1:]}"
-    tail: dict[str, object] = {"health": report.health}
-    if report.goals:
-        tail["goals"] = report.goals
     yield f"}},{encoded(tail)[1:]}"
-
-
-def _texts(report: Report) -> Iterable[tuple[str, str]]:
-    """The requirement and the text of each attempt."""
-    if isinstance(report.attempts, LazyAttempts):
-        return report.attempts.texts(report.origin)
-    return ((one.requirement, attempt_text(one, report.origin)) for one in report.attempts)
 
 
 def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
@@ -98,16 +92,14 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
     return encoded({"law": LAW, "trace": trace, "error": error, "judged_before": attempts})
 
 
-def decode(text: str | bytes) -> Report:
-    """Read a report from JSON text.
-
-    Verdicts and counts are folded anew from the attempts, and from how many were dropped.
+def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
+    """Read what `encode` wrote: the document, and its attempts.
 
     Raises:
         TraceError: the text is no report.
     """
     try:
-        document = msgspec.json.decode(text, type=_ReportJson)
+        document = msgspec.json.decode(text, type=ReportJson)
         attempts = [
             msgspec.convert({**fields, "requirement": name}, Attempt)
             for name, entry in document.requirements.items()
@@ -115,25 +107,4 @@ def decode(text: str | bytes) -> Report:
         ]
     except (msgspec.DecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
         raise TraceError(f"this is no report of rvmon: {error}") from None
-    report = report_of(
-        tuple(document.requirements),
-        attempts,
-        dropped={
-            name: {Verdict(verdict): count for verdict, count in entry.dropped.items()}
-            for name, entry in document.requirements.items()
-            if entry.dropped
-        },
-        health=document.health,
-        untold=[
-            name
-            for name, entry in document.requirements.items()
-            if entry.verdict is Verdict.INCONCLUSIVE
-        ],
-        trace=document.trace,
-        origin=document.origin,
-        end=document.end,
-    )
-    found = {name: entry.nearest_miss for name, entry in document.requirements.items()}
-    misses = {name: miss for name, miss in found.items() if miss}
-    late = {name: entry.late for name, entry in document.requirements.items() if entry.late}
-    return replace(report, misses=misses, late=late, goals=document.goals, law=document.law)
+    return document, attempts

@@ -20,8 +20,8 @@ from handover.generator.model_based import (
 )
 from handover.generator.template import Wait, load_template, save_template
 from handover.model import handover_network
-from rvmon.timed.outcome import Policy
-from rvmon.timed.verify import verify
+from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.verify import verify
 
 
 def signals(test):

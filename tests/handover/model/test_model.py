@@ -1,11 +1,11 @@
 """The handover network: the seed's queries, the claims on all runs, and what it cannot say."""
 
 import pytest
+from tests.tools.timed_runs import shows
 
 from handover.model import handover_network
 from rvmon.errors import ModelError
-from rvmon.testing.timed_runs import shows
-from rvmon.timed.verify import verify
+from rvmon.timed.search.verify import verify
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.tools import build
 
 import rvmon
 from rvmon.analysis.choices import choices_of
@@ -12,8 +13,7 @@ from rvmon.explain.analysed import analyse
 from rvmon.explain.example import Budget
 from rvmon.explain.search import shortest_examples
 from rvmon.monitor import compile_spec
-from rvmon.spec.checked import TimeModel
-from rvmon.testing import build
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.oracle import evaluate

@@ -3,6 +3,7 @@
 from random import Random
 
 import pytest
+from tests.tools.build import always, eventually, no, p, q, r, requirement, two
 
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.letter_classes import LetterDiagram
@@ -15,8 +16,7 @@ from rvmon.automaton.table import TableMachine
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.spec.checked import SignalAtom
-from rvmon.testing.build import always, eventually, no, p, q, r, requirement, two
+from rvmon.spec.checked.formula import SignalAtom
 
 SECOND = 10**9
 

@@ -5,15 +5,15 @@ import random
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.tools.build import requirement, spec_of, start
+from tests.tools.generate_ltl import random_ltl, random_mtl
+from tests.tools.ltl3 import Tableau, unrolled
 
 from rvmon import loads
 from rvmon.session import Spec
-from rvmon.spec.checked import TimeModel
-from rvmon.testing.build import requirement, spec_of, start
-from rvmon.testing.generate_ltl import random_ltl, random_mtl
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.ltl3 import Tableau, unrolled
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision

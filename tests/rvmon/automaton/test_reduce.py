@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from tests.tools.build import always, eventually, false, no, p, q, r, requirement, two
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
@@ -14,7 +15,6 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.obligation_words import Words
-from rvmon.testing.build import always, eventually, false, no, p, q, r, requirement, two
 from rvmon.testing.generate_formula import Shape
 from rvmon.testing.strategies import formulas
 

@@ -7,6 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.tools.differential import cases_of
+from tests.tools.filled import filled, judge_columns
+from tests.tools.law import judge
 
 import rvmon
 from rvmon.codegen.c_build import built
@@ -14,11 +17,8 @@ from rvmon.monitor import compile_spec
 from rvmon.monitor.columns import evaluate as arrays
 from rvmon.monitor.columns import rows
 from rvmon.testing.compare import differences
-from rvmon.testing.differential import cases_of
-from rvmon.testing.filled import filled, judge_columns
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.law import judge
 
 SPEC = """
 spec watch "A base"

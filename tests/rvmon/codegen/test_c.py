@@ -6,13 +6,13 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from tests.tools.differential import campaign
 
 import rvmon
 from rvmon.cli import main
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_program import built_program, program_source
 from rvmon.codegen.c_source import c_files
-from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

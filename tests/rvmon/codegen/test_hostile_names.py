@@ -5,11 +5,11 @@ import shutil
 import subprocess
 
 import pytest
+from tests.tools.hostile import FORGERIES, STEERING
 
 import rvmon
 from rvmon.cli import main
 from rvmon.codegen.python_file import python_file
-from rvmon.testing.hostile import FORGERIES, STEERING
 
 NAMES = [name for name in FORGERIES if name.strip() == name]
 

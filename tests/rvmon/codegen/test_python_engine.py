@@ -3,10 +3,10 @@
 from collections import UserDict, defaultdict
 
 import pytest
+from tests.tools.differential import campaign
 
 import rvmon
 from rvmon.codegen import python_nodes, python_visit
-from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

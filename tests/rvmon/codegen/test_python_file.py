@@ -6,11 +6,11 @@ import sys
 from types import ModuleType
 
 import pytest
+from tests.tools.differential import campaign
 
 import rvmon
 from rvmon.cli import main
 from rvmon.codegen.python_file import python_file
-from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

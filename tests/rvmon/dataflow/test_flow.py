@@ -3,15 +3,7 @@
 import random
 
 import pytest
-
-from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.graph import graph_of
-from rvmon.dataflow.inputs import NEVER, Inputs
-from rvmon.dataflow.since import Since
-from rvmon.formula.factory import Factory
-from rvmon.formula.lower import lower
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN
-from rvmon.testing.build import (
+from tests.tools.build import (
     compared,
     e,
     eventually,
@@ -29,6 +21,14 @@ from rvmon.testing.build import (
     two,
     x,
 )
+
+from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.graph import graph_of
+from rvmon.dataflow.inputs import NEVER, Inputs
+from rvmon.dataflow.since import Since
+from rvmon.formula.factory import Factory
+from rvmon.formula.lower import lower
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 
 
 def flow_of(formula, gap=1, stale=None, names=None):

@@ -5,18 +5,18 @@ import sys
 from itertools import accumulate
 
 import pytest
+from tests.tools import build
+from tests.tools.differential import campaign, case_of
+from tests.tools.generate_ltl import random_mtl
 
 import rvmon
 from rvmon.dataflow.network import Network
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.session import Spec
-from rvmon.spec.checked import TimeModel
-from rvmon.testing import build
-from rvmon.testing.differential import campaign, case_of
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_ltl import random_mtl
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.scale import in_units, scaled

@@ -2,8 +2,9 @@
 
 import json
 
+from tests.tools.hostile import STEERING, hostile_names
+
 from rvmon.diagnostics.shown import shown, shown_json, shown_line
-from rvmon.testing.hostile import STEERING, hostile_names
 
 
 def test_nothing_that_steers_is_left():

@@ -9,7 +9,7 @@ from rvmon.cli import main
 from rvmon.errors import UnknownNameError
 from rvmon.explain.codes import code_list, every_rule, findings_about, page_of
 from rvmon.explain.model_codes import model_codes, model_page
-from rvmon.spec.pages import index_page, message_about
+from rvmon.spec.rules.pages import index_page, message_about
 
 ROOT = Path(__file__).parents[3]
 GOLDEN = Path(__file__).parent / "golden"

@@ -3,13 +3,13 @@
 import random
 
 import pytest
+from tests.tools import build
 
 from rvmon.explain.dissect import dissect
 from rvmon.explain.spans import both, outside, union, until
 from rvmon.explain.truth_over_trace import Eye, subformulas
 from rvmon.monitor import build_monitor, compile_spec
-from rvmon.spec.checked import TimeModel
-from rvmon.testing import build
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.kleene import Truth

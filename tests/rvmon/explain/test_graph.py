@@ -4,6 +4,7 @@ import random
 import re
 
 import pytest
+from tests.tools import build
 
 from rvmon.analysis.possible import possible
 from rvmon.explain.cubes import ANY, cubes_of
@@ -11,7 +12,6 @@ from rvmon.explain.example import Budget
 from rvmon.explain.graph import graph_of
 from rvmon.explain.search import shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
-from rvmon.testing import build
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.show import show_spec
 

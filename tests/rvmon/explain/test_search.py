@@ -3,12 +3,12 @@
 import random
 
 import pytest
+from tests.tools import build
 
 import rvmon
 from rvmon.explain.example import Budget
 from rvmon.explain.search import difference_of, shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
-from rvmon.testing import build
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec

@@ -6,15 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lark import Lark, Transformer
+from tests.tools.build import requirement, spec_of, start
+from tests.tools.generate_ltl import random_ltl
+from tests.tools.ltl3 import Tableau
 
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.export.hoa import hoa
 from rvmon.monitor import compile_spec
-from rvmon.spec.checked import TimeModel
-from rvmon.testing.build import requirement, spec_of, start
-from rvmon.testing.generate_ltl import random_ltl
-from rvmon.testing.ltl3 import Tableau
+from rvmon.spec.checked.specification import TimeModel
 
 GRAMMAR = Lark(
     r"""

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 import pytest
+from tests.tools.timed_dice import random_model
 
 from handover.model import handover_network
 from rvmon.export.network_dot import network_dot
 from rvmon.export.uppaal import uppaal_xml
-from rvmon.testing.timed_dice import random_model
-from rvmon.timed.load import load_network, loads_network
-from rvmon.timed.suite import Criterion, build_suite
-from rvmon.timed.verify import verify
+from rvmon.timed.language.load import load_network, loads_network
+from rvmon.timed.search.suite import Criterion, build_suite
+from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[3] / "examples" / "models"
 

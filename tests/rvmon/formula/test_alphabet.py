@@ -1,11 +1,12 @@
 """Letters tell apart what the formula can tell apart, and no more."""
 
+from tests.tools.build import always, eventually, no, p, q, requirement, two
+
 from rvmon.formula.alphabet import alphabet_of, holds
 from rvmon.formula.core import Sense
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
-from rvmon.testing.build import always, eventually, no, p, q, requirement, two
 
 
 def alphabet(formula, **more):

@@ -1,12 +1,7 @@
 """Formulas of the spec to core formulas."""
 
 import pytest
-
-from rvmon.formula.core import Literal, Release, Sense, Since, Until
-from rvmon.formula.factory import Factory
-from rvmon.formula.horizon import horizon
-from rvmon.formula.lower import UnmonitorableError, lower
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     compared,
     e,
@@ -22,6 +17,12 @@ from rvmon.testing.build import (
     two,
     x,
 )
+
+from rvmon.formula.core import Literal, Release, Sense, Since, Until
+from rvmon.formula.factory import Factory
+from rvmon.formula.horizon import horizon
+from rvmon.formula.lower import lower
+from rvmon.formula.obligation import UnmonitorableError
 
 
 def owed(formula, **more):

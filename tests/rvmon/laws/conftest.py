@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from tests.tools.law import judge as oracle
 
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
-from rvmon.testing.law import judge as oracle
 from rvmon.verdict.report import Report
 
 Law = Callable[[st.DataObject], None]

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.tools.build import e, requirement, spec_of
 
 from rvmon.session import Spec
-from rvmon.testing.build import e, requirement, spec_of
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences
 from rvmon.testing.drive import drive

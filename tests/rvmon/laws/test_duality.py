@@ -9,17 +9,7 @@ from typing import Any
 import pytest
 from hypothesis import assume
 from hypothesis import strategies as st
-
-from rvmon.spec.checked import (
-    BinaryOp,
-    CheckedSpec,
-    EndPolicy,
-    Formula,
-    Interval,
-    TimeModel,
-    UnaryOp,
-)
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     eventually,
     fall,
@@ -37,6 +27,9 @@ from rvmon.testing.build import (
     true,
     two,
 )
+
+from rvmon.spec.checked.formula import BinaryOp, Formula, Interval, UnaryOp
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate_formula import Shape, interval
 from rvmon.testing.strategies import formulas, specs, traces

@@ -6,8 +6,8 @@ from typing import Any
 
 from hypothesis import assume
 from hypothesis import strategies as st
+from tests.tools.sound import is_spoken_of, overturned
 
-from rvmon.testing.sound import is_spoken_of, overturned
 from rvmon.testing.strategies import cases
 
 

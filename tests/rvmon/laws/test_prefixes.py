@@ -7,7 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.compare import differences, outcomes
 from rvmon.testing.strategies import cases

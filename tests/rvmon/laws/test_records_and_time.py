@@ -5,11 +5,12 @@ from dataclasses import replace
 from itertools import accumulate
 
 import pytest
+from tests.tools.build import requirement, spec_of
+from tests.tools.generate_ltl import random_mtl
 
 from rvmon.session import Spec
-from rvmon.spec.checked import EventAtom, TimeModel
-from rvmon.testing.build import requirement, spec_of
-from rvmon.testing.generate_ltl import random_mtl
+from rvmon.spec.checked.formula import EventAtom
+from rvmon.spec.checked.specification import TimeModel
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton", "network"])

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from rvmon.spec.checked import Formula, UpdateFunction, UpdateValue
+from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker

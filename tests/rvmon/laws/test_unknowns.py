@@ -8,9 +8,10 @@ from typing import Any
 
 from hypothesis import assume
 from hypothesis import strategies as st
+from tests.tools.build import start
 
-from rvmon.spec.checked import CheckedSpec, EndPolicy, Event, Mode, Probe, ProbeAtom, Type
-from rvmon.testing.build import start
+from rvmon.spec.checked.formula import Probe, ProbeAtom
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Event, Mode, Type
 from rvmon.testing.compare import outcomes
 from rvmon.testing.strategies import specs, traces
 from rvmon.testing.walk import subformulas

@@ -7,9 +7,9 @@ from typing import Any
 
 from hypothesis import assume
 from hypothesis import strategies as st
+from tests.tools.build import always, end, no, p, requirement, two
 
-from rvmon.spec.checked import Mode
-from rvmon.testing.build import always, end, no, p, requirement, two
+from rvmon.spec.checked.specification import Mode
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Outcome, outcomes
 from rvmon.testing.generate_trace import TraceProfile

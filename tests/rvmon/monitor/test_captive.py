@@ -1,10 +1,10 @@
 """Where it is not known which values an attempt captured, nothing is said of what it owes."""
 
 import pytest
+from tests.tools.differential import disagreements
 
 import rvmon
 from rvmon.testing.case import Case
-from rvmon.testing.differential import disagreements
 from rvmon.testing.forms import Maker
 from rvmon.trace.sample import Sample
 

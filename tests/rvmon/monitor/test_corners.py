@@ -3,10 +3,7 @@
 from dataclasses import replace
 
 import pytest
-
-from rvmon.monitor import build_monitor, compile_spec
-from rvmon.spec.checked import Capture, EndPolicy, ForEach, TimeModel
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     compared,
     e,
@@ -26,8 +23,11 @@ from rvmon.testing.build import (
     two,
     x,
 )
+from tests.tools.differential import disagreements
+
+from rvmon.monitor import build_monitor, compile_spec
+from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.differential import disagreements
 from rvmon.trace.sample import Sample
 
 EACH = ForEach("each", k)

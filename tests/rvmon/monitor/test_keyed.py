@@ -4,12 +4,12 @@ import random
 import re
 
 import pytest
+from tests.tools.differential import disagreements
 
 import rvmon
 from rvmon.errors import TraceError
 from rvmon.monitor import keyed as keyed_module
 from rvmon.testing.case import Case
-from rvmon.testing.differential import disagreements
 from rvmon.testing.forms import Maker
 from rvmon.trace.sample import Sample
 

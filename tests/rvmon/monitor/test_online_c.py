@@ -14,10 +14,10 @@ from itertools import starmap
 
 import numpy as np
 import pytest
+from tests.tools.differential import campaign
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
-from rvmon.testing.differential import campaign
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

@@ -3,10 +3,10 @@
 import shutil
 
 import pytest
+from tests.tools.differential import disagreements
 
 import rvmon
 from rvmon.testing.case import Case
-from rvmon.testing.differential import disagreements
 from rvmon.testing.forms import FORMS, Maker
 from rvmon.trace.sample import Sample
 

@@ -6,11 +6,11 @@ import json
 import random
 
 import pytest
+from tests.tools.differential import campaign, case_of
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError
 from rvmon.session import Spec
-from rvmon.testing.differential import campaign, case_of
 from rvmon.testing.drive import tell
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile

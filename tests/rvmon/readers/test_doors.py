@@ -7,12 +7,12 @@ import numpy as np
 import pyarrow
 import pytest
 from pyarrow import parquet
+from tests.tools.differential import cases_of
+from tests.tools.doors import content_of, doors, whole
 
 import rvmon
 from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
 from rvmon.session import Spec
-from rvmon.testing.differential import cases_of
-from rvmon.testing.doors import content_of, doors, whole
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 

@@ -13,8 +13,8 @@ from rvmon.report.tracks_of import tracks_of
 from rvmon.report.view import View, round_instants, view_of
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Blame
+from rvmon.verdict.report import report_of
 from rvmon.verdict.verdict import Verdict
 
 SECOND = 1_000_000_000

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from rvmon.errors import SpecError
+from rvmon.spec.checked.plain_data import restored, stored
 from rvmon.spec.compile import compile_text
 from rvmon.spec.compiled_cache import compile_kept
-from rvmon.spec.plain_data import restored, stored
 from rvmon.testing.generate_spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]

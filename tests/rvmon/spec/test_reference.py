@@ -7,13 +7,13 @@ import pytest
 
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
-from rvmon.spec.effort import DEEPEST, LARGEST
-from rvmon.spec.findings import MOST
-from rvmon.spec.formatter import format_text
-from rvmon.spec.parse import grammar
+from rvmon.spec.print.formatter import format_text
+from rvmon.spec.rules.findings import MOST
 from rvmon.spec.rules.goals import MOST_COMBINATIONS
-from rvmon.spec.units import unit_table
-from rvmon.spec.words import CLAUSE_WORDS, FUNCTIONS, INFIX_WORDS, ITEM_WORDS, RESERVED
+from rvmon.spec.syntax.effort import DEEPEST, LARGEST
+from rvmon.spec.syntax.parse import grammar
+from rvmon.spec.syntax.units import unit_table
+from rvmon.spec.syntax.words import CLAUSE_WORDS, FUNCTIONS, INFIX_WORDS, ITEM_WORDS, RESERVED
 
 DOCS = Path(__file__).parents[3] / "docs" / "reference"
 PAGE = (DOCS / "language.md").read_text(encoding="utf-8")

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import pytest
+from tests.tools.build import requirement, spec_of, timeline
 
-from rvmon.spec.checked import Formula, Requirement, TimeModel
-from rvmon.testing.build import requirement, spec_of, timeline
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import Requirement, TimeModel
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Decision

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import pytest
 from benchmarks.peers.positions import Question, answers, ask_oracle
-
-from rvmon.spec.checked import Formula, TimeModel
-from rvmon.testing.build import (
+from tests.tools.build import (
     compared,
     eventually,
     fall,
@@ -23,6 +21,9 @@ from rvmon.testing.build import (
     two,
     x,
 )
+
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.peers.core import UntranslatableError, names_in, to_core
 from rvmon.testing.peers.dialects import (
     LTLF,

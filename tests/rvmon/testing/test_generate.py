@@ -10,27 +10,18 @@ from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
+from tests.tools.build import compared, eventually, requirement, spec_of, x
+from tests.tools.differential import Mix, case_of
+from tests.tools.features import Feature, features, possible
+from tests.tools.judgement import Judgement
+from tests.tools.law import judge
 
-from rvmon.spec.checked import (
-    Binary,
-    BinaryOp,
-    Compare,
-    EndPolicy,
-    Formula,
-    Mode,
-    TimeModel,
-    Unary,
-    UnaryOp,
-)
-from rvmon.testing.build import compared, eventually, requirement, spec_of, x
+from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import EndPolicy, Mode, TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.differential import Mix, case_of
-from rvmon.testing.features import Feature, features, possible
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
-from rvmon.testing.judgement import Judgement
-from rvmon.testing.law import judge
 from rvmon.testing.pulse import is_pulse
 from rvmon.testing.strategies import cases
 from rvmon.testing.walk import intervals, subformulas

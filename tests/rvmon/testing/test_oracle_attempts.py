@@ -6,10 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-
-from rvmon.errors import RvmonError
-from rvmon.spec.checked import Capture, Captured, ForEach, Formula, TimeModel
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     compared,
     e,
@@ -33,6 +30,10 @@ from rvmon.testing.build import (
     two,
     x,
 )
+
+from rvmon.errors import RvmonError
+from rvmon.spec.checked.formula import Captured, Formula
+from rvmon.spec.checked.specification import Capture, ForEach, TimeModel
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.pulse import is_pulse
 from rvmon.trace.sample import Sample

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-
-from rvmon.spec.checked import EndPolicy, Formula, TimeModel
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     e,
     eventually,
@@ -18,6 +16,9 @@ from rvmon.testing.build import (
     requirement,
     two,
 )
+
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import EndPolicy, TimeModel
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}

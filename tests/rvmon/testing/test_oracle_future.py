@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from tests.tools.build import always, eventually, following, no, p, q, two
 
-from rvmon.spec.checked import Formula, TimeModel
-from rvmon.testing.build import always, eventually, following, no, p, q, two
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}

@@ -5,20 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-
-from rvmon.errors import TimeOrderError, TraceError
-from rvmon.spec.arithmetic import NumericOp
-from rvmon.spec.checked import (
-    Arithmetic,
-    Formula,
-    Literal,
-    Numeric,
-    SignalValue,
-    TimeModel,
-    UpdateFunction,
-    UpdateValue,
-)
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     compared,
     e,
@@ -36,6 +23,19 @@ from rvmon.testing.build import (
     x,
     y,
 )
+
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
+    Arithmetic,
+    Formula,
+    Literal,
+    Numeric,
+    SignalValue,
+    UpdateFunction,
+    UpdateValue,
+)
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.sample_words import MOST_TICKS
 from rvmon.trace.sample import Sample, Trace

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-
-from rvmon.spec.checked import Formula, TimeModel
-from rvmon.testing.build import (
+from tests.tools.build import (
     always,
     e,
     eventually,
@@ -26,6 +24,9 @@ from rvmon.testing.build import (
     true,
     two,
 )
+
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,9 @@
 """Peers asked about recordings: what is sent to them, and what their answer is held against."""
 
 import pytest
+from tests.tools.build import always, e, eventually, p, q, requirement, rise, spec_of, timeline
 
-from rvmon.spec.checked import TimeModel
-from rvmon.testing.build import always, e, eventually, p, q, requirement, rise, spec_of, timeline
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.cross import crossings
 from rvmon.testing.oracle import evaluate

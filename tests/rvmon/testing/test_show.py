@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from tests.tools.differential import case_of
+from tests.tools.law import judge
+
 import rvmon
-from rvmon.spec.checked import Requirement
+from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.compare import differences
-from rvmon.testing.differential import case_of
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.law import judge
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from tests.tools.differential import case_of
 
-from rvmon.spec.checked import TimeModel
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.attempts import Readings, obligation
-from rvmon.testing.differential import case_of
 from rvmon.testing.follow import follow
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile

@@ -9,9 +9,8 @@ import pytest
 
 from rvmon.errors import TraceError
 from rvmon.trace.health import Health, HealthKind
-from rvmon.verdict.assemble import report_of
 from rvmon.verdict.attempt import Attempt, Blame, Decision
-from rvmon.verdict.report import Report
+from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import LAW, Verdict
 
 

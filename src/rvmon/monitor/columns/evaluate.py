@@ -23,14 +23,8 @@ from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog, holds_nan
 from rvmon.monitor.ledger import Ledger
-from rvmon.spec.checked import (
-    Compare,
-    Literal,
-    Probe,
-    ProbeAtom,
-    SignalValue,
-    TimeModel,
-)
+from rvmon.spec.checked.formula import Compare, Literal, Probe, ProbeAtom, SignalValue
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
-from rvmon.spec.arithmetic import Operation
-from rvmon.spec.checked import (
+from rvmon.spec.checked.arithmetic import Operation
+from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
     Compare,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.dataflow.outages import Outage, note_found, note_lost, outages_at_first
-from rvmon.spec.checked import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import TIME_LIMIT
 

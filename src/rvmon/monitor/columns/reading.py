@@ -12,7 +12,7 @@ from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf, Lost, Missing, State, Unborn
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, Truth, compared, known_truth
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,
     Compare,

@@ -18,7 +18,8 @@ from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.columns.reading import first_known
 from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.health import HealthLog, by_name, holds_nan
-from rvmon.spec.checked import Compare, Probe, ProbeAtom, SignalAtom, TimeModel
+from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, SignalAtom
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.report import Report
 

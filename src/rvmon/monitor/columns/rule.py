@@ -29,7 +29,7 @@ from rvmon.monitor.columns.track import UNSEEN, Track
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.witness import Stood, Witness
-from rvmon.spec.checked import Mode
+from rvmon.spec.checked.specification import Mode
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

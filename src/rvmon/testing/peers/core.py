@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     BoundAtom,
@@ -61,7 +61,7 @@ def names_in(formula: Formula) -> set[str]:
 def to_core(formula: Formula) -> Formula:
     """An equal formula in `not and or X F G U Y O H S` over propositions (SEMANTICS 2).
 
-    >>> from rvmon.spec.checked import SignalAtom
+    >>> from rvmon.spec.checked.formula import SignalAtom
     >>> to_core(Unary(UnaryOp.RISE, SignalAtom("p"))) == both(
     ...     SignalAtom("p"), no(Unary(UnaryOp.PREVIOUS, SignalAtom("p"))))
     True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import gcd
 
-from rvmon.spec.checked import (
+from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Compare,
@@ -12,14 +12,12 @@ from rvmon.spec.checked import (
     FieldValue,
     Formula,
     Interval,
-    Mode,
     ProbeAtom,
-    Requirement,
-    TimeModel,
     Unary,
     UnaryOp,
     UpdateValue,
 )
+from rvmon.spec.checked.specification import Mode, Requirement, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.peers.client import Peer
 from rvmon.testing.peers.core import names_in

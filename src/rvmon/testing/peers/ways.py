@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.spec.checked import Formula, TimeModel
+from rvmon.spec.checked.formula import Formula
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.peers import dialects
 from rvmon.testing.peers.client import Peer
 from rvmon.testing.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate

@@ -1,0 +1,1 @@
+"""From names to the checked specification: types, units, durations, requirements."""

@@ -1,0 +1,110 @@
+"""Comparisons: numbers, labels beside their signal, and ages."""
+
+from __future__ import annotations
+
+from rvmon.diagnostics.span import Span
+from rvmon.spec.check.durations import ticks_of
+from rvmon.spec.check.operands import Operands
+from rvmon.spec.check.quantities import Placed, compare
+from rvmon.spec.check.values import Age, Quantity, Scope, Value
+from rvmon.spec.checked.formula import (
+    Compare,
+    CompareOp,
+    Constant,
+    Formula,
+    Interval,
+    Literal,
+    Probe,
+    ProbeAtom,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import types as rules
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.syntax.expressions import Comparison, Expression, Name
+
+_MIRRORED = {
+    CompareOp.LT: CompareOp.GT,
+    CompareOp.LE: CompareOp.GE,
+    CompareOp.GT: CompareOp.LT,
+    CompareOp.GE: CompareOp.LE,
+    CompareOp.EQ: CompareOp.EQ,
+    CompareOp.NE: CompareOp.NE,
+}
+_EQUALITY = (CompareOp.EQ, CompareOp.NE)
+
+
+def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
+    """What a comparison stands for.
+
+    Raises:
+        Refusal: the sides cannot be compared.
+        Reported: a side is wrong.
+    """
+    left, right = _sides(operands, node, scope)
+    if isinstance(left, Age):
+        limit = _comparable(right, node.right.span)
+        return _age(left, node.op, limit, node.span)
+    if isinstance(right, Age):
+        limit = _comparable(left, node.left.span)
+        return _age(right, _MIRRORED[node.op], limit, node.span)
+    first = _comparable(left, node.left.span)
+    second = _comparable(right, node.right.span)
+    return _quantities(node.op, first, second, node.span)
+
+
+def _sides(operands: Operands, node: Comparison, scope: Scope) -> list[Value]:
+    """Both values; a name that is a label of the other side's signal is that label."""
+    for first, second in ((node.left, node.right), (node.right, node.left)):
+        name, place = operands.peeled(second, scope)
+        other, _ = operands.peeled(first, scope)
+        if not isinstance(name, Name) or not _may_be_signal(operands, other, scope):
+            continue
+        value = operands.values((first,), scope)[0]
+        if not isinstance(value, Quantity) or not value.labels:
+            continue
+        if name.text in value.labels:
+            label = Quantity(Literal(name.text), labels=value.labels)
+            return [value, label] if first is node.left else [label, value]
+        if not operands.known(name.text, place):
+            raise Refusal(name_rules.unknown_label(name.span, name.text, value.labels))
+    return operands.values((node.left, node.right), scope)
+
+
+def _may_be_signal(operands: Operands, expression: Expression, scope: Scope) -> bool:
+    """Whether evaluating it is worth while in search of a signal with labels."""
+    return not isinstance(expression, Name) or operands.known(expression.text, scope)
+
+
+def _comparable(value: Value, span: Span) -> Placed:
+    if isinstance(value, Age):
+        raise Refusal(rules.age_alone(span))
+    if not isinstance(value, Quantity) or value.truth:
+        raise Refusal(rules.compared_truth(span))
+    return value, span
+
+
+def _quantities(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compare | Constant:
+    (first, first_span), (second, second_span) = left, right
+    if not first.labels and not second.labels:
+        return compare(op, left, right, span)
+    if op not in _EQUALITY:
+        raise Refusal(rules.label_use(first_span if first.labels else second_span))
+    if not (first.labels and second.labels) or first.node is None or second.node is None:
+        raise Refusal(rules.label_use(first_span if first.labels else second_span))
+    return Compare(op, first.node, second.node, span)
+
+
+def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:
+    """`age(x) > D` is: no update within the last D. In whole ticks, `>= D` is `> D - 1 tick`."""
+    if op in _EQUALITY:
+        raise Refusal(rules.age_alone(span))
+    ticks = ticks_of(*limit)
+    window = ticks if op in (CompareOp.GT, CompareOp.LE) else ticks - 1
+    older = op in (CompareOp.GT, CompareOp.GE)
+    if window < 0:
+        return Constant(older, span)
+    updated = ProbeAtom(Probe.UPDATED, age.name, span)
+    recent = Unary(UnaryOp.ONCE, updated, Interval(0, window), span)
+    return Unary(UnaryOp.NOT, recent, None, span) if older else recent

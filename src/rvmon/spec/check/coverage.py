@@ -1,0 +1,280 @@
+"""From the syntax of cover goals, coverpoints and crosses to their checked form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import product
+from math import prod
+
+from rvmon.spec.check.comparisons import compared
+from rvmon.spec.check.expressions import Checker
+from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope, Value
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Compare,
+    CompareOp,
+    Constant,
+    Formula,
+    Interval,
+    Literal,
+    SignalValue,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
+from rvmon.spec.checked.tense import end_part, future_part
+from rvmon.spec.rules import goals as rules
+from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import triggers as trigger_rules
+from rvmon.spec.rules.rule import Refusal, Reported
+from rvmon.spec.syntax.expressions import Comparison, Expression, Name, Window
+from rvmon.spec.syntax.items import (
+    BinSyntax,
+    CoverItem,
+    CoverpointItem,
+    CrossItem,
+    GoalClause,
+    GoalClauses,
+    SampledClause,
+    UnwantedClause,
+)
+
+
+def checked_cover(checker: Checker, item: CoverItem) -> Cover | None:
+    """Check a cover goal; `None` if it is wrong, and then that is reported."""
+    formula = checker.top(item.formula, EVERYWHERE)
+    if formula is None:
+        return None
+    if end := end_part(formula):
+        checker.report(trigger_rules.end_not_alone(end.span or item.span))
+        return None
+    shown = Unary(UnaryOp.EVENTUALLY, formula, Interval(), item.formula.span)
+    return Cover(item.name.text, shown, item.span)
+
+
+def checked_coverpoint(checker: Checker, item: CoverpointItem) -> Coverpoint | None:
+    """Check a coverpoint; `None` if it is wrong, and then that is reported."""
+    value: Value | None = None
+    if item.expression is not None:
+        value = checker.value(item.expression, EVERYWHERE)
+        if value is None:
+            return None
+    first: dict[str, BinSyntax] = {}
+    bins: list[Bin] = []
+    wrong = False
+    for syntax in item.bins:
+        earlier = first.setdefault(syntax.name.text, syntax)
+        try:
+            if earlier is not syntax:
+                places = syntax.name.span, earlier.name.span
+                raise Refusal(name_rules.double(syntax.name.text, "bin", *places))
+            formula = present(_bin_formula(checker, item.expression, value, syntax))
+            bins.append(Bin(syntax.name.text, formula, syntax.kind, syntax.span))
+        except Refusal as refusal:
+            checker.report(refusal.finding)
+            wrong = True
+        except Reported:
+            wrong = True
+    found = _clauses(checker, item.clauses)
+    for clause in item.clauses:
+        if isinstance(clause, UnwantedClause):
+            checker.report(rules.unwanted_in_point(clause.span))
+            wrong = True
+    if wrong or found is None:
+        return None
+    return Coverpoint(item.name.text, tuple(bins), *found, item.span)
+
+
+def checked_cross(
+    checker: Checker,
+    item: CrossItem,
+    points: Mapping[str, Coverpoint],
+    declared: Mapping[str, CoverpointItem],
+) -> Cross | None:
+    """Check a cross; `None` if it is wrong, and then that is reported.
+
+    Args:
+        checker: evaluates its clauses.
+        item: the cross.
+        points: the coverpoints that are in order.
+        declared: all coverpoints.
+    """
+    names = [point.text for point in item.points]
+    try:
+        for number, point in enumerate(item.points):
+            if point.text in names[:number]:
+                raise Refusal(rules.same_point(point.span, point.text))
+            if point.text not in declared:
+                raise Refusal(rules.no_coverpoint(point.span, point.text, list(declared)))
+            if point.text not in points:
+                raise Reported
+        bins = [[bin_.name for bin_ in points[name].bins] for name in names]
+        combinations = prod(map(len, bins))
+        if combinations > rules.MOST_COMBINATIONS:
+            raise Refusal(rules.too_many_combinations(item.span, combinations))
+        checker.effort.spend(combinations * len(item.clauses), item.span)
+        unwanted = {
+            kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)
+            for kind in (BinKind.IGNORE, BinKind.ILLEGAL)
+        }
+    except Refusal as refusal:
+        checker.report(refusal.finding)
+        return None
+    except Reported:
+        return None
+    found = _clauses(checker, item.clauses)
+    if found is None:
+        return None
+    ignored, illegal = unwanted[BinKind.IGNORE], unwanted[BinKind.ILLEGAL]
+    return Cross(item.name.text, tuple(names), ignored, illegal, *found, item.span)
+
+
+def present(formula: Formula) -> Formula:
+    """The formula itself, which must not look ahead.
+
+    Raises:
+        Refusal: it does.
+    """
+    ahead = future_part(formula)
+    if ahead is not None and ahead.span is not None:
+        raise Refusal(rules.looks_ahead(ahead.span))
+    end = end_part(formula)
+    if end is not None and end.span is not None:
+        raise Refusal(trigger_rules.end_not_alone(end.span))
+    return formula
+
+
+def _bin_formula(
+    checker: Checker, expression: Expression | None, value: Value | None, bin_: BinSyntax
+) -> Formula:
+    labelled = isinstance(value, Quantity) and bool(value.labels)
+    if bin_.values is None:
+        if expression is None or not labelled:
+            raise Refusal(rules.bin_without_values(bin_.span))
+        return _equals(checker, expression, Name(bin_.name.text, bin_.name.span))
+    if isinstance(bin_.values, Window):
+        return _in_window(checker, expression, bin_.values)
+    if labelled and expression is not None and isinstance(bin_.values, Name):
+        return _equals(checker, expression, bin_.values)
+    (found,) = checker.values((bin_.values,), EVERYWHERE)
+    if isinstance(found, Quantity) and found.constant is not None:
+        if expression is None:
+            raise Refusal(rules.bin_needs_expression(bin_.values.span))
+        return _equals(checker, expression, bin_.values)
+    formula = checker.formula(bin_.values, EVERYWHERE)
+    if isinstance(formula, Constant) and expression is not None:
+        holds = checker.formula(expression, EVERYWHERE)
+        return holds if formula.value else Unary(UnaryOp.NOT, holds, None, bin_.span)
+    return formula
+
+
+def _equals(checker: Checker, expression: Expression, other: Expression) -> Formula:
+    equation = Comparison(CompareOp.EQ, expression, other, other.span, other.span)
+    return compared(checker, equation, EVERYWHERE)
+
+
+def _in_window(checker: Checker, expression: Expression | None, window: Window) -> Formula:
+    """The bounds of a range as comparisons; `inf` bounds nothing."""
+    if expression is None or window.low is None:
+        raise Refusal(rules.bin_needs_expression(window.span))
+    above = CompareOp.GT if window.low_open else CompareOp.GE
+    low = Comparison(above, expression, window.low, window.span, window.span)
+    if window.high is None:
+        return compared(checker, low, EVERYWHERE)
+    below = CompareOp.LT if window.high_open else CompareOp.LE
+    high = Comparison(below, expression, window.high, window.span, window.span)
+    left, right = compared(checker, low, EVERYWHERE), compared(checker, high, EVERYWHERE)
+    return Binary(BinaryOp.AND, left, right, None, window.span)
+
+
+def _clauses(checker: Checker, clauses: Sequence[GoalClauses]) -> tuple[Formula | None, int] | None:
+    """Where it is sampled and the goal; `None` if one is wrong."""
+    upon: Formula | None = None
+    goal = 1
+    for clause in clauses:
+        match clause:
+            case SampledClause(trigger=trigger):
+                upon = checker.top(trigger, EVERYWHERE)
+                try:
+                    upon = None if upon is None else present(upon)
+                except Refusal as refusal:
+                    checker.report(refusal.finding)
+                    upon = None
+                if upon is None:
+                    return None
+            case GoalClause(count=count):
+                value = count.value
+                if value is None or count.unit or value.denominator != 1 or value < 1:
+                    checker.report(rules.bad_goal(count.span))
+                    return None
+                goal = int(value)
+    return upon, goal
+
+
+def _combinations(
+    checker: Checker, item: CrossItem, bins: Mapping[str, Sequence[str]], kind: BinKind
+) -> frozenset[tuple[str, ...]]:
+    """The combinations for which a clause of that kind holds."""
+    scope = Scope(
+        {name: Quantity(SignalValue(name), labels=tuple(names)) for name, names in bins.items()}
+    )
+    tests = [
+        (checker.formula(clause.condition, scope), clause)
+        for clause in item.clauses
+        if isinstance(clause, UnwantedClause) and clause.kind is kind
+    ]
+    for formula, clause in tests:
+        if not _about_bins(formula, bins):
+            raise Refusal(rules.bad_condition(clause.condition.span))
+    return frozenset(
+        combination
+        for combination in product(*bins.values())
+        if any(_holds(f, dict(zip(bins, combination, strict=True))) for f, _ in tests)
+    )
+
+
+_CONNECTIVES: dict[BinaryOp, Callable[[bool, bool], bool]] = {
+    BinaryOp.AND: lambda left, right: left and right,
+    BinaryOp.OR: lambda left, right: left or right,
+    BinaryOp.IMPLIES: lambda left, right: not left or right,
+    BinaryOp.IFF: lambda left, right: left == right,
+    BinaryOp.XOR: lambda left, right: left != right,
+}
+
+
+def _about_bins(formula: Formula, bins: Mapping[str, Sequence[str]]) -> bool:
+    """Whether it is made of comparisons of coverpoints with bins, and connectives."""
+    match formula:
+        case Constant():
+            return True
+        case Compare(left=left, right=right):
+            return all(
+                isinstance(side, Literal) or (isinstance(side, SignalValue) and side.name in bins)
+                for side in (left, right)
+            )
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return _about_bins(operand, bins)
+        case Binary(op=op, left=left, right=right):
+            return op in _CONNECTIVES and _about_bins(left, bins) and _about_bins(right, bins)
+        case _:
+            return False
+
+
+def _holds(formula: Formula, combination: Mapping[str, str]) -> bool:
+    match formula:
+        case Constant(value=value):
+            return value
+        case Compare(op=op, left=left, right=right):
+            names = [
+                combination[side.name] if isinstance(side, SignalValue) else side
+                for side in (left, right)
+            ]
+            first, second = (n.value if isinstance(n, Literal) else n for n in names)
+            return (first == second) is (op is CompareOp.EQ)
+        case Unary(operand=operand):
+            return not _holds(operand, combination)
+        case Binary(op=op, left=left, right=right):
+            return _CONNECTIVES[op](_holds(left, combination), _holds(right, combination))
+        case _:
+            return False

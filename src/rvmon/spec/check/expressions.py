@@ -1,0 +1,342 @@
+"""From expressions to checked formulas and quantities: names, macros, operators, windows."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.span import Span
+from rvmon.spec.check.comparisons import compared
+from rvmon.spec.check.durations import closed_interval, ticks_of
+from rvmon.spec.check.functions import applied
+from rvmon.spec.check.kinds import formula_of, number_of
+from rvmon.spec.check.quantities import arithmetic
+from rvmon.spec.check.table import Table, close_name, close_unit
+from rvmon.spec.check.values import EVERYWHERE, Closure, Quantity, Scope, Value
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    BoundAtom,
+    Constant,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Interval,
+    SignalValue,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.checked.tense import FUTURE
+from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import properties as property_rules
+from rvmon.spec.rules import time as time_rules
+from rvmon.spec.rules import types as rules
+from rvmon.spec.rules.findings import Findings
+from rvmon.spec.rules.rule import Refusal, Reported
+from rvmon.spec.syntax.effort import Cost, Effort
+from rvmon.spec.syntax.expressions import (
+    Call,
+    Comparison,
+    Edge,
+    Expression,
+    Group,
+    Immediately,
+    Infix,
+    LeadsTo,
+    Name,
+    Number,
+    Operation,
+    Path,
+    Prefix,
+    Quantified,
+    Truth,
+    Window,
+)
+from rvmon.spec.syntax.items import ConstItem, DefineItem
+from rvmon.spec.syntax.unit import PLAIN
+from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
+from rvmon.trace.schema import Kind
+
+_TEMPORAL = FUTURE | {BinaryOp.SINCE}
+
+
+class Checker:
+    """Evaluates expressions to what they stand for; findings gather in a list.
+
+    A method that takes an expression reports what is wrong in *all* its operands before it raises.
+
+    Args:
+        table: the names of the file.
+        findings: takes what is wrong.
+        characters: of the whole specification: a long file may do more.
+    """
+
+    def __init__(self, table: Table, findings: Findings, characters: int) -> None:
+        self.table = table
+        self._findings = findings
+        self.effort = Effort(characters)
+        self._defined: dict[str, tuple[Value | None, Cost]] = {}
+
+    def report(self, finding: Diagnostic) -> None:
+        """Record a finding.
+
+        Raises:
+            Enough: there are too many.
+        """
+        self._findings.add(finding)
+
+    def top(self, expression: Expression, scope: Scope) -> Formula | None:
+        """A whole formula, or `None` if it is wrong."""
+        self.effort.begin()
+        try:
+            return self.formula(expression, scope)
+        except Refusal as refusal:
+            self.report(refusal.finding)
+        except Reported:
+            pass
+        return None
+
+    def formula(self, expression: Expression, scope: Scope) -> Formula:
+        """What the expression stands for, which has to be a formula.
+
+        Raises:
+            Refusal: it is a number or label.
+            Reported: it is wrong.
+        """
+        return self.formulas((expression,), scope)[0]
+
+    def formulas(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Formula]:
+        """As `formula`, for several operands."""
+        values = self.values(expressions, scope)
+        return [formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
+
+    def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
+        """What the expressions stand for, which have to be numbers."""
+        values = self.values(expressions, scope)
+        return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
+
+    def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
+        """What the expressions stand for.
+
+        Raises:
+            Reported: one is wrong; the findings of all are recorded.
+        """
+        found = [self.value(expression, scope) for expression in expressions]
+        values = [value for value in found if value is not None]
+        if len(values) < len(found):
+            raise Reported
+        return values
+
+    def duration(self, expression: Expression, scope: Scope) -> int:
+        """A constant duration in ticks.
+
+        Raises:
+            Refusal: it is none.
+            Reported: it is wrong.
+        """
+        return ticks_of(self.values((expression,), scope)[0], expression.span)
+
+    def value(self, expression: Expression, scope: Scope) -> Value | None:
+        """What the expression stands for; `None` if it is wrong, and then that is recorded."""
+        try:
+            self.effort.enter(expression.span)
+            return self._value(expression, scope)
+        except Refusal as refusal:
+            self.report(refusal.finding)
+        except Reported:
+            pass
+        finally:
+            self.effort.leave()
+        return None
+
+    def _value(self, expression: Expression, scope: Scope) -> Value:
+        match expression:
+            case Group(inner=inner):
+                return self.values((inner,), scope)[0]
+            case Number():
+                return self._number(expression)
+            case Name():
+                return self._name(expression, scope)
+            case Truth(value=value, span=span):
+                return Constant(value, span)
+            case Edge(bound=bound, span=span):
+                return BoundAtom(bound, span)
+            case Call():
+                return self._call(expression, scope)
+            case Prefix():
+                return self._prefix(expression, scope)
+            case Immediately(operand=operand):
+                return self.formula(operand, scope)
+            case Infix():
+                return self._infix(expression, scope)
+            case Comparison():
+                return compared(self, expression, scope)
+            case Operation(op=op, args=args, span=span):
+                spans = [arg.span for arg in args]
+                quantities = self.quantities(args, scope)
+                return arithmetic(op, list(zip(quantities, spans, strict=True)), span)
+            case Path() | Quantified() | LeadsTo():
+                raise Refusal(property_rules.path_outside(expression.span))
+            case _:
+                assert_never(expression)
+
+    def _number(self, number: Number) -> Quantity:
+        if number.value is None:
+            raise Refusal(rules.out_of_range(number.span))
+        try:
+            unit = parse_unit(number.unit) if number.unit else PLAIN
+        except UnknownUnitError as error:
+            part = str(error)
+            raise Refusal(rules.unknown_unit(number.span, part, close_unit(part))) from None
+        return Quantity(constant=number.value, unit=unit)
+
+    # Names.
+
+    def known(self, name: str, scope: Scope) -> bool:
+        """Whether the name stands for anything but a label."""
+        table = self.table
+        return name in scope.names or name in table.declared or table.field(name) is not None
+
+    def _name(self, name: Name, scope: Scope) -> Value:
+        local = scope.names.get(name.text)
+        match local:
+            case Quantity():
+                return local
+            case Closure(expression=expression, scope=outer):
+                return self.values((expression,), outer)[0]
+        declared = self.table.declared.get(name.text)
+        if isinstance(declared, DefineItem | ConstItem):
+            return self._defined_value(name, declared)
+        return self._atom(name, scope)
+
+    def _atom(self, name: Name, scope: Scope) -> Value:
+        table = self.table
+        if signal := table.signals.get(name.text):
+            return self._typed(SignalValue(signal.name), signal.type.kind, signal.type.labels, name)
+        if name.text in table.events:
+            return EventAtom(name.text, name.span)
+        if field := table.field(name.text):
+            value = FieldValue(field.event, field.field)
+            return self._typed(value, field.type.kind, field.type.labels, name)
+        if name.text in table.declared or name.text in table.doubtful:
+            raise Reported  # its declaration is wrong, and that is recorded
+        close = close_name(table, name.text, tuple(scope.names))
+        raise Refusal(name_rules.unknown(name.span, name.text, close))
+
+    def _typed(
+        self, node: SignalValue | FieldValue, kind: Kind, labels: tuple[str, ...], name: Name
+    ) -> Quantity:
+        return Quantity(
+            node,
+            unit=self.table.units.get(name.text, PLAIN),
+            integral=kind is Kind.INT,
+            labels=labels,
+            truth=kind is Kind.BOOL,
+        )
+
+    def _defined_value(self, name: Name, declared: DefineItem | ConstItem) -> Value:
+        """A macro without parameters or a constant: evaluated once, shared by all its uses."""
+        if isinstance(declared, DefineItem) and declared.parameters is not None:
+            count = len(declared.parameters)
+            raise Refusal(rules.argument_count(name.span, name.text, f"{count} argument(s)", 0))
+        if name.text in self.table.recursive:
+            raise Reported
+        if name.text not in self._defined:
+            mark = self.effort.mark()
+            value = self._body_value(declared)
+            self._defined[name.text] = value, self.effort.since(mark)
+        found, cost = self._defined[name.text]
+        if found is None:
+            raise Reported
+        self.effort.add(cost, name.span)
+        return found
+
+    def _body_value(self, declared: DefineItem | ConstItem) -> Value | None:
+        if isinstance(declared, DefineItem):
+            return self.value(declared.body, EVERYWHERE)
+        value = self.value(declared.value, EVERYWHERE)
+        if value is None or (isinstance(value, Quantity) and value.constant is not None):
+            return value
+        self.report(rules.not_constant(declared.value.span))
+        return None
+
+    def _call(self, call: Call, scope: Scope) -> Value:
+        declared = self.table.declared.get(call.function.text)
+        if not isinstance(declared, DefineItem) or declared.parameters is None:
+            return applied(self, call, scope)
+        parameters = [parameter.text for parameter in declared.parameters]
+        if len(parameters) != len(call.args):
+            takes = f"{len(parameters)} argument(s)"
+            given = len(call.args)
+            raise Refusal(rules.argument_count(call.span, call.function.text, takes, given))
+        if call.function.text in self.table.recursive:
+            raise Reported
+        closures = (Closure(arg, scope) for arg in call.args)
+        inner = Scope(dict(zip(parameters, closures, strict=True)))
+        return self.values((declared.body,), inner)[0]
+
+    def peeled(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
+        """The expression itself, without brackets and macro parameters around it."""
+        while True:
+            match expression:
+                case Group(inner=inner):
+                    expression = inner
+                case Name(text=text) if isinstance(found := scope.names.get(text), Closure):
+                    expression, scope = found.expression, found.scope
+                case _:
+                    return expression, scope
+
+    # Operators.
+
+    def _prefix(self, prefix: Prefix, scope: Scope) -> Formula:
+        operand = self.value(prefix.operand, scope)
+        interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
+        if operand is None:
+            raise Reported
+        return Unary(prefix.op, formula_of(operand, prefix.operand.span), interval, prefix.span)
+
+    def _interval_of(
+        self, op: UnaryOp, window: Window | None, span: Span, scope: Scope
+    ) -> Interval | None:
+        if op is UnaryOp.NOT:
+            return None
+        if op in (UnaryOp.NEXT, UnaryOp.PREVIOUS):
+            if self.table.time is TimeModel.HELD:
+                raise Refusal(time_rules.step_in_held_time(span.text, span))
+            if window is not None:
+                raise Refusal(time_rules.no_window(span.text, window.span))
+            return None
+        return self.interval(window, scope)
+
+    def _infix(self, infix: Infix, scope: Scope) -> Formula:
+        operands = [self.value(side, scope) for side in (infix.left, infix.right)]
+        interval = None
+        if infix.op in _TEMPORAL:
+            interval = self.interval(infix.window, scope)
+            weak = infix.op in (BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE)
+            if weak and interval.low > 0 and infix.window is not None:
+                raise Refusal(time_rules.late_weak_window(infix.op_span.text, infix.window.span))
+        left, right = operands
+        if left is None or right is None:
+            raise Reported
+        sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
+        return Binary(infix.op, *sides, interval, infix.span)
+
+    def interval(self, window: Window | None, scope: Scope) -> Interval:
+        """The window in ticks; none is from 0 on.
+
+        Raises:
+            Refusal: a bound is no duration, or no tick lies between them.
+            Reported: a bound is wrong.
+        """
+        if window is None:
+            return Interval()
+        low = 0 if window.low is None else self.duration(window.low, scope)
+        high = None if window.high is None else self.duration(window.high, scope)
+        if window.low and window.high and high is not None and high < low:
+            raise Refusal(
+                time_rules.reversed_bounds(window.span, window.low.span, window.high.span)
+            )
+        opens = {"low_open": window.low_open, "high_open": window.high_open}
+        return closed_interval(low, high, **opens, span=window.span)

@@ -1,0 +1,178 @@
+"""Universal CTL as a formula of one run, where there is one of the same meaning.
+
+Source: Maidl, The common fragment of CTL and LTL, FOCS 2000: ACTL^det.
+"""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from rvmon.diagnostics.span import Span
+from rvmon.spec.checked.ctl import (
+    ModelAtom,
+    PathBinary,
+    PathUnary,
+    Property,
+    StateAtom,
+    StateBinary,
+    StateFormula,
+    StateNot,
+)
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.print.printer import format_formula
+from rvmon.spec.rules import properties as rules
+from rvmon.spec.rules import time as time_rules
+from rvmon.spec.rules.rule import Refusal
+
+_UNARY_DUAL = {
+    UnaryOp.EVENTUALLY: UnaryOp.ALWAYS,
+    UnaryOp.ALWAYS: UnaryOp.EVENTUALLY,
+    UnaryOp.NEXT: UnaryOp.NEXT,
+}
+_BINARY_DUAL = {
+    BinaryOp.UNTIL: BinaryOp.RELEASE,
+    BinaryOp.RELEASE: BinaryOp.UNTIL,
+    BinaryOp.WEAK_UNTIL: BinaryOp.STRONG_RELEASE,
+    BinaryOp.STRONG_RELEASE: BinaryOp.WEAK_UNTIL,
+}
+
+
+def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
+    """The formula that a run fulfils if and only if it is one of a system with the property.
+
+    Args:
+        property_: checked.
+        place: of what asks for it, for messages.
+        time: of the spec.
+
+    Raises:
+        Refusal: the property is not in the fragment; which part and why is said.
+    """
+    return _Linear(place, time).of(property_.formula, True)
+
+
+class _Linear:
+    def __init__(self, place: Span, time: TimeModel) -> None:
+        self.place = place
+        self.time = time
+
+    def of(self, state: StateFormula, positive: bool) -> Formula:
+        """A state formula, or its negation, on one run."""
+        match state:
+            case StateAtom(formula=formula, span=span):
+                return formula if positive else Unary(UnaryOp.NOT, formula, None, span)
+            case ModelAtom(text=text, span=span):
+                raise Refusal(rules.reads_model(span or self.place, text))
+            case StateNot(operand=operand):
+                return self.of(operand, not positive)
+            case StateBinary():
+                return self.connective(state, positive)
+            case PathUnary():
+                return self.path_unary(state, positive)
+            case PathBinary():
+                return self.path_binary(state, positive)
+            case _:
+                assert_never(state)
+
+    def connective(self, state: StateBinary, positive: bool) -> Formula:
+        left, right = state.left, state.right
+        match state.op:
+            case BinaryOp.AND:
+                return self.joined(state, (left, positive), (right, positive), positive)
+            case BinaryOp.OR:
+                return self.joined(state, (left, positive), (right, positive), not positive)
+            case BinaryOp.IMPLIES:
+                return self.joined(state, (left, not positive), (right, positive), not positive)
+            case _:  # both or neither; for `xor`, or the negation, one alone
+                same = (state.op is BinaryOp.IFF) is positive
+                both = StateBinary(BinaryOp.AND, left, _signed(right, same), state.span)
+                none = StateBinary(
+                    BinaryOp.AND, _signed(left, False), _signed(right, not same), state.span
+                )
+                return self.of(StateBinary(BinaryOp.OR, both, none, state.span), True)
+
+    def joined(
+        self,
+        state: StateBinary,
+        left: tuple[StateFormula, bool],
+        right: tuple[StateFormula, bool],
+        conjunction: bool,
+    ) -> Formula:
+        parts = self.of(*left), self.of(*right)
+        if conjunction:
+            return Binary(BinaryOp.AND, *parts, None, state.span)
+        apart = self.excludes(left, right)
+        if not (apart or _is_present(left[0]) or _is_present(right[0])):
+            raise Refusal(rules.choice_of_paths(state.span or self.place))
+        if state.op is BinaryOp.IMPLIES and not left[1]:
+            premise = self.of(left[0], True)
+            return Binary(BinaryOp.IMPLIES, premise, parts[1], None, state.span)
+        return Binary(BinaryOp.OR, *parts, None, state.span)
+
+    def path_unary(self, state: PathUnary, positive: bool) -> Formula:
+        span = state.span or self.place
+        if state.universal is not positive:
+            raise Refusal(rules.some_path(span))
+        op = state.op if positive else _UNARY_DUAL[state.op]
+        if op is UnaryOp.NEXT and self.time is TimeModel.HELD:
+            raise Refusal(time_rules.step_in_held_time("next", span))
+        if op is UnaryOp.EVENTUALLY and not _is_present(state.operand):
+            raise Refusal(rules.not_on_one_path(span))
+        return Unary(op, self.of(state.operand, positive), state.interval, state.span)
+
+    def path_binary(self, state: PathBinary, positive: bool) -> Formula:
+        span = state.span or self.place
+        if state.universal is not positive:
+            raise Refusal(rules.some_path(span))
+        op = state.op if positive else _BINARY_DUAL[state.op]
+        left, right = state.left, state.right
+        if op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
+            # Where the right one comes has to be seen at once: p and φ until not p and ψ.
+            plain = _is_present(right) or self.excludes((left, positive), (right, positive))
+        else:
+            plain = _is_present(left)
+        if not plain:
+            raise Refusal(rules.not_on_one_path(span))
+        parts = self.of(left, positive), self.of(right, positive)
+        return Binary(op, *parts, state.interval, state.span)
+
+    def excludes(self, left: tuple[StateFormula, bool], right: tuple[StateFormula, bool]) -> bool:
+        """Whether one has a conjunct p and the other not p, p about one instant."""
+        mine, its = set(_present_parts(*left)), set(_present_parts(*right))
+        return any((text, not sign) in its for text, sign in mine)
+
+
+def _signed(state: StateFormula, positive: bool) -> StateFormula:
+    return state if positive else StateNot(state, state.span)
+
+
+def _is_present(state: StateFormula) -> bool:
+    return isinstance(state, StateAtom)
+
+
+def _present_parts(state: StateFormula, positive: bool) -> list[tuple[str, bool]]:
+    """The conjuncts about one instant, each as text and sign."""
+    match state:
+        case StateAtom(formula=formula):
+            return _signs(formula, positive)
+        case StateNot(operand=operand):
+            return _present_parts(operand, not positive)
+        case StateBinary(op=BinaryOp.AND, left=left, right=right) if positive:
+            return [*_present_parts(left, True), *_present_parts(right, True)]
+        case StateBinary(op=BinaryOp.OR, left=left, right=right) if not positive:
+            return [*_present_parts(left, False), *_present_parts(right, False)]
+        case StateBinary(op=BinaryOp.IMPLIES, left=left, right=right) if not positive:
+            return [*_present_parts(left, True), *_present_parts(right, False)]
+        case _:
+            return []
+
+
+def _signs(formula: Formula, positive: bool) -> list[tuple[str, bool]]:
+    match formula:
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return _signs(operand, not positive)
+        case Binary(op=BinaryOp.AND, left=left, right=right) if positive:
+            return [*_signs(left, True), *_signs(right, True)]
+        case _:
+            return [(format_formula(formula), positive)]

@@ -1,0 +1,277 @@
+"""From a requirement's syntax to the checked requirement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TypeVar
+
+from rvmon.diagnostics.span import Span
+from rvmon.spec.check.coverage import present
+from rvmon.spec.check.expressions import Checker
+from rvmon.spec.check.linear import linear_form
+from rvmon.spec.check.normalise import normalised
+from rvmon.spec.check.properties import checked_property
+from rvmon.spec.check.quantities import node_of
+from rvmon.spec.check.response import derived_response
+from rvmon.spec.check.scopes import scoped_consequent, scoped_trigger
+from rvmon.spec.check.traps import capture_traps, traps_at_start, traps_at_trigger
+from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope
+from rvmon.spec.checked.ctl import Property
+from rvmon.spec.checked.formula import Bound, BoundAtom, Captured, FieldValue, Formula
+from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, Mode, Requirement
+from rvmon.spec.checked.tense import (
+    end_part,
+    future_part,
+    is_pulse,
+    is_timeless,
+    mixed_disjunction,
+    subformulas,
+)
+from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import properties as property_rules
+from rvmon.spec.rules import triggers as rules
+from rvmon.spec.rules import types as type_rules
+from rvmon.spec.rules.rule import Refusal, Reported
+from rvmon.spec.syntax.expressions import Expression, Group, Ident, Immediately
+from rvmon.spec.syntax.items import (
+    AtEndClause,
+    Bare,
+    Clause,
+    ForEachClause,
+    LetClause,
+    PropertyClause,
+    RequirementItem,
+    ResponseMonitor,
+    ScopeClause,
+    TagsClause,
+    TextClause,
+    Triggered,
+    WrittenMonitor,
+)
+from rvmon.spec.syntax.unit import PLAIN
+from rvmon.trace.schema import Kind
+
+_C = TypeVar("_C", bound=Clause)
+
+Parts = tuple[Mode, Formula, Formula]
+"""Mode, trigger and consequent."""
+
+
+def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement | None:
+    """Check a requirement; `None` if it is wrong, and then that is reported."""
+    policy = _policy(checker, item)
+    try:
+        for_each, outer = _instances(checker, item)
+        captures, inner = _captures(checker, item, outer)
+        ctl = _property(checker, item)
+        parts = _parts(checker, item, outer, inner, ctl)
+        mode, trigger, consequent = _scoped(checker, item, outer, parts)
+    except Refusal as refusal:
+        checker.report(refusal.finding)
+        return None
+    except Reported:
+        return None
+    _warn_of_traps(checker, item, parts, captures)
+    texts = {clause.word: clause.text for clause in _clauses(item, TextClause)}
+    scopes = [clause.span.text for clause in _clauses(item, ScopeClause)]
+    return Requirement(
+        item.name.text,
+        mode,
+        trigger,
+        consequent,
+        item.text,
+        at_end=policy,
+        pulse=is_pulse(trigger),
+        captures=captures,
+        for_each=for_each,
+        source=texts.get("source", ""),
+        rationale=texts.get("rationale", ""),
+        severity=texts.get("severity", ""),
+        tags=tuple(tag for clause in _clauses(item, TagsClause) for tag in clause.tags),
+        property=ctl.text if ctl else "",
+        span=item.span,
+        ctl=ctl,
+        scope=scopes[0] if scopes else "",
+    )
+
+
+def check_clauses(checker: Checker, item: RequirementItem) -> None:
+    """Report clauses that stand twice, and names that are taken."""
+    first: dict[str, Span] = {}
+    named: dict[str, Ident] = {}
+    for clause in item.clauses:
+        if isinstance(clause, LetClause | ForEachClause):
+            _check_name(checker, clause.name, named)
+        word = clause.span.text.split(maxsplit=1)[0]
+        if word == "let":
+            continue
+        if word in first:
+            checker.report(rules.double_clause(word, clause.span, first[word]))
+        first.setdefault(word, clause.span)
+
+
+def _check_name(checker: Checker, name: Ident, named: dict[str, Ident]) -> None:
+    """A name of a requirement is neither one of the file nor another of the requirement."""
+    declared = checker.table.declared.get(name.text)
+    taken = named.setdefault(name.text, name) if declared is None else declared.name
+    if taken is not name:
+        checker.report(name_rules.double(name.text, "name", name.span, taken.span))
+
+
+def _parts(
+    checker: Checker, item: RequirementItem, outer: Scope, inner: Scope, ctl: Property | None
+) -> Parts:
+    match item.body:
+        case Bare(formula=expression):
+            formula = checker.top(expression, inner)
+            if formula is None:
+                raise Reported
+            if end := end_part(formula):
+                raise Refusal(rules.end_not_alone(end.span or expression.span))
+            if _at_start_by_mistake(expression, formula):
+                checker.report(rules.bare_instant(_ungrouped(expression).span))
+            return normalised(formula)
+        case Triggered():
+            return _triggered(checker, item.body, outer, inner)
+        case ResponseMonitor(within=within, span=span):
+            ticks = checker.duration(within, EVERYWHERE)
+            if ctl is None:
+                raise Refusal(property_rules.no_property(span))
+            return Mode.UPON, *derived_response(checker.table, ctl, ticks, span)
+        case WrittenMonitor(span=span):
+            if ctl is None:
+                raise Refusal(property_rules.nothing_written(span))
+            return normalised(linear_form(ctl, span, checker.table.time))
+
+
+def _property(checker: Checker, item: RequirementItem) -> Property | None:
+    for clause in _clauses(item, PropertyClause):
+        found = checked_property(checker, item.name.text, clause.formula)
+        if found is None:
+            raise Reported
+        return found
+    return None
+
+
+def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts) -> Parts:
+    """Trigger and consequent with the `scope` clause worked in."""
+    mode, trigger, consequent = parts
+    for clause in _clauses(item, ScopeClause):
+        ends = [
+            None if expression is None else present(checker.formula(expression, outer))
+            for expression in (clause.opening, clause.closing)
+        ]
+        if end_part(trigger):
+            raise Refusal(rules.end_in_scope(clause.span))
+        owed = scoped_consequent(consequent, ends[1], must_close=clause.must_close)
+        return mode, scoped_trigger(trigger, *ends), owed
+    return parts
+
+
+def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) -> Parts:
+    trigger = checker.top(body.trigger, outer)
+    consequent = checker.top(body.consequent, inner)
+    if trigger and (ahead := future_part(trigger)):
+        checker.report(rules.future_trigger(ahead.span or body.trigger.span))
+        raise Reported
+    if trigger is None or consequent is None:
+        raise Reported
+    alone = isinstance(trigger, BoundAtom) and body.mode is Mode.UPON
+    for formula, place in ((trigger, body.trigger), (consequent, body.consequent)):
+        end = end_part(formula)
+        if end and not (alone and formula is trigger):
+            raise Refusal(rules.end_not_alone(end.span or place.span))
+    _warn(checker, body, trigger, consequent)
+    return body.mode, trigger, consequent
+
+
+def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formula) -> None:
+    at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
+    instant = body.mode is Mode.UPON and not at_end and is_timeless(consequent)
+    if instant and not _on_purpose(body.consequent):
+        checker.report(rules.one_instant(body.consequent.span))
+    if mixed := mixed_disjunction(trigger):
+        pulse, level = mixed
+        place = body.trigger.span
+        checker.report(rules.mixed_trigger(pulse.span or place, level.span or place))
+
+
+def _warn_of_traps(
+    checker: Checker, item: RequirementItem, parts: Parts, captures: Iterable[Capture]
+) -> None:
+    mode, trigger, consequent = parts
+    time = checker.table.time
+    found = [*traps_at_trigger(trigger, consequent, time, item.span)]
+    if not any(_clauses(item, ScopeClause)):  # else the start is where the scope opens
+        found += traps_at_start(mode, trigger, consequent, item.span)
+    lets = zip(_clauses(item, LetClause), captures, strict=True)
+    found += capture_traps(mode, trigger, lets, time)
+    for one in found:
+        checker.report(one)
+
+
+def _at_start_by_mistake(expression: Expression, formula: Formula) -> bool:
+    """Whether a bare formula speaks of no time, and not of the start either."""
+    if _on_purpose(expression) or not is_timeless(formula):
+        return False
+    return not any(isinstance(part, BoundAtom) for part in subformulas(formula))
+
+
+def _on_purpose(expression: Expression) -> bool:
+    return isinstance(_ungrouped(expression), Immediately)
+
+
+def _ungrouped(expression: Expression) -> Expression:
+    while isinstance(expression, Group):
+        expression = expression.inner
+    return expression
+
+
+def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
+    policies = [str(policy) for policy in EndPolicy]
+    for clause in _clauses(item, AtEndClause):
+        if clause.policy.text in policies:
+            return EndPolicy(clause.policy.text)
+        checker.report(rules.unknown_policy(clause.policy.span, policies))
+    return EndPolicy.DEFAULT
+
+
+def _instances(checker: Checker, item: RequirementItem) -> tuple[ForEach | None, Scope]:
+    """The `for each` clause, and the scope of the trigger: what it names."""
+    for clause in _clauses(item, ForEachClause):
+        field = checker.table.field(clause.field.text)
+        if field is None:
+            checker.values((clause.field,), EVERYWHERE)
+            raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
+        local = Quantity(
+            Captured(clause.name.text),
+            unit=checker.table.units.get(clause.field.text, PLAIN),
+            integral=field.type.kind is Kind.INT,
+            labels=field.type.labels,
+            truth=field.type.kind is Kind.BOOL,
+        )
+        value = FieldValue(field.event, field.field)
+        return ForEach(clause.name.text, value), Scope({clause.name.text: local})
+    return None, EVERYWHERE
+
+
+def _captures(
+    checker: Checker, item: RequirementItem, outer: Scope
+) -> tuple[tuple[Capture, ...], Scope]:
+    """The `let` clauses, and the scope of the consequent: what they and `for each` name."""
+    captures = []
+    values, names = dict(outer.names), dict(outer.names)
+    for clause in _clauses(item, LetClause):
+        (value,) = checker.values((clause.value,), Scope(values))
+        if not isinstance(value, Quantity):
+            raise Refusal(type_rules.needs_number(clause.value.span))
+        node = node_of((value, clause.value.span))
+        captures.append(Capture(clause.name.text, node))
+        values[clause.name.text] = value  # both are of the trigger's instant
+        names[clause.name.text] = replace(value, node=Captured(clause.name.text), constant=None)
+    return tuple(captures), Scope(names)
+
+
+def _clauses(item: RequirementItem, kind: type[_C]) -> Iterable[_C]:
+    return (clause for clause in item.clauses if isinstance(clause, kind))

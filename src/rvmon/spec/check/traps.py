@@ -1,0 +1,170 @@
+"""Requirements that fail, or stay open, by their own wording on every run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.span import Span
+from rvmon.spec.checked.formula import (
+    Atom,
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Constant,
+    Formula,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.instant import FIRST, Facts, facts_of, truth_at
+from rvmon.spec.checked.specification import Capture, Mode, TimeModel
+from rvmon.spec.checked.tense import fields_in, is_pulse, subformulas
+from rvmon.spec.print.printer import format_duration, format_formula
+from rvmon.spec.rules import traps as rules
+from rvmon.spec.syntax.items import LetClause
+
+_FIRST = "at the first instant"
+_STEPS = frozenset((UnaryOp.RISE, UnaryOp.FALL))
+
+
+def traps_at_trigger(
+    trigger: Formula, consequent: Formula, time: TimeModel, span: Span
+) -> Iterator[Diagnostic]:
+    """What is owed at the trigger, and cannot hold there.
+
+    Args:
+        trigger: without what a scope adds.
+        consequent: the same.
+        time: the time model.
+        span: of the requirement, for what has no place of its own.
+    """
+    said = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
+    for part in _owed_at_once(consequent):
+        if truth_at(part, {}) is None:
+            yield from _at_trigger(part, said, time, part.span or span)
+
+
+def traps_at_start(
+    mode: Mode, trigger: Formula, consequent: Formula, span: Span
+) -> Iterator[Diagnostic]:
+    """What is owed from the start of the run on, and cannot hold there.
+
+    Args:
+        mode: of the requirement.
+        trigger: the same.
+        consequent: the same.
+        span: of the requirement, for what has no place of its own.
+    """
+    always = mode is Mode.WHENEVER and isinstance(trigger, Constant) and trigger.value
+    if not always and not (isinstance(trigger, BoundAtom) and trigger.bound is Bound.START):
+        return
+    for part in _owed_at_once(consequent):
+        place = part.span or span
+        if truth_at(part, {}) is not None:
+            continue
+        if always and isinstance(part, Unary) and part.op in _STEPS:
+            mend = "an edge is one instant: say what follows it, `upon … then …`"
+            when = "at the second instant at the latest" if part.op is UnaryOp.RISE else _FIRST
+            yield rules.false_at_first(place, when, mend)
+        elif truth_at(part, FIRST) is False:
+            yield rules.false_at_first(place, _FIRST, _later(part))
+
+
+def capture_traps(
+    mode: Mode,
+    trigger: Formula,
+    captures: Iterable[tuple[LetClause, Capture]],
+    time: TimeModel,
+) -> Iterator[Diagnostic]:
+    """Captured values that are not those that a reader takes them for.
+
+    Args:
+        mode: of the requirement.
+        trigger: the same.
+        captures: each as written, and checked.
+        time: the time model.
+    """
+    occurring = {name for name, truth in facts_of(trigger).items() if truth}
+    for clause, capture in captures:
+        for field in fields_in(capture.value):
+            if field.event not in occurring:
+                yield rules.no_value(clause.span, field.event)
+                break
+        else:
+            if mode is Mode.WHENEVER and not (is_pulse(trigger) and time is TimeModel.HELD):
+                shown = "" if isinstance(trigger, Constant) else format_formula(trigger)
+                yield rules.captured_once(clause.span, shown)
+
+
+def _owed_at_once(formula: Formula) -> Iterator[Formula]:
+    """The parts of what is owed that have to hold at the instant at which it is owed."""
+    match formula:
+        case Binary(op=BinaryOp.AND, left=left, right=right):
+            yield from _owed_at_once(left)
+            yield from _owed_at_once(right)
+        case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=window) if not (
+            window and window.low
+        ):
+            yield from _owed_at_once(operand)
+        case _:
+            yield formula
+
+
+def _at_trigger(part: Formula, said: Facts, time: TimeModel, place: Span) -> Iterator[Diagnostic]:
+    """A part of what is owed that is false by what the trigger says."""
+    if isinstance(part, Binary) and part.op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
+        left, right = truth_at(part.left, said), truth_at(part.right, said)
+        late = part.interval is not None and part.interval.low > 0
+        if left is False and (late or right is not True) and truth_at(part.left, {}) is None:
+            escape = "" if late or right is False else format_formula(part.right)
+            shown = format_formula(part.left)
+            yield rules.false_at_trigger(place, shown, escape, _from_later_on(part, time))
+    elif truth_at(part, said) is False:
+        mend = "let what is owed begin a tick later: `always[1 ns, …] …`"
+        if time is not TimeModel.HELD:
+            mend = "let what is owed begin at the next position: `next (…)`"
+        yield rules.false_at_trigger(place, format_formula(part), "", mend)
+
+
+def _from_later_on(part: Binary, time: TimeModel) -> str:
+    """`a until b` and `a unless b` that begin behind the trigger."""
+    if time is not TimeModel.HELD:
+        return f"let it begin at the next position: `next ({format_formula(part)})`"
+    low, high = (part.interval.low, part.interval.high) if part.interval else (0, None)
+    end = "inf)" if high is None else f"{format_duration(high)}]"
+    left, right = _operand(part.left), _operand(part.right)
+    later = f"{right} R[1 ns, {end} {left}"
+    if part.op is BinaryOp.UNTIL:
+        window = "" if not low and high is None else f"[{format_duration(low)}, {end}"
+        later = f"({later}) and eventually{window} {right}"
+    return f"let it begin a tick later: `{later}`"
+
+
+def _later(part: Formula) -> str:
+    """How what looks back is owed only where there is something to look at."""
+    due = max(map(_reach, subformulas(part)))
+    if not due:
+        return f"leave out the first instant: `start or {_operand(part)}`"
+    begin = format_duration(due)
+    return f"let it begin when so much has passed: `always[{begin}, inf) {_operand(part)}`"
+
+
+def _reach(part: Formula) -> int:
+    """How long ago the latest instant is that an operator looks at, ticks."""
+    match part:
+        case Unary(op=UnaryOp.HELD, interval=window) if window is not None:
+            return window.high or 0
+        case Unary(op=UnaryOp.ONCE, interval=window) if window is not None:
+            return window.low
+        case Binary(op=BinaryOp.SINCE, interval=window) if window is not None:
+            return window.low
+        case _:
+            return 0
+
+
+def _operand(formula: Formula) -> str:
+    """A formula as it stands beside an operator of time."""
+    text = format_formula(formula)
+    is_call = isinstance(formula, Unary) and formula.op in (_STEPS | {UnaryOp.HELD})
+    return text if is_call or isinstance(formula, Atom) else f"({text})"

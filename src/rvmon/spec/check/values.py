@@ -1,0 +1,74 @@
+"""What an expression stands for while it is checked, and where its names are looked up."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from rvmon.spec.checked.formula import Formula, Numeric
+from rvmon.spec.checked.specification import Event, Signal, Type
+from rvmon.spec.syntax.expressions import Expression
+from rvmon.spec.syntax.items import ConstItem, DefineItem
+from rvmon.spec.syntax.unit import PLAIN, Unit
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number or label with its unit.
+
+    Attributes:
+        node: what yields it at run time; `None` if it is a constant.
+        constant: the exact value in `unit` if it is a constant.
+        unit: of the value.
+        integral: whether all values are whole numbers by type.
+        labels: the labels it may take, if it is one.
+        truth: whether it is a bool, for which 0 and 1 stand.
+    """
+
+    node: Numeric | None = None
+    constant: Fraction | None = None
+    unit: Unit = PLAIN
+    integral: bool = False
+    labels: tuple[str, ...] = ()
+    truth: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Age:
+    """`age(x)`: the time since the last update; only compared with durations."""
+
+    name: str
+
+
+Value = Formula | Quantity | Age
+
+
+@dataclass(frozen=True, slots=True)
+class Closure:
+    """A macro's argument: an expression that keeps the names of the place it was written at."""
+
+    expression: Expression
+    scope: Scope
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The names that hold inside a macro or requirement, besides those of the file."""
+
+    names: Mapping[str, Closure | Quantity] = field(default_factory=dict)
+
+
+EVERYWHERE = Scope()
+"""Only the names of the file."""
+
+Declaration = Signal | Event | DefineItem | ConstItem
+
+
+@dataclass(frozen=True, slots=True)
+class FieldOf:
+    """A payload field that a dotted name stands for."""
+
+    event: str
+    field: str
+    type: Type

@@ -1,0 +1,1 @@
+"""Specifications whose names, types and units are settled: data, and what is read off them."""

@@ -1,0 +1,223 @@
+"""Formulas and numbers whose names, types and units are settled.
+
+Macros and constants are expanded, durations are ticks, intervals are closed. `age(x) > D` and its
+kin are rewritten with `updated(x)` and past operators. Operators are otherwise as written; their
+meaning is SEMANTICS 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from rvmon.diagnostics.span import Span
+from rvmon.spec.checked.arithmetic import NumericOp
+
+if TYPE_CHECKING:
+    pass
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """The closed interval `[low, high]` of durations in ticks; `high` is `None` if unbounded."""
+
+    low: int = 0
+    high: int | None = None
+
+
+# Numeric (and label) expressions, evaluated in Python floats, ints or strings.
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A number in the unit that the comparison is made in, or a label.
+
+    Attributes:
+        value: the number or label.
+        unit: that unit's symbol, for people; "" if it has none.
+    """
+
+    value: float | int | str
+    unit: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SignalValue:
+    """The held value of an int, real or label signal (bool: False is 0, True is 1)."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class FieldValue:
+    """A payload field of an event; only meaningful where the event occurs."""
+
+    event: str
+    field: str
+
+
+@dataclass(frozen=True, slots=True)
+class Captured:
+    """A value captured by `let` at the trigger, or the instance value of `for each`."""
+
+    name: str
+
+
+class UpdateFunction(StrEnum):
+    """Functions of a signal's last two updates (SEMANTICS 2)."""
+
+    PREV = "prev"
+    DELTA = "delta"
+    RATE = "rate"
+
+
+@dataclass(frozen=True, slots=True)
+class UpdateValue:
+    """`prev(x)`, `delta(x)` or `rate(x)` (per second); unknown before the second update."""
+
+    function: UpdateFunction
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """An operation on numbers; a result that is no number (0/0, sqrt(-1), overflow) is unknown."""
+
+    op: NumericOp
+    args: tuple[Numeric, ...]
+
+
+Numeric = Literal | SignalValue | FieldValue | Captured | UpdateValue | Arithmetic
+
+
+class CompareOp(StrEnum):
+    """Comparisons of numbers; labels know only `==` and `!=`."""
+
+    LT = "<"
+    LE = "<="
+    EQ = "=="
+    NE = "!="
+    GE = ">="
+    GT = ">"
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """`true` or `false`."""
+
+    value: bool
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SignalAtom:
+    """A bool signal as a proposition."""
+
+    name: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class EventAtom:
+    """An event: true at the ticks at which it was published."""
+
+    name: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """A comparison; one that reads fields of an event `e` means `e and comparison`."""
+
+    op: CompareOp
+    left: Numeric
+    right: Numeric
+    span: Span | None = None
+
+
+class Probe(StrEnum):
+    """Propositions about the updates of a signal (or event, for `updated`)."""
+
+    KNOWN = "known"
+    UPDATED = "updated"
+    CHANGED = "changed"
+
+
+@dataclass(frozen=True, slots=True)
+class ProbeAtom:
+    """`known(x)`, `updated(x)` (two-valued) or `changed(x)` (an update with another value)."""
+
+    probe: Probe
+    name: str
+    span: Span | None = None
+
+
+class Bound(StrEnum):
+    """The two ends of a trace as propositions; `end` stands only alone, as a trigger."""
+
+    START = "start"
+    END = "end"
+
+
+@dataclass(frozen=True, slots=True)
+class BoundAtom:
+    """`start` is true at the first position; `end` when the trace is finished."""
+
+    bound: Bound
+    span: Span | None = None
+
+
+class UnaryOp(StrEnum):
+    """Unary operators; those of time but `X Y rise fall` carry an interval (`held` is [0, D])."""
+
+    NOT = "!"
+    NEXT = "X"
+    EVENTUALLY = "F"
+    ALWAYS = "G"
+    PREVIOUS = "Y"
+    ONCE = "O"
+    HISTORICALLY = "H"
+    RISE = "rise"
+    FALL = "fall"
+    HELD = "held"
+
+
+class BinaryOp(StrEnum):
+    """Binary operators; those of time carry an interval."""
+
+    AND = "and"
+    OR = "or"
+    IMPLIES = "->"
+    IFF = "<->"
+    XOR = "xor"
+    UNTIL = "U"
+    RELEASE = "R"
+    WEAK_UNTIL = "W"
+    STRONG_RELEASE = "M"
+    SINCE = "S"
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """An operator on one formula; `interval` is `None` exactly where the operator has none."""
+
+    op: UnaryOp
+    operand: Formula
+    interval: Interval | None = None
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """An operator on two formulas; `interval` is `None` exactly where the operator has none."""
+
+    op: BinaryOp
+    left: Formula
+    right: Formula
+    interval: Interval | None = None
+    span: Span | None = None
+
+
+Atom = Constant | SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
+Formula = Atom | Unary | Binary

@@ -1,0 +1,111 @@
+"""Checked specifications as plain data, and back.
+
+Nothing but the classes of a checked specification is made of it, and nothing is executed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from functools import cache
+from types import ModuleType
+from typing import Any
+
+from rvmon.diagnostics import diagnostic, span
+from rvmon.diagnostics.span import Source
+from rvmon.spec.checked import formula, specification
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.trace import schema
+
+
+def _class_named(name: str) -> type | None:
+    """The class that a specification or its warnings are made of; `None` if there is none."""
+    return _classes().get(name) or _rarer_classes().get(name)
+
+
+@cache
+def _classes() -> Mapping[str, type]:
+    modules = (formula, specification, span, diagnostic, schema)
+    return {"NumericOp": NumericOp, **dict(_own_classes(*modules))}
+
+
+@cache
+def _rarer_classes() -> Mapping[str, type]:
+    """Those of properties and goals, which few specifications have."""
+    from rvmon.spec.checked import ctl, goals
+
+    return dict(_own_classes(ctl, goals))
+
+
+def _own_classes(*modules: ModuleType) -> Iterator[tuple[str, type]]:
+    for module in modules:
+        for name, one in vars(module).items():
+            if isinstance(one, type) and one.__module__ == module.__name__:
+                yield name, one
+
+
+def stored(value: Any) -> Any:
+    """A value as lists, numbers and texts; each source stands in it once.
+
+    Raises:
+        TypeError: something in it is of no class of a specification.
+
+    >>> restored(stored((1, "a", None))) == (1, "a", None)
+    True
+    """
+    sources: dict[int, int] = {}
+    return _stored(value, sources)
+
+
+def _stored(value: Any, sources: dict[int, int]) -> Any:
+    if value is None or type(value) in (bool, int, float, str):
+        return value
+    if isinstance(value, Source):
+        if id(value) in sources:
+            return ["same", sources[id(value)]]
+        sources[id(value)] = len(sources)
+    name = type(value).__name__
+    if isinstance(value, Enum) and _class_named(name) is type(value):
+        return [name, value.name]
+    if is_dataclass(value) and _class_named(name) is type(value):
+        return [name, *(_stored(getattr(value, one.name), sources) for one in fields(value))]
+    if isinstance(value, Mapping):
+        pairs = ([_stored(key, sources), _stored(own, sources)] for key, own in value.items())
+        return ["dict", *pairs]
+    if type(value) in (tuple, frozenset):
+        return [name, *(_stored(one, sources) for one in value)]
+    raise TypeError(f"a {name} is no part of a specification")
+
+
+def restored(data: Any) -> Any:
+    """The value that was stored.
+
+    Raises:
+        ValueError, LookupError, TypeError: the data are no such value.
+    """
+    return _restored(data, [])
+
+
+def _restored(data: Any, sources: list[Source]) -> Any:
+    if not isinstance(data, list):
+        return data
+    name, *rest = data
+    match name:
+        case "same":
+            return sources[rest[0]]
+        case "dict":
+            return {_restored(key, sources): _restored(own, sources) for key, own in rest}
+        case "tuple":
+            return tuple([_restored(one, sources) for one in rest])
+        case "frozenset":
+            return frozenset(_restored(one, sources) for one in rest)
+    class_ = _class_named(name)
+    if class_ is None:
+        raise LookupError(f"no class `{name}`")
+    if issubclass(class_, Enum):
+        return class_[rest[0]]
+    made = class_(*[_restored(one, sources) for one in rest])
+    if isinstance(made, Source):
+        sources.append(made)
+    return made

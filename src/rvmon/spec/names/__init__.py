@@ -1,0 +1,1 @@
+"""What names stand for: each is declared once, no definition goes round, all are used."""

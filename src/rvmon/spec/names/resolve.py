@@ -1,0 +1,134 @@
+"""From items to names: every name is declared once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeVar, assert_never
+
+from rvmon.spec.names.resolved import Declared, DeclaredEvent, DeclaredSignal, ResolvedSpec
+from rvmon.spec.rules import names as rules
+from rvmon.spec.rules.findings import Findings
+from rvmon.spec.syntax.expressions import Ident
+from rvmon.spec.syntax.items import (
+    ConstItem,
+    CoverItem,
+    CoverpointItem,
+    CrossItem,
+    DefineItem,
+    DelayItem,
+    EventItem,
+    Header,
+    ImportItem,
+    Item,
+    ParsedSpec,
+    PropertyItem,
+    RequirementItem,
+    SignalItem,
+    TimeItem,
+)
+from rvmon.spec.syntax.words import FUNCTIONS
+
+_K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
+
+
+def resolve(parsed: Sequence[ParsedSpec], findings: Findings) -> ResolvedSpec:
+    """Gather the declarations of a file and of those it imports.
+
+    Args:
+        parsed: the main file first.
+        findings: takes names that are declared twice.
+
+    Returns:
+        The specification with the first declaration of every name.
+    """
+    resolver = _Resolver(findings)
+    for number, file in enumerate(parsed):
+        for item in file.items:
+            if number == 0 or not isinstance(item, Header):
+                resolver.add(item)
+    once = resolver.once
+    return ResolvedSpec(
+        tuple(file.source for file in parsed),
+        *(once.get(Header), once.get(TimeItem), once.get(DelayItem)),  # type: ignore[arg-type]
+        resolver.declared,
+        resolver.requirements,
+        resolver.properties,
+        resolver.covers,
+        resolver.coverpoints,
+        resolver.crosses,
+        frozenset(resolver.doubled).union(*(file.doubtful for file in parsed)),
+    )
+
+
+class _Resolver:
+    def __init__(self, findings: Findings) -> None:
+        self.doubled: set[str] = set()
+        self._findings = findings
+        self.once: dict[type, Header | TimeItem | DelayItem] = {}
+        self.declared: dict[str, Declared] = {}
+        self.requirements: dict[str, RequirementItem] = {}
+        self.properties: dict[str, PropertyItem] = {}
+        self.covers: dict[str, CoverItem] = {}
+        self.coverpoints: dict[str, CoverpointItem] = {}
+        self.crosses: dict[str, CrossItem] = {}
+        self._first: dict[tuple[str, str], Ident] = {}
+
+    def add(self, item: Item) -> None:
+        match item:
+            case Header() | TimeItem() | DelayItem():
+                earlier = self.once.setdefault(type(item), item)
+                if earlier is not item:
+                    word = item.span.text.split(maxsplit=1)[0]
+                    self._findings.add(rules.double_item(word, item.span, earlier.span))
+            case SignalItem(names=names):
+                for name in names:
+                    self._declare(
+                        DeclaredSignal(name, item.type, item.role, item.ignored, item.stale_after)
+                    )
+            case EventItem(events=events):
+                for event in events:
+                    self._declare(DeclaredEvent(event.name, event, item.role))
+            case DefineItem(parameters=parameters):
+                for number, parameter in enumerate(parameters or ()):
+                    self._once_among(parameter, (parameters or ())[:number], "parameter")
+                self._declare(item)
+            case ConstItem():
+                self._declare(item)
+            case RequirementItem():
+                self._keep(self.requirements, item)
+            case PropertyItem():
+                self._keep(self.properties, item)
+            case CoverItem():
+                self._keep(self.covers, item)
+            case CoverpointItem():
+                self._keep(self.coverpoints, item)
+            case CrossItem():
+                self._keep(self.crosses, item)
+            case ImportItem():
+                pass  # its file is among those given
+            case _:
+                assert_never(item)
+
+    def _keep(self, kept: dict[str, _K], item: _K) -> None:
+        if self._is_new("requirement", item.name):
+            kept[item.name.text] = item
+
+    def _declare(self, declared: Declared) -> None:
+        name = declared.name
+        if name.text in FUNCTIONS and isinstance(declared, DefineItem):
+            self._findings.add(rules.built_in(name.span))
+        if self._is_new("name", name):
+            self.declared[name.text] = declared
+        else:
+            self.doubled.add(name.text)
+
+    def _once_among(self, name: Ident, others: Sequence[Ident], kind: str) -> None:
+        for other in others:
+            if other.text == name.text:
+                self._findings.add(rules.double(name.text, kind, name.span, other.span))
+
+    def _is_new(self, kind: str, name: Ident) -> bool:
+        first = self._first.setdefault((kind, name.text), name)
+        if first is not name:
+            self._findings.add(rules.double(name.text, kind, name.span, first.span))
+        return first is name

@@ -1,0 +1,1 @@
+"""Formulas as text, and the canonical layout of a file."""

@@ -1,0 +1,129 @@
+"""Pieces to lines: spaces, breaks, comments."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+
+from rvmon.spec.print.format_words import Piece
+
+WIDTH = 100
+"""Longer lines are broken where operators or commas allow it."""
+
+_OPERATORS = (
+    ("LEADS_TO",),
+    ("IFF",),
+    ("IMPLIES",),
+    ("OR",),
+    ("XOR",),
+    ("AND",),
+    ("INFIX",),
+)
+"""Where long formulas are broken: the loosest operator first."""
+
+_NO_SPACE_AFTER = ("LPAR", "LSQB", "LBRACE", "CALL")
+_NO_SPACE_BEFORE = ("RPAR", "RSQB", "RBRACE", "COMMA", "COLON")
+_TAKES_WINDOW = ("TEMPORAL", "INFIX", "PATH", "CTL", "QUANTIFIER", "LEADS_TO")
+_PLAIN = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?")
+_OPERANDS = ("NAME", "NUMBER", "RPAR", "RSQB", "TRUTH", "START", "END", "STRING")
+
+
+def lines_of(pieces: Sequence[Piece], indent: int) -> list[str]:
+    """Lay out what belongs on one line, in several lines if it is long or holds comments.
+
+    Args:
+        pieces: at least one.
+        indent: columns before the first line; further lines have two more.
+    """
+    lines: list[str] = []
+    step = indent
+    for segment in _segments(pieces):
+        lines += [" " * step + comment for comment in segment[0].above]
+        lines += _wrapped(segment, step)
+        if segment[-1].behind:
+            lines[-1] += f"  {segment[-1].behind}"
+        step = indent + 2
+    return lines
+
+
+def text_of(pieces: Sequence[Piece]) -> str:
+    """Pieces on one line."""
+    if not pieces:
+        return ""
+    text = pieces[0].text
+    before = ""
+    for left, right in pairwise(pieces):
+        unary = left.kind == "MINUS" and before not in _OPERANDS
+        text += ("" if unary or not _spaced(left, right) else " ") + right.text
+        before = left.kind
+    return text
+
+
+def _spaced(left: Piece, right: Piece) -> bool:
+    if left.kind in _NO_SPACE_AFTER or right.kind in _NO_SPACE_BEFORE:
+        return False
+    window = right.kind == "LSQB" or right.opens_window
+    return not (window and left.kind in _TAKES_WINDOW)
+
+
+def _segments(pieces: Sequence[Piece]) -> list[list[Piece]]:
+    """Cut before comments on their own line, behind those that end a line, and where it matters."""
+    segments = [[pieces[0]]]
+    for left, right in pairwise(pieces):
+        if left.behind or right.above or _would_be_unit(left, right):
+            segments.append([])
+        segments[-1].append(right)
+    return segments
+
+
+def _would_be_unit(left: Piece, right: Piece) -> bool:
+    """Whether a name would be read as the unit of the number before it, on one line."""
+    plain = left.kind == "NUMBER" and _PLAIN.fullmatch(left.text) is not None
+    return plain and right.kind in ("NAME", "CALL")
+
+
+def _wrapped(pieces: Sequence[Piece], indent: int) -> list[str]:
+    line = " " * indent + text_of(pieces)
+    if len(line) <= WIDTH or len(pieces) == 1:
+        return [line]
+    parts = _cut_at_operators(pieces) or _cut_at_commas(pieces, indent)
+    if len(parts) < 2:
+        return [line]
+    lines = _wrapped(parts[0], indent)
+    for part in parts[1:]:
+        lines += _wrapped(part, indent + 2)
+    return lines
+
+
+def _cut_at_operators(pieces: Sequence[Piece]) -> list[Sequence[Piece]]:
+    """Cut before the loosest operators that stand within the fewest brackets."""
+    kinds = {kind for group in _OPERATORS for kind in group}
+    inner = pieces[1:]
+    depths = [piece.depth for piece in inner if piece.kind in kinds]
+    if not depths:
+        return []
+    depth = min(depths)
+    for group in _OPERATORS:
+        cuts = [
+            number
+            for number, piece in enumerate(inner, 1)
+            if piece.kind in group and piece.depth == depth
+        ]
+        if cuts:
+            return [pieces[a:b] for a, b in pairwise([0, *cuts, len(pieces)])]
+    return []
+
+
+def _cut_at_commas(pieces: Sequence[Piece], indent: int) -> list[Sequence[Piece]]:
+    """Cut behind the last comma of the fewest brackets that still fits on the line."""
+    depths = [piece.depth for piece in pieces[:-1] if piece.kind == "COMMA"]
+    if not depths:
+        return []
+    best = 0
+    for number, piece in enumerate(pieces[:-1], 1):
+        if piece.kind == "COMMA" and piece.depth == min(depths):
+            fits = indent + len(text_of(pieces[:number])) <= WIDTH
+            if best == 0 or fits:
+                best = number
+    return [pieces[:best], pieces[best:]]

@@ -1,0 +1,256 @@
+"""Checked formulas as text of the language, with as few brackets as it takes."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from typing import assert_never
+
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
+    Arithmetic,
+    Binary,
+    BinaryOp,
+    BoundAtom,
+    Captured,
+    Compare,
+    Constant,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Interval,
+    Literal,
+    Numeric,
+    ProbeAtom,
+    SignalAtom,
+    SignalValue,
+    Unary,
+    UnaryOp,
+    UpdateValue,
+)
+from rvmon.spec.syntax.words import RESERVED
+from rvmon.trace.time import TICKS_PER_UNIT
+
+_PREFIX = {
+    UnaryOp.NOT: "not",
+    UnaryOp.NEXT: "next",
+    UnaryOp.EVENTUALLY: "eventually",
+    UnaryOp.ALWAYS: "always",
+    UnaryOp.PREVIOUS: "previous",
+    UnaryOp.ONCE: "once",
+    UnaryOp.HISTORICALLY: "historically",
+}
+_INFIX = {
+    BinaryOp.AND: "and",
+    BinaryOp.OR: "or",
+    BinaryOp.XOR: "xor",
+    BinaryOp.IMPLIES: "->",
+    BinaryOp.IFF: "<->",
+    BinaryOp.UNTIL: "until",
+    BinaryOp.RELEASE: "R",
+    BinaryOp.WEAK_UNTIL: "unless",
+    BinaryOp.STRONG_RELEASE: "M",
+    BinaryOp.SINCE: "since",
+}
+_LEVEL = {
+    BinaryOp.IFF: 0,
+    BinaryOp.IMPLIES: 1,
+    BinaryOp.OR: 2,
+    BinaryOp.XOR: 3,
+    BinaryOp.AND: 4,
+    BinaryOp.UNTIL: 5,
+    BinaryOp.RELEASE: 5,
+    BinaryOp.WEAK_UNTIL: 5,
+    BinaryOp.STRONG_RELEASE: 5,
+    BinaryOp.SINCE: 5,
+}
+_UNARY_LEVEL = 6
+_CHAINED = (BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.IFF)
+_SUM, _PRODUCT, _NEGATIVE, _OPERAND = 0, 1, 2, 3
+_ARITHMETIC = {
+    NumericOp.ADD: _SUM,
+    NumericOp.SUB: _SUM,
+    NumericOp.MUL: _PRODUCT,
+    NumericOp.DIV: _PRODUCT,
+    NumericOp.NEG: _NEGATIVE,
+}
+
+
+def format_formula(formula: Formula) -> str:
+    """A checked formula in the words of the language.
+
+    >>> format_formula(Unary(UnaryOp.EVENTUALLY, EventAtom("released"), Interval(0, 3 * 10**9)))
+    'within 3 s released'
+    """
+    return _formula(formula, 0)
+
+
+def format_numeric(numeric: Numeric) -> str:
+    """A checked number or label in the words of the language.
+
+    >>> format_numeric(Arithmetic(NumericOp.SUB, (SignalValue("x"), Literal(0.5, "m"))))
+    'x - 0.5 m'
+    """
+    return _numeric(numeric, _SUM)
+
+
+def format_duration(ticks: int) -> str:
+    """Ticks in the largest unit of which they are a whole number.
+
+    >>> [format_duration(ticks) for ticks in (3 * 10**9, 200_000_000, 90 * 10**9, 7, 0)]
+    ['3 s', '200 ms', '90 s', '7 ns', '0 s']
+    """
+    if ticks == 0:
+        return "0 s"
+    unit, size = max(
+        ((unit, size) for unit, size in TICKS_PER_UNIT.items() if ticks % size == 0),
+        key=lambda pair: pair[1],
+    )
+    return f"{ticks // size} {unit}"
+
+
+def _formula(formula: Formula, level: int) -> str:
+    """The formula, in brackets if it binds more loosely than `level`."""
+    match formula:
+        case Constant(value=value):
+            return "true" if value else "false"
+        case SignalAtom(name=name) | EventAtom(name=name):
+            return _name(name)
+        case ProbeAtom(probe=probe, name=name):
+            return f"{probe}({_name(name)})"
+        case BoundAtom(bound=bound):
+            return str(bound)
+        case Compare(left=left, right=Literal(value=bool())):  # a bool payload field and its kin
+            return format_numeric(left)
+        case Compare(op=op, left=left, right=right):
+            return f"{format_numeric(left)} {op} {format_numeric(right)}"
+        case Unary():
+            return _unary(formula)
+        case Binary(op=op):
+            text = _binary(formula)
+            return f"({text})" if _LEVEL[op] < level else text
+        case _:
+            assert_never(formula)
+
+
+def _unary(formula: Unary) -> str:
+    match formula.op:
+        case UnaryOp.RISE | UnaryOp.FALL:
+            return f"{formula.op}({_formula(formula.operand, 0)})"
+        case UnaryOp.HELD:
+            length = (formula.interval or Interval()).high or 0
+            return f"held({_formula(formula.operand, 0)}, {format_duration(length)})"
+        case op:
+            operand = _formula(formula.operand, _UNARY_LEVEL)
+            return f"{_operator(op, formula.interval)} {operand}"
+
+
+def _operator(op: UnaryOp, interval: Interval | None) -> str:
+    if interval is not None and interval.low == 0 and interval.high is not None:
+        if op is UnaryOp.EVENTUALLY:
+            return f"within {format_duration(interval.high)}"
+        if op is UnaryOp.ALWAYS:
+            return f"for {format_duration(interval.high)}"
+    return _PREFIX[op] + _window(interval)
+
+
+def _window(interval: Interval | None) -> str:
+    if interval is None or interval == Interval():
+        return ""
+    low = format_duration(interval.low) if interval.low else "0"
+    if interval.high is None:
+        return f"[{low}, inf)"
+    return f"[{low}, {format_duration(interval.high)}]"
+
+
+def _binary(formula: Binary) -> str:
+    op = formula.op
+    level = _LEVEL[op]
+    if op in _CHAINED:
+        operands = _chain(formula, op)
+        texts = [_left(operand, level + 1) for operand in operands[:-1]]
+        return f" {_INFIX[op]} ".join((*texts, _formula(operands[-1], level + 1)))
+    right = formula.right
+    same = isinstance(right, Binary) and right.op is op
+    right_level = level if same else level + 1
+    left = _left(formula.left, level + 1)
+    return f"{left} {_INFIX[op]}{_window(formula.interval)} {_formula(right, right_level)}"
+
+
+def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:
+    """The operands of an associative connective, left to right."""
+    operands = []
+    waiting = [formula]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, Binary) and node.op is op:
+            waiting += (node.right, node.left)
+        else:
+            operands.append(node)
+    return operands
+
+
+def _left(formula: Formula, level: int) -> str:
+    """A left operand: in brackets also if a temporal prefix would stand before the connective."""
+    edge = formula
+    while True:
+        match edge:
+            case Unary(op=UnaryOp.NOT, operand=operand):
+                edge = operand
+            case Binary(op=op, right=right) if _LEVEL[op] >= level:
+                edge = right
+            case _:
+                break
+    prefixed = isinstance(edge, Unary) and edge.op in _PREFIX and edge.op is not UnaryOp.NOT
+    return f"({_formula(formula, 0)})" if prefixed else _formula(formula, level)
+
+
+def _numeric(numeric: Numeric, level: int) -> str:
+    match numeric:
+        case Literal():
+            return _literal(numeric, level)
+        case SignalValue(name=name) | Captured(name=name):
+            return _name(name)
+        case FieldValue(event=event, field=field):
+            return _name(f"{event}.{field}")
+        case UpdateValue(function=function, name=name):
+            return f"{function}({_name(name)})"
+        case Arithmetic():
+            own = _ARITHMETIC.get(numeric.op, _OPERAND)
+            text = _arithmetic(numeric)
+            return f"({text})" if own < level else text
+        case _:
+            assert_never(numeric)
+
+
+def _arithmetic(numeric: Arithmetic) -> str:
+    match numeric.op:
+        case NumericOp.ADD | NumericOp.SUB:
+            left, right = numeric.args
+            return f"{_numeric(left, _SUM)} {numeric.op} {_numeric(right, _PRODUCT)}"
+        case NumericOp.MUL | NumericOp.DIV:
+            left, right = numeric.args
+            return f"{_numeric(left, _PRODUCT)} {numeric.op} {_numeric(right, _NEGATIVE)}"
+        case NumericOp.NEG:
+            return f"-{_numeric(numeric.args[0], _NEGATIVE)}"
+        case op:
+            return f"{op}({', '.join(_numeric(arg, _SUM) for arg in numeric.args)})"
+
+
+def _literal(literal: Literal, level: int) -> str:
+    if isinstance(literal.value, str):
+        return _name(literal.value)
+    text = format(Decimal(repr(literal.value)).normalize(), "f")
+    if len(text) > 20:
+        text = repr(literal.value)
+    if literal.unit.startswith("1/"):  # a number has no such unit, but its quotient does
+        text = f"{text} / 1 {literal.unit[2:].replace('/', '*')}"
+        return f"({text})" if level > _PRODUCT else text
+    if literal.unit:
+        text = f"{text} {literal.unit}"
+    return f"({text})" if literal.value < 0 and level > _NEGATIVE else text
+
+
+def _name(name: str) -> str:
+    """A name, in quotes if it would be read as something else."""
+    plain = all(part.isidentifier() for part in name.split("."))
+    return name if plain and name not in RESERVED else f"`{name}`"

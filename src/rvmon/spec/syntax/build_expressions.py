@@ -1,0 +1,241 @@
+# ruff: noqa: D102, ARG002 - each method is named for a rule of the grammar
+"""From the parser's tree of an expression to the syntax tree."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from lark import Token
+from lark.tree import Meta
+from lark.visitors import Transformer_NonRecursive, v_args
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.span import Source, Span
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
+from rvmon.spec.rules import syntax as rules
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.syntax.expressions import (
+    Call,
+    Comparison,
+    Edge,
+    Expression,
+    Group,
+    Ident,
+    Immediately,
+    Infix,
+    LeadsTo,
+    Name,
+    Number,
+    Operation,
+    Path,
+    Prefix,
+    Quantified,
+    Truth,
+    Window,
+)
+
+_PREFIX = {
+    "next": UnaryOp.NEXT,
+    "eventually": UnaryOp.EVENTUALLY,
+    "always": UnaryOp.ALWAYS,
+    "previous": UnaryOp.PREVIOUS,
+    "once": UnaryOp.ONCE,
+    "historically": UnaryOp.HISTORICALLY,
+}
+_INFIX = {
+    "until": BinaryOp.UNTIL,
+    "since": BinaryOp.SINCE,
+    "unless": BinaryOp.WEAK_UNTIL,
+    "implies": BinaryOp.IMPLIES,
+}
+_CHAIN = {
+    "AND": BinaryOp.AND,
+    "OR": BinaryOp.OR,
+    "XOR": BinaryOp.XOR,
+    "IFF": BinaryOp.IFF,
+}
+_T = TypeVar("_T")
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
+_LARGEST = 400
+"""Numbers with more digits before the point, or more zeros behind it, are out of range."""
+
+Children = list[Any]
+
+
+@v_args(meta=True)
+class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
+    """Makes the syntax tree of expressions; each method is named for a rule of `rv.lark`.
+
+    Args:
+        source: the file.
+        offset: where the text given to the parser starts in it.
+
+    Attributes:
+        findings: what is wrong with the way the item is written.
+    """
+
+    def __init__(self, source: Source, offset: int) -> None:
+        super().__init__()
+        self.findings: list[Diagnostic] = []
+        self._source = source
+        self._offset = offset
+
+    def span(self, place: Meta | Token) -> Span:
+        """The place of a token or rule in the file."""
+        if isinstance(place, Token):
+            start, end = place.start_pos or 0, place.end_pos or 0
+        else:
+            start, end = place.start_pos, place.end_pos
+        return Span(self._source, self._offset + start, self._offset + end)
+
+    def ident(self, token: Token) -> Ident:
+        """A name with its place."""
+        return Ident(unquoted(token), self.span(token))
+
+    def called(self, token: Token) -> Ident:
+        """The name in a token that ends with its bracket."""
+        span = self.span(token)
+        return Ident(token[:-1], Span(span.source, span.start, span.end - 1))
+
+    def number(self, meta: Meta, children: Children) -> Number:
+        text = str(children[0])
+        digits = text[: _NUMBER.match(text).end()]  # type: ignore[union-attr]  # terminal NUMBER
+        decimal = Decimal(digits)
+        small = abs(decimal.adjusted()) <= _LARGEST and len(digits) <= 2 * _LARGEST
+        value = Fraction(decimal) if small or not decimal else None
+        return Number(value, text[len(digits) :].strip(), self.span(meta))
+
+    def name(self, meta: Meta, children: Children) -> Name:
+        return Name(unquoted(children[0]), self.span(meta))
+
+    def truth(self, meta: Meta, children: Children) -> Truth:
+        return Truth(children[0] == "true", self.span(meta))
+
+    def edge(self, meta: Meta, children: Children) -> Edge:
+        return Edge(Bound(children[0]), self.span(meta))
+
+    def call(self, meta: Meta, children: Children) -> Call:
+        token, *args = children
+        return Call(self.called(token), tuple(args), self.span(meta))
+
+    def group(self, meta: Meta, children: Children) -> Group:
+        return Group(children[0], self.span(meta))
+
+    def minus(self, meta: Meta, children: Children) -> Operation:
+        return Operation(NumericOp.NEG, (children[1],), self.span(meta))
+
+    def arithmetic(self, meta: Meta, children: Children) -> Operation:
+        left, op, right = children
+        return Operation(NumericOp.of(str(op)), (left, right), self.span(meta))
+
+    def comparison(self, meta: Meta, children: Children) -> Comparison:
+        if len(children) > 3:
+            left, first, middle, second, right, *_ = children
+            raise Refusal(rules.comparison_chain(left.span, first, middle.span, second, right.span))
+        left, op, right = children
+        compare = CompareOp("==" if op == "=" else str(op))
+        return Comparison(compare, left, right, self.span(op), self.span(meta))
+
+    def prefix(self, meta: Meta, children: Children) -> Prefix | Immediately:
+        token, *window, operand = children
+        if token.type == "IMMEDIATELY":
+            return Immediately(operand, self.span(meta))
+        op = UnaryOp.NOT if token.type == "NOT" else _PREFIX.get(token) or UnaryOp(str(token))
+        return Prefix(op, operand, first_of(window), self.span(token), self.span(meta))
+
+    def bounded(self, meta: Meta, children: Children) -> Prefix:
+        token, bound, operand = children
+        op = UnaryOp.EVENTUALLY if token.type == "WITHIN" else UnaryOp.ALWAYS
+        window = Window(None, bound, False, False, bound.span)
+        return Prefix(op, operand, window, self.span(token), self.span(meta))
+
+    def chain(self, meta: Meta, children: Children) -> Infix:
+        operands, tokens = children[::2], children[1::2]
+        for operand in operands[:-1]:
+            self._check_reach(operand, operands[-1])
+        infix: Infix = self._balanced(operands, tokens)
+        return infix
+
+    def _balanced(self, operands: Sequence[Any], tokens: Sequence[Token]) -> Any:
+        """All four connectives are associative, so a long chain need not become a deep tree."""
+        if len(operands) == 1:
+            return operands[0]
+        middle = (len(operands) + 1) // 2
+        left = self._balanced(operands[:middle], tokens[: middle - 1])
+        right = self._balanced(operands[middle:], tokens[middle:])
+        token = tokens[middle - 1]
+        span = left.span.to(right.span)
+        return Infix(_CHAIN[token.type], left, right, None, self.span(token), span)
+
+    def infix(self, meta: Meta, children: Children) -> Infix:
+        left, token, *window, right = children
+        words = " ".join(token.split())
+        if token.type == "IMPLIES":
+            op = BinaryOp.IMPLIES
+        elif words == "weak until":
+            op = BinaryOp.WEAK_UNTIL
+        else:
+            op = _INFIX.get(words) or BinaryOp(words)
+        self._check_reach(left, right)
+        if token.type == "INFIX" and isinstance(right, Infix) and right.op is not op:
+            self.findings.append(rules.mixed_chain(self.span(token), right.op_span))
+        return Infix(op, left, right, first_of(window), self.span(token), self.span(meta))
+
+    def _check_reach(self, left: Expression, last: Expression) -> None:
+        """A temporal prefix right before a connective has to say how far it reaches."""
+        edge = left
+        while True:
+            match edge:
+                case Prefix(op=UnaryOp.NOT, operand=inner) | Infix(right=inner):
+                    edge = inner
+                case Prefix() | Path(reaching=False):
+                    break
+                case _:
+                    return
+        if not isinstance(edge.operand, Group):
+            operand = edge.operand.span
+            operator = Span(operand.source, edge.span.start, operand.start)
+            self.findings.append(rules.reach(operator, operand, last.span))
+
+    def path(self, meta: Meta, children: Children) -> Path:
+        token, *window, operand = children
+        reaching = token.type == "PATH"
+        if reaching:
+            op = UnaryOp.ALWAYS if token[1] == "[" else UnaryOp.EVENTUALLY
+        else:
+            op = UnaryOp(token[1])
+        spans = self.span(token), self.span(meta)
+        return Path(token[0] == "A", op, operand, first_of(window), reaching, *spans)
+
+    def quantified(self, meta: Meta, children: Children) -> Quantified:
+        token, path = children
+        return Quantified(token == "A", path, self.span(meta))
+
+    def leads_to(self, meta: Meta, children: Children) -> LeadsTo:
+        left, _, *window, right = children
+        return LeadsTo(left, right, first_of(window), self.span(meta))
+
+    def at_most(self, meta: Meta, children: Children) -> Window:
+        return Window(None, children[0], False, False, self.span(meta))
+
+    def window(self, meta: Meta, children: Children) -> Window:
+        opening, low, high, closing = children
+        endless = isinstance(high, Token)
+        return Window(
+            low, None if endless else high, opening == "(", closing == ")", self.span(meta)
+        )
+
+
+def first_of(found: Sequence[_T]) -> _T | None:
+    """The first element, if there is one."""
+    return found[0] if found else None
+
+
+def unquoted(token: Token) -> str:
+    """A name without its quotes."""
+    return token[1:-1] if token.startswith("`") else str(token)

@@ -1,0 +1,154 @@
+"""Syntax errors in the words of the language: what was found, what could have stood there."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from typing import Any
+
+import lark
+from lark.exceptions import UnexpectedInput, UnexpectedToken
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.span import Source, Span
+from rvmon.spec.rules import names, syntax, types
+from rvmon.spec.syntax.mends import NAMELESS, mend_of
+from rvmon.spec.syntax.units import unit_table
+from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
+
+_OPERAND = {"NUMBER", "NAME", "NOT", "TEMPORAL", "MINUS"}
+_OPERAND_ALL = _OPERAND | {
+    "WITHIN", "FOR", "IMMEDIATELY", "CTL", "PATH", "QUANTIFIER", "TRUTH", "START", "END", "CALL",
+    "LPAR",
+}  # fmt: skip
+_VALUE = {"NUMBER", "NAME", "CALL", "LPAR", "MINUS"}
+_DURATION = {"NUMBER", "NAME", "LPAR", "MINUS"}
+_ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
+_INFIX = {"AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS"}
+_CLAUSES = {"TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE"}
+_WORDS = {
+    "NAME": "a name",
+    "NUMBER": "a number",
+    "STRING": 'a text in "quotes"',
+    "UNIT": "a unit",
+    "CALL": "a name with `(`",
+    "ROLE": "`input` or `output`",
+    "$END": "the end of the item",
+    "LSQB": "`[`",
+    "INFINITE": "`inf`",
+    "EQUAL": "`=`",
+    "STALE_AFTER": "`stale after`",
+    "IGNORE_NAN": "`ignore NaN`",
+    "MONITOR_AS_RESPONSE": "`monitor as response`",
+    "MONITOR_AS_WRITTEN": "`monitor as written`",
+    "MAX_DELAY": "`max delay`",
+    "COMPARE": "a comparison",
+    "MINUS": "`-`",
+    "UPON": "`upon`",
+    "WHENEVER": "`whenever`",
+    "THEN": "`then`",
+    "WITHIN": "`within`",
+    "TEXT_CLAUSE": "`source` or `rationale`",
+    "UNWANTED": "`ignore` or `illegal`",
+    "FOR_EACH": "`for each`",
+    "AT_END": "`at end`",
+    "TRUTH": "`true` or `false`",
+    "NOT": "`not`",
+    "AND": "`and`",
+    "OR": "`or`",
+    "XOR": "`xor`",
+    "IFF": "`<->`",
+    "IMPLIES": "`->`",
+    "INFIX": "an operator such as `until`",
+    "LEADS_TO": "`-->`",
+    "TEMPORAL": "an operator such as `always`",
+    "CTL": "an operator such as `AG`",
+    "PATH": "`A[]` or `E<>`",
+    "QUANTIFIER": "`A` or `E`",
+}
+_SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
+
+
+def explain_unexpected(
+    error: UnexpectedInput, parser: lark.Lark, source: Source, start: int, end: int, rule: str
+) -> Diagnostic:
+    """Say what was found and what could have stood there.
+
+    Args:
+        error: what the parser raised.
+        parser: the parser.
+        source: the file.
+        start: where the text given to the parser starts in it.
+        end: where it ends.
+        rule: the start rule.
+    """
+    place = _place(error, source, start, end)
+    accepted = _accepted(parser, source.text[start:end], rule)
+    found = place.text
+    nameless = found in NAMELESS and source.text[start : place.start].split() == ["requirement"]
+    if found in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
+        return names.reserved(place)
+    if swallowed := _SWALLOWED.search(source.text, start, place.start):
+        number, name = swallowed[1], Span(source, swallowed.start(2), swallowed.end(2))
+        if name.text not in unit_table() and name.text not in NOT_UNITS:
+            return types.swallowed_name(name, number)
+    expected = _in_words(accepted, parser)
+    shown = f"`{syntax.short(found)}`" if found else "the end of the item"
+    message = f"found {shown}" + (f", expected {expected}" if expected else "")
+    mend = mend_of(found, accepted, parser, Span(source, start, place.start))
+    return syntax.syntax_error(message, place, mend)
+
+
+def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span:
+    if isinstance(error, UnexpectedToken) and error.token.type not in ("$END", "UNIT"):
+        first = start + (error.token.start_pos or 0)
+        return Span(source, first, first + max(len(error.token), 1))
+    at_end = isinstance(error, UnexpectedToken) and error.token.type == "$END"
+    if not at_end:  # UNIT matches almost anything, so the word is looked for here
+        first = start + (error.pos_in_stream or 0)
+        word = re.compile(r"\w+|.", re.DOTALL).match(source.text, first)
+        return Span(source, first, word.end() if word else first)
+    text = re.sub(r"(?m)#.*$", lambda comment: " " * len(comment[0]), source.text[start:end])
+    last = start + len(text.rstrip())
+    return Span(source, last, last)
+
+
+def _accepted(parser: lark.Lark, text: str, rule: str) -> set[str]:
+    """The terminals with which the text could really go on; the error's own list is too long."""
+    interactive: Any = parser.parse_interactive(text, start=rule)
+    with suppress(UnexpectedInput):
+        interactive.exhaust_lexer()
+    return set(interactive.accepts())
+
+
+def _in_words(accepted: set[str], parser: lark.Lark) -> str:
+    rest = set(accepted)
+    words = []
+    if rest == _DURATION:
+        return "a duration such as `3 s`"
+    if rest >= _OPERAND:
+        words.append("a formula or a number")
+        rest -= _OPERAND_ALL
+    elif rest >= _VALUE:
+        words.append("a number or a name")
+        rest -= _OPERAND_ALL
+    if "AND" in rest:
+        words.append("an operator such as `and`, `or`, `->`, `until`")
+        rest -= _INFIX | _ARITHMETIC
+    if rest >= _CLAUSES:
+        words.append("a clause (`source`, `scope`, `let`, …)")
+        rest -= _CLAUSES
+    if len(rest & {"SPEC", "SIGNAL", "REQUIREMENT"}) == 3:
+        return f"an item ({', '.join(f'`{word}`' for word in ITEM_WORDS)})"
+    words += sorted(_word(terminal, parser) for terminal in rest if terminal != "$END")
+    if "$END" in rest:
+        words.append(_WORDS["$END"])
+    return " or ".join(words)
+
+
+def _word(terminal: str, parser: lark.Lark) -> str:
+    if terminal in _WORDS:
+        return _WORDS[terminal]
+    pattern = parser.get_terminal(terminal).pattern
+    word = re.match(r"[a-z]+", pattern.value)
+    return f"`{word[0] if word and pattern.type == 're' else pattern.value}`"

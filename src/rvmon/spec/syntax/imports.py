@@ -1,0 +1,109 @@
+"""A file and all that it imports, each read once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from importlib import resources
+from pathlib import Path
+
+from rvmon.diagnostics.span import Source
+from rvmon.diagnostics.text_file import text_of_file
+from rvmon.spec.rules import imports as rules
+from rvmon.spec.rules.findings import Findings
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.syntax.import_folders import Tree, tree_of
+from rvmon.spec.syntax.items import ImportItem, ParsedSpec
+from rvmon.spec.syntax.parse import parse_spec
+
+LIBRARIES = ("patterns",)
+"""Folders of this package with specifications that can be imported by name."""
+
+
+def load_files(source: Source, directory: Path | None, findings: Findings) -> list[ParsedSpec]:
+    """Read a file and those it imports.
+
+    Args:
+        source: the main file.
+        directory: its folder; default the current one.
+        findings: takes what is wrong with how they are written or imported.
+
+    Returns:
+        The main file, then the imported ones in the order of their first import.
+    """
+    loader = _Loader(findings, tree_of(directory or Path()))
+    loader.read(source, directory or Path(), _key(Path(source.name)), ())
+    return loader.files
+
+
+class _Loader:
+    def __init__(self, findings: Findings, tree: Tree) -> None:
+        self.files: list[ParsedSpec] = []
+        self._findings = findings
+        self._tree = tree
+        self._seen: set[str] = set()
+
+    def read(
+        self, source: Source, directory: Path, key: str, path: tuple[tuple[str, ImportItem], ...]
+    ) -> None:
+        """Read a file; `path` are the files that are being read, with the imports in them."""
+        self._seen.add(key)
+        parsed = parse_spec(source, self._findings)
+        self.files.append(parsed)
+        for item in parsed.items:
+            if isinstance(item, ImportItem):
+                self._import(item, directory, (*path, (key, item)))
+
+    def _import(
+        self, item: ImportItem, directory: Path, path: tuple[tuple[str, ImportItem], ...]
+    ) -> None:
+        try:
+            for source, folder, key in _sources(item, directory, self._tree):
+                circle = [step for _, step in path[_index(path, key) :]]
+                if circle:
+                    self._findings.add(rules.circle(item.span, circle[0].span))
+                elif len(path) > rules.DEEPEST:
+                    raise Refusal(rules.too_deep(item.span))
+                elif key not in self._seen:
+                    self.read(source, folder, key, path)
+        except Refusal as refusal:
+            self._findings.add(refusal.finding)
+
+
+def _index(path: tuple[tuple[str, ImportItem], ...], key: str) -> int:
+    keys = [step for step, _ in path]
+    return keys.index(key) if key in keys else len(keys)
+
+
+def _sources(item: ImportItem, directory: Path, tree: Tree) -> Iterator[tuple[Source, Path, str]]:
+    """The texts that an import means, each with its folder and a key of its own."""
+    if not item.library:
+        path = directory / item.target
+        yield Source(str(path), _text(path, item, tree)), path.parent, _key(path)
+        return
+    if item.target not in LIBRARIES:
+        raise Refusal(rules.unknown_library(item.span, item.target, LIBRARIES))
+    folder = resources.files("rvmon.spec") / item.target
+    for file in sorted(folder.iterdir(), key=lambda entry: entry.name):
+        if file.name.endswith(".rv"):
+            name = f"{item.target}/{file.name}"
+            text = file.read_text(encoding="utf-8")
+            yield Source(name, text), Path(), f"library {name}"
+
+
+def _text(file: Path, item: ImportItem, tree: Tree) -> str:
+    try:
+        if not tree.holds(file):
+            raise Refusal(rules.outside(item.span, item.target, str(tree.root)))
+        return text_of_file(file)
+    except OSError as error:
+        reason = error.strerror or str(error)
+    except UnicodeDecodeError:
+        reason = "it is not UTF-8 text"
+    except ValueError as error:  # a null character in the name
+        reason = str(error)
+    raise Refusal(rules.unreadable(item.span, item.target, reason))
+
+
+def _key(path: Path) -> str:
+    return os.path.abspath(path)

@@ -1,0 +1,183 @@
+"""What mends a syntax error: what people write who come from another language."""
+
+from __future__ import annotations
+
+import re
+
+import lark
+
+from rvmon.diagnostics.nearest import nearest
+from rvmon.diagnostics.span import Span
+from rvmon.spec.syntax.units import unit_table
+from rvmon.spec.syntax.words import ITEM_WORDS, RESERVED
+
+_MEND = {
+    "≤": "write `<=`",
+    "≥": "write `>=`",
+    "≠": "write `!=`",
+    "→": "write `->`",
+    "↔": "write `<->`",
+    "∧": "write `and`",
+    "∨": "write `or`",
+    "¬": "write `not`",
+    "□": "write `always`",
+    "◇": "write `eventually`",
+    '"': "a text ends on the line it starts on, with a second quote",
+    "“": 'write straight quotes: "',
+    "”": 'write straight quotes: "',
+    "'": 'texts stand in double quotes: "',
+    "`": "a quoted name ends on the line it starts on, with a second backtick",
+    "%": "`%` is a unit and stands behind a number",
+    ";": "items and clauses need no `;`",
+}
+NEVER = "for `never` write `always not (…)`"
+NAMELESS = RESERVED - frozenset(ITEM_WORDS)
+"""Words that are no name and may start what a requirement demands."""
+_TYPES = {
+    "float": "real",
+    "double": "real",
+    "number": "real",
+    "boolean": "bool",
+    "integer": "int",
+    "string": "{one, another}",
+    "enum": "{one, another}",
+}
+
+
+def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
+    """What mends a syntax error; empty if nothing is known to.
+
+    Args:
+        found: the word or sign that could not stand there; empty at the end of the item.
+        accepted: the terminals that could have.
+        parser: knows their patterns.
+        before: what of the item stands before it.
+    """
+    return (
+        _MEND.get(found, "")
+        or _sign_mend(found, accepted, before.text)
+        or _number_mend(found, before)
+        or _never_mend(found, before.text)
+        or _name_mend(found, before.text)
+        or _let_mend(found, before.text)
+        or _ignore_mend(found, before.text)
+        or _structure_mend(found, accepted, before.text)
+        or _word_mend(found, accepted, parser, before.text)
+        or _decimal_comma(before.text)
+    )
+
+
+def _sign_mend(found: str, accepted: set[str], before: str) -> str:
+    """What mends a label in quotes, or an arrow of another language."""
+    label = re.fullmatch(r'"([^\W\d]\w*)"', found)
+    if label and "NAME" in accepted and before.rstrip().endswith(("=", "{", ",")):
+        return f"labels have no quotes: `{label[1]}`"
+    if found == ">" and before.endswith("="):
+        return "write `->` for what follows, `>=` to compare"
+    return ""
+
+
+def _never_mend(found: str, before: str) -> str:
+    """What mends `never φ`, which is no operator here."""
+    never = found and re.search(r"(?<![\w.])never[ \t]+$", before)
+    return NEVER if never else ""
+
+
+def _name_mend(found: str, before: str) -> str:
+    """What mends a requirement whose name is none, or that has none."""
+    dashed = re.fullmatch(r"requirement\s+([\w.]+(?:-\w+)+)\s*", before)
+    if dashed:
+        name = dashed[1].replace("-", "_")
+        return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
+    alone = re.fullmatch(r"requirement\s+([\w.]+)\s*", before)
+    if alone and not found:
+        return f"`{alone[1]}` is taken for its name; what it demands stands behind it"
+    nameless = before.split() == ["requirement"] and found in NAMELESS
+    return f"its name comes first: `requirement R1 {found} …`" if nameless else ""
+
+
+def _let_mend(found: str, before: str) -> str:
+    """What mends a `let` before what is owed."""
+    behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
+    if found == "let" or behind:
+        return "`let` stands behind what is owed: `upon … then … let x = …`"
+    return ""
+
+
+def _ignore_mend(found: str, before: str) -> str:
+    """What mends what a signal ignores, in a wrong place or spelling."""
+    if found == "ignore" and before.startswith("signal"):
+        return "write `ignore NaN` behind the type and role, before `stale after`"
+    return ""
+
+
+def _structure_mend(found: str, accepted: set[str], before: str) -> str:
+    """What mends parts of an item that are in a wrong place or missing."""
+    call = re.search(r"([^\W\d]\w*)[ \t]+$", before)
+    if found == "(" and call:
+        return f"a call has no space before its bracket: `{call[1]}(`"
+    if re.match(r"[AE][\[<]", found) and "AND" not in accepted:
+        return f"put brackets around `{found} …`"
+    if "THEN" in accepted:
+        return "what is owed stands behind `then`"
+    if accepted == {"NAME"} and before.split() == ["requirement"]:
+        return 'its name comes first: `requirement R1 "text"`'
+    if "COLON" in accepted and re.match(r"signal\b", before):
+        return "a signal has a type, as in `signal x : real [m]`"
+    if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
+        return f"a unit stands in brackets: `[{found}]`"
+    if re.match(r"[\d.]+\s*[^\W\d]+$", found) and re.search(r"(?<![\w.])after[ \t]+$", before):
+        return f"for what is to hold then write `eventually[{found}, {found}] (…)`"
+    if accepted == {"COLON"} and re.match(r"event\b", before):
+        return "a field has a type, as in `event pick(id: int)`"
+    return ""
+
+
+def _word_mend(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
+    """What mends a word that is none of the language, or stands where none can."""
+    if not re.fullmatch(r"[^\W\d]\w*", found):
+        return ""
+    if "LBRACE" in accepted and found.lower() in _TYPES:
+        return f"write `{_TYPES[found.lower()]}`"
+    words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", _word_pattern(t, parser))]
+    close = nearest(found, sorted({*words, *ITEM_WORDS}), 0.75)
+    if close and close != found:
+        return f"did you mean `{close}`?"
+    if "AND" not in accepted:
+        return ""
+    if found in ("within", "for"):
+        return f"`{found}` stands before what it speaks of: `{found} 3 s (…)`"
+    last = re.search(r"(\w+)\s*$", before)
+    if last and last[1].lower() in ("if", "when", "where", "once"):
+        return f"for `{last[1]}` write `upon` (an instant) or `whenever` (as long as it holds)"
+    return f"an operator is missing before `{found}`, or a word too many"
+
+
+def _number_mend(found: str, before: Span) -> str:
+    """What mends a number or duration that is written as it is elsewhere."""
+    digits = re.search(r"(?<![\w.])\d*$", before.text)
+    behind = re.compile(r"[.,](\d*)").match(before.source.text, before.end)
+    if digits and behind and (behind[1] or (digits[0] and found == ".")):
+        return f"write `{digits[0] or 0}.{behind[1] or 0}`"
+    word = re.search(r"(?<![\w.])(within|for)[ \t]+([\w.]+(?:[ \t]+\w+)?)?[ \t]*$", before.text)
+    if word is None:
+        return ""
+    if word[2] is None:
+        operator = "eventually" if word[1] == "within" else "always"
+        window = f"`{word[1]}` takes a duration; a window stands behind `{operator}`"
+        return window if found == "[" else ""
+    if found in ("+", "-", "*", "/"):
+        return "a duration that is computed stands in brackets"
+    return "no comma stands behind a duration" if found == "," else ""
+
+
+def _decimal_comma(text: str) -> str:
+    """What mends a number that is written with a comma, if there is one."""
+    comma = re.search(r"(?<![\w.,])(\d+),(\d+)(?![\w.,])", text)
+    return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
+
+
+def _word_pattern(terminal: str, parser: lark.Lark) -> str:
+    if terminal in ("$END", "NAME", "NUMBER", "CALL", "UNIT", "STRING"):
+        return ""
+    return str(parser.get_terminal(terminal).pattern.value)

@@ -1,0 +1,144 @@
+"""Text to syntax tree: every item alone, so that all errors of a file appear at once."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import lark
+from lark.exceptions import UnexpectedInput, VisitError
+
+from rvmon.diagnostics.diagnostic import Diagnostic
+from rvmon.diagnostics.nearest import nearest
+from rvmon.diagnostics.span import Source, Span
+from rvmon.spec.rules import syntax as rules
+from rvmon.spec.rules.findings import Findings
+from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.syntax.build import Builder
+from rvmon.spec.syntax.effort import LARGEST
+from rvmon.spec.syntax.expected import explain_unexpected
+from rvmon.spec.syntax.expressions import Expression
+from rvmon.spec.syntax.grammar_cache import parser_of
+from rvmon.spec.syntax.items import Item, ParsedSpec
+from rvmon.spec.syntax.split import split_items
+from rvmon.spec.syntax.units import compound_pattern
+from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
+
+DEEPEST = 100
+"""Expressions nested more deeply are refused."""
+
+_NO_CODE = re.compile(r'"[^"\n]*"|`[^`\n]*`|#[^\n]*')
+_OPERATOR = re.compile(r"(?<![\w.])(?:and|or|xor|implies|iff)(?![\w.])|&&?|\|\|?|[+*]")
+
+Parsed = tuple[Any, list[Diagnostic]]
+
+
+def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
+    """Read a file; `findings` takes what is wrong with the items that are left out."""
+    items: list[Item] = []
+    doubtful: set[str] = set()
+    waiting = split_items(source.text)[::-1]
+    while waiting:
+        start, end = waiting.pop()
+        item, wrong = _parse(source, start, end, "item")
+        if item is not None:
+            items.append(item)
+            findings.extend(wrong)
+            continue
+        cut = _misspelled_item(source.text, start, wrong)
+        if cut is not None:
+            waiting += ((cut, end), (start, cut))
+            continue
+        findings.extend(wrong)
+        doubtful.update(re.findall(r"\w[\w.]*", source.text[start:end]))
+    return ParsedSpec(source, tuple(items), frozenset(doubtful))
+
+
+def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int | None:
+    """Where an item starts that was taken for a part of the one before, as `requirment R2` is."""
+    place = findings[0].spans[0].span.start
+    if place <= start or text[place - 1] != "\n":
+        return None
+    word = re.compile(r"\w+").match(text, place)
+    return place if word and nearest(word[0], ITEM_WORDS, 0.75) else None
+
+
+def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic]]:
+    """Read a text that is one expression, such as the value of a constant."""
+    return _parse(source, 0, len(source.text), "expression")
+
+
+def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
+    if _operators(source.text[start:end]) > LARGEST:
+        place = Span(source, start, start + len(source.text[start:end].rstrip()))
+        return None, [rules.too_large(place, LARGEST)]
+    builder = Builder(source, start)
+    try:
+        tree = grammar().parse(source.text[start:end], start=rule)
+        if _depth(tree) > DEEPEST:
+            place = Span(source, start, start + len(source.text[start:end].rstrip()))
+            return None, [rules.too_deep(place, DEEPEST)]
+        return builder.transform(tree), builder.findings
+    except UnexpectedInput as error:
+        return None, [explain_unexpected(error, grammar(), source, start, end, rule)]
+    except VisitError as error:
+        if isinstance(error.orig_exc, Refusal):
+            return None, [error.orig_exc.finding]
+        raise
+
+
+def _operators(text: str) -> int:
+    """How many operators of chains a text has at least: counted before it costs anything."""
+    return 0 if len(text) < LARGEST else len(_OPERATOR.findall(_NO_CODE.sub("", text)))
+
+
+@cache
+def grammar() -> lark.Lark:
+    """The parser, built once per process."""
+    return parser_of(grammar_text(), GRAMMAR_OPTIONS)
+
+
+GRAMMAR_OPTIONS: dict[str, Any] = {
+    "parser": "lalr",
+    "lexer": "contextual",
+    "start": ["item", "expression"],
+    "propagate_positions": True,
+    "maybe_placeholders": False,
+}
+
+
+def grammar_text() -> str:
+    """The grammar with its terminals filled in from the tables of words and units."""
+    text = resources.files("rvmon.spec.syntax").joinpath("rv.lark").read_text(encoding="utf-8")
+    end = r"(?!\w|\.\w)"
+    word = r"[^\W\d]\w*"
+    fillings = {
+        "END": end,
+        "NAME": rf"(?!({_any(RESERVED)}){end}){word}(\.{word})*",
+        "UNIT": rf"(?!({_any(NOT_UNITS)}){end}){word}",
+        "COMPOUND": compound_pattern(NOT_UNITS).replace("/", r"\/"),
+    }
+    for key, pattern in fillings.items():
+        text = text.replace(f"@{key}@", pattern)
+    return text
+
+
+def _any(words: frozenset[str]) -> str:
+    return "|".join(sorted(words))
+
+
+def _depth(tree: Any) -> int:
+    deepest = 0
+    level = [tree]
+    while level:
+        deepest += 1
+        level = [
+            child
+            for node in level
+            if isinstance(node, lark.Tree)
+            for child in node.children
+            if isinstance(child, lark.Tree)
+        ]
+    return deepest

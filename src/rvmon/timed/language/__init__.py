@@ -1,0 +1,1 @@
+"""From texts to networks: `.ta`, UPPAAL's XML and Python, parsed, resolved, instantiated."""

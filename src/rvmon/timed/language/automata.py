@@ -1,0 +1,176 @@
+"""Templates to automata: locations with invariants, edges with `select` unrolled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import product
+
+from rvmon.diagnostics import Span
+from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.timed.language import syntax
+from rvmon.timed.language.declare import Findings, Parts, refuse_double
+from rvmon.timed.language.instantiate import Process
+from rvmon.timed.language.resolve import MAX_VALUES, Resolver, values_of
+from rvmon.timed.model.expressions import MAX_TIME, ClockOp, Constant
+from rvmon.timed.model.guards import is_discrete, split_guard
+from rvmon.timed.model.network import (
+    Assignment,
+    Automaton,
+    Channel,
+    Edge,
+    Guard,
+    Location,
+    Reset,
+    Sync,
+    Update,
+)
+from rvmon.timed.model.rules import model_error
+from rvmon.timed.model.scope import (
+    ChannelSymbol,
+    ConstantSymbol,
+    Scope,
+    VariableSymbol,
+)
+
+
+def location_names(template: syntax.Template, findings: Findings) -> dict[str, int]:
+    """The index of each location of a template; what is wrong goes to `findings`."""
+    names: dict[str, int] = {}
+    scope = Scope()
+    for index, location in enumerate(template.locations):
+        with findings.collect():
+            refuse_double(location.name, location.span, scope)
+            scope.places[location.name] = location.span
+            names[location.name] = index
+    return names
+
+
+def automaton_of(
+    process: Process,
+    names: Mapping[str, int],
+    parts: Parts,
+    resolver: Resolver,
+    findings: Findings,
+) -> Automaton:
+    """The automaton that a process is; what is wrong goes to `findings`."""
+    template, scope = process.template, process.scope
+    locations = []
+    for written in template.locations:
+        invariant = Guard()
+        with findings.collect():
+            if written.invariant is not None:
+                invariant = _invariant(written.invariant, scope, resolver)
+        locations.append(Location(written.name, written.kind, invariant, written.span))
+    edges: list[Edge] = []
+    for edge in template.edges:
+        with findings.collect():
+            edges += _edges(edge, names, scope, parts, resolver)
+    initial = 0
+    with findings.collect():
+        if template.initial is None:
+            mend = "write `start` and the location's name"
+            message = f"`{template.name}` has no initial location"
+            raise model_error("TA013", message, template.span, mend)
+        initial = _location(template.initial, names)
+    return Automaton(
+        scope.prefix.removesuffix("."), tuple(locations), tuple(edges), initial, template.span
+    )
+
+
+def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
+    if name.name not in names:
+        mend = did_you_mean(name.name, list(names))
+        raise model_error("TA002", f"no location `{name.name}`", name.span, mend)
+    return names[name.name]
+
+
+def _invariant(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Guard:
+    guard = split_guard(resolver.expression(written, scope), written.span)
+    if any(compare.op in (ClockOp.GE, ClockOp.GT) for compare in guard.clocks):
+        mend = "put it on the guards of the edges that lead here"
+        raise model_error("TA009", "an invariant bounds a clock from below", written.span, mend)
+    return guard
+
+
+def _edges(
+    written: syntax.EdgeText,
+    names: Mapping[str, int],
+    scope: Scope,
+    parts: Parts,
+    resolver: Resolver,
+) -> Iterator[Edge]:
+    """One edge for each choice of the selected values."""
+    source, target = _location(written.source, names), _location(written.target, names)
+    ranges, selected_names = [], Scope()
+    for selection in written.selections:
+        refuse_double(selection.name, selection.span, selected_names)
+        selected_names.places[selection.name] = selection.span
+        ranges.append(values_of(resolver.type(selection.type, scope), selection.span))
+    for count, chosen in enumerate(product(*ranges)):
+        if count >= MAX_VALUES:
+            raise model_error("TA019", f"more than {MAX_VALUES:,} edges in one", written.span)
+        selected = {
+            selection.name: ConstantSymbol(value)
+            for selection, value in zip(written.selections, chosen, strict=True)
+        }
+        inner = scope.inner(selected) if selected else scope
+        guard = Guard()
+        if written.guard is not None:
+            guard = split_guard(resolver.expression(written.guard, inner), written.guard.span)
+        sync = None if written.sync is None else _sync(written.sync, inner, resolver)
+        if sync is not None:
+            _refuse_clock_guard(guard, parts.channels[sync.slot.first], sync, written.span)
+        updates = tuple(_update(update, inner, resolver) for update in written.updates)
+        yield Edge(
+            source, target, guard, sync, updates, written.weight, written.label,
+            _edge_text(written, selected), written.span,
+        )  # fmt: skip
+
+
+def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol]) -> str:
+    text = f"{written.source.name} → {written.target.name}"
+    if written.sync is not None:
+        text += f" on {written.sync.span.text}"
+    chosen = [
+        f"{name} = {s.value}" for name, s in selected.items() if isinstance(s, ConstantSymbol)
+    ]
+    return text + (f" with {', '.join(chosen)}" if chosen else "")
+
+
+def _sync(written: syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
+    match resolver.symbol(written.channel, scope):
+        case ChannelSymbol(slot) if len(slot.indices) == len(slot.extents):
+            return Sync(slot, written.sends)
+        case ChannelSymbol():
+            raise model_error("TA004", "an array of channels", written.span, "give an index")
+        case _:
+            mend = f"declare it: chan {written.channel.span.text}"
+            raise model_error("TA004", "this is no channel", written.span, mend)
+
+
+def _refuse_clock_guard(guard: Guard, channel: Channel, sync: Sync, span: Span) -> None:
+    if guard.clocks and channel.urgent:
+        mend = "move the clock guard to an edge before, or make the channel not urgent"
+        raise model_error("TA011", "a clock guard on an urgent channel", span, mend)
+    if guard.clocks and channel.broadcast and not sync.sends:
+        mend = "put the clock guard on the sender, or on an edge behind"
+        raise model_error("TA012", "a clock guard on a broadcast receiver", span, mend)
+
+
+def _update(written: syntax.UpdateText, scope: Scope, resolver: Resolver) -> Update:
+    clock = resolver.clock(written.target, scope)
+    value = resolver.expression(written.value, scope)
+    if not is_discrete(value):
+        mend = "set variables by numbers and variables only"
+        raise model_error("TA009", "a clock's state is written to a variable", written.span, mend)
+    if clock is not None:
+        if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
+            raise model_error("TA007", f"a clock is set to {value.value}", written.span)
+        return Reset(clock, value, written.span)
+    match resolver.symbol(written.target, scope):
+        case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
+            return Assignment(replace(slot, span=written.target.span), value)
+        case _:
+            mend = "only variables and clocks can be set"
+            raise model_error("TA004", "this cannot be set", written.target.span, mend)

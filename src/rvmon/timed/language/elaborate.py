@@ -1,0 +1,183 @@
+"""A model as written to a network: the passes in order, and queries on the result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from math import prod
+
+from rvmon.diagnostics import Severity, Source, Span
+from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.timed.language import syntax
+from rvmon.timed.language.automata import automaton_of, location_names
+from rvmon.timed.language.declare import Findings, Parts, declare, refuse_double
+from rvmon.timed.language.instantiate import processes_of
+from rvmon.timed.language.parse import parse_query
+from rvmon.timed.language.resolve import Resolver
+from rvmon.timed.language.syntax import SignalText
+from rvmon.timed.model.expressions import Expression
+from rvmon.timed.model.guards import is_discrete
+from rvmon.timed.model.network import Automaton, LeadsToFormula, Network, Query, Signal
+from rvmon.timed.model.rules import finding, model_error
+from rvmon.timed.model.scope import AutomatonKey, AutomatonSymbol, Names, Scope
+
+MAX_EDGES = 100_000
+"""The most edges that a network may have once templates and selections are unrolled."""
+
+
+def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = None) -> Network:
+    """Make the network that a model describes.
+
+    Args:
+        document: the model as written.
+        constants: other values for constants that it declares outside its automata.
+
+    Raises:
+        ModelError: with everything that is wrong with the model.
+    """
+    findings, parts = Findings(), Parts()
+    document = _with_constants(document, constants or {}, findings)
+    resolver = Resolver(open_ints=document.open_ints)
+    top = Scope()
+    declare(document.declarations, top, parts, resolver, findings)
+    automata, edges = list[Automaton](), 0
+    symbols: dict[AutomatonKey, AutomatonSymbol] = {}
+    for process in processes_of(document, top, resolver, findings):
+        declare(process.template.declarations, process.scope, parts, resolver, findings)
+        locations = location_names(process.template, findings)
+        key = (process.family, process.arguments)
+        symbols[key] = AutomatonSymbol(len(automata), locations, process.scope)
+        automata.append(automaton_of(process, locations, parts, resolver, findings))
+        edges += len(automata[-1].edges)
+        if edges > MAX_EDGES:
+            mend = "narrow the types of parameters and selections"
+            findings.add(finding("TA019", f"more than {MAX_EDGES:,} edges", None, mend))
+        if findings.has("TA019"):
+            break
+    if not automata and not findings.found:
+        findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
+    names = Names(top, symbols)
+    # Without all automata, which is an error itself, queries have no meaning.
+    complete = bool(symbols) and not findings.has("TA019")
+    queries = _queries(document.queries if complete else (), names, findings)
+    signals = _signals(document.signals if complete else (), names, findings)
+    _check_channels(parts, automata, findings)
+    findings.raise_errors()
+    return Network(
+        document.name,
+        document.title,
+        document.unit,
+        tuple(parts.clocks),
+        tuple(parts.variables),
+        tuple(parts.channels),
+        tuple(automata),
+        queries,
+        signals,
+        tuple(findings.found.values()),
+        names,
+    )
+
+
+def _with_constants(
+    document: syntax.Document, constants: Mapping[str, int], findings: Findings
+) -> syntax.Document:
+    known = {
+        item.name
+        for item in document.declarations
+        if isinstance(item, syntax.Declaration) and item.type.const and not item.sizes
+    }
+    for name in constants.keys() - known:
+        mend = did_you_mean(name, sorted(known))
+        findings.add(finding("TA002", f"no constant `{name}` to set", None, mend))
+    changed: list[syntax.Declared] = []
+    for item in document.declarations:
+        if isinstance(item, syntax.Declaration) and item.name in constants.keys() & known:
+            value = syntax.Number(constants[item.name], item.span)
+            changed.append(replace(item, initial=value))
+        else:
+            changed.append(item)
+    return replace(document, declarations=tuple(changed))
+
+
+def query_on(network: Network, text: str) -> Query:
+    """Read a query on a network.
+
+    Raises:
+        ModelError: the text is no query, or names what the network does not have.
+    """
+    findings = Findings()
+    queries = _queries([parse_query(text)], network.names, findings)
+    findings.raise_errors()
+    return queries[0]
+
+
+def _queries(
+    written: Iterable[syntax.QueryText], names: Names, findings: Findings
+) -> tuple[Query, ...]:
+    resolver, top = Resolver(names.automata), names.top
+    queries, ids = [], Scope()
+    for query in written:
+        with findings.collect():
+            if query.id:
+                refuse_double(query.id, query.span, ids)
+                ids.places[query.id] = query.span
+            meaning = _formula(query.formula, resolver, top)
+            queries.append(Query(query.id, query.remark, query.text, meaning, query.span))
+    return tuple(queries)
+
+
+def signal_on(network: Network, name: str, text: str) -> Signal:
+    """Give a name of specifications a meaning on a network.
+
+    Raises:
+        ModelError: the text is no expression over locations and variables.
+    """
+    findings = Findings()
+    written = SignalText(name, parse_query(text).formula, Span(Source(name, text), 0, len(text)))
+    signals = _signals([written], network.names, findings)
+    findings.raise_errors()
+    return signals[0]
+
+
+def _signals(written: Iterable[SignalText], names: Names, findings: Findings) -> tuple[Signal, ...]:
+    resolver, signals, taken = Resolver(names.automata), list[Signal](), Scope()
+    for signal in written:
+        with findings.collect():
+            refuse_double(signal.name, signal.span, taken)
+            taken.places[signal.name] = signal.span
+            value = resolver.expression(signal.value, names.top)
+            if not is_discrete(value):
+                mend = "use locations and variables only"
+                raise model_error("TA009", "a signal with clocks or runs", signal.span, mend)
+            signals.append(Signal(signal.name, value))
+    return tuple(signals)
+
+
+def _formula(
+    written: syntax.Expression, resolver: Resolver, top: Scope
+) -> Expression | LeadsToFormula:
+    if not isinstance(written, syntax.LeadsTo):
+        return resolver.expression(written, top)
+    left, right = resolver.expression(written.left, top), resolver.expression(written.right, top)
+    return LeadsToFormula(left, right, resolver.limit(written.bound, top))
+
+
+def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findings) -> None:
+    senders, receivers = set[int](), set[int]()
+    for edge in (edge for automaton in automata for edge in automaton.edges):
+        if edge.sync is not None:
+            slot = edge.sync.slot
+            used = range(slot.first, slot.first + prod(map(len, slot.extents)))
+            (senders if edge.sync.sends else receivers).update(used)
+    for index, (channel, span) in enumerate(zip(parts.channels, parts.channel_spans, strict=True)):
+        match index in senders, index in receivers:
+            case False, False:
+                problem, mend = "is used by nobody", "remove it, or use it on an edge"
+            case True, False if not channel.broadcast:
+                problem, mend = "is never received", f"add an edge with {channel.name}?"
+            case False, True:
+                problem, mend = "is never sent", f"add an edge with {channel.name}!"
+            case _:
+                continue
+        message = f"the channel `{channel.name}` {problem}: edges with it are never taken"
+        findings.add(finding("TA010", message, span, mend, severity=Severity.WARNING))

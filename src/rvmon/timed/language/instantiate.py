@@ -1,0 +1,161 @@
+"""Templates with their parameters bound: the processes that the system line names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.timed.language import syntax
+from rvmon.timed.language.declare import Findings, array_extent, check_range, refuse_double
+from rvmon.timed.language.resolve import MAX_VALUES, Resolver, values_of
+from rvmon.timed.model.operators import BaseType
+from rvmon.timed.model.rules import model_error
+from rvmon.timed.model.scope import (
+    ChannelSymbol,
+    ClockSymbol,
+    ConstantSymbol,
+    Scope,
+    Symbol,
+    VariableSymbol,
+)
+
+Family = syntax.Template | syntax.Instance
+"""What a name in the system line may mean."""
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """A template with all its parameters bound: an automaton to be."""
+
+    family: str
+    arguments: tuple[int, ...]
+    template: syntax.Template
+    scope: Scope
+
+
+def processes_of(
+    document: syntax.Document, top: Scope, resolver: Resolver, findings: Findings
+) -> list[Process]:
+    """All processes of the system, in its order; what is wrong goes to `findings`."""
+    families: dict[str, Family] = {}
+    declared: tuple[Family, ...] = (*document.templates, *document.instances)
+    for family in declared:
+        with findings.collect():
+            refuse_double(family.name, family.span, top)
+            top.places[family.name] = family.span
+            top.families.add(family.name)
+            families[family.name] = family
+    used = {instance.template.name for instance in document.instances}
+    system = document.system
+    if system is None:
+        system = tuple(
+            syntax.Name(name, family.span) for name, family in families.items() if name not in used
+        )
+    processes: list[Process] = []
+    for name in system:
+        with findings.collect():
+            if name.name not in families:
+                mend = did_you_mean(name.name, list(families))
+                raise model_error("TA002", f"no automaton `{name.name}`", name.span, mend)
+            processes += _instances(families[name.name], families, top, resolver)
+    return processes
+
+
+def _instances(
+    family: Family, families: Mapping[str, Family], top: Scope, resolver: Resolver
+) -> Iterator[Process]:
+    """One process for each choice of the parameters' values."""
+    _refuse_circle(family, families)
+    ranges = []
+    for parameter in family.parameters:
+        if parameter.reference or parameter.sizes:
+            mend = f"write instance = {family.name}(…)"
+            message = f"the parameter `{parameter.name}` needs an argument"
+            raise model_error("TA015", message, parameter.span, mend)
+        ranges.append(values_of(resolver.type(parameter.type, top), parameter.type.span))
+    for count, arguments in enumerate(product(*ranges)):
+        if count >= MAX_VALUES:
+            mend = "narrow the types of its parameters"
+            raise model_error("TA019", f"more than {MAX_VALUES:,} instances", family.span, mend)
+        bound = [ConstantSymbol(value) for value in arguments]
+        template, scope = _bind(family, bound, families, top, resolver)
+        listed = f"({', '.join(map(str, arguments))})" if arguments else ""
+        scope.prefix = f"{family.name}{listed}."
+        yield Process(family.name, arguments, template, scope)
+
+
+def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:
+    """Refuse an instance of an instance of … itself."""
+    seen: set[str] = set()
+    current: Family | None = family
+    while isinstance(current, syntax.Instance):
+        if current.name in seen:
+            mend = "make it an instance of an automaton"
+            message = f"`{current.name}` is an instance of itself"
+            raise model_error("TA015", message, current.span, mend)
+        seen.add(current.name)
+        current = families.get(current.template.name)
+
+
+def _bind(
+    family: Family,
+    arguments: Sequence[Symbol],
+    families: Mapping[str, Family],
+    top: Scope,
+    resolver: Resolver,
+) -> tuple[syntax.Template, Scope]:
+    scope = Scope(top)
+    for parameter, argument in zip(family.parameters, arguments, strict=True):
+        refuse_double(parameter.name, parameter.span, scope)
+        scope.symbols[parameter.name] = argument
+        scope.places[parameter.name] = parameter.span
+    if isinstance(family, syntax.Template):
+        return family, scope
+    target = families.get(family.template.name)
+    if target is None:
+        mend = did_you_mean(family.template.name, list(families))
+        message = f"no template `{family.template.name}`"
+        raise model_error("TA002", message, family.template.span, mend)
+    if len(target.parameters) != len(family.arguments):
+        count = len(target.parameters)
+        message = f"`{target.name}` takes {count} argument{'' if count == 1 else 's'}"
+        raise model_error("TA015", f"{message}, {len(family.arguments)} given", family.span)
+    bound: list[Symbol] = []
+    own = Scope(top)  # a parameter's type may speak of the parameters before it
+    for parameter, written in zip(target.parameters, family.arguments, strict=True):
+        bound.append(_argument(parameter, written, scope, own, resolver))
+        own.symbols[parameter.name] = bound[-1]
+    return _bind(target, bound, families, top, resolver)
+
+
+def _argument(
+    parameter: syntax.Parameter,
+    written: syntax.Expression,
+    scope: Scope,
+    own: Scope,
+    resolver: Resolver,
+) -> Symbol:
+    """What an argument stands for; its type has the names of `own`, itself those of `scope`."""
+    kind = resolver.type(parameter.type, own)
+    extents = tuple(array_extent(size, own, resolver) for size in parameter.sizes)
+    if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
+        value = resolver.constant(written, scope)
+        check_range(value, kind, written.span)
+        return ConstantSymbol(value)
+    symbol = resolver.symbol(written, scope)
+    match symbol:
+        case ClockSymbol(slot):
+            fits = kind.base is BaseType.CLOCK and slot.extents[len(slot.indices) :] == extents
+        case ChannelSymbol(slot):
+            fits = kind.base is BaseType.CHANNEL and slot.extents[len(slot.indices) :] == extents
+        case VariableSymbol(slot):
+            fits = kind.base in (BaseType.INT, BaseType.BOOL)
+            fits = fits and slot.extents[len(slot.indices) :] == extents
+        case _:
+            fits = isinstance(symbol, ConstantSymbol) and kind.const
+    if not fits:
+        mend = f"`{parameter.name}` is declared as {parameter.type.span.text}"
+        raise model_error("TA015", "this argument is of the wrong kind", written.span, mend)
+    return symbol

@@ -1,0 +1,59 @@
+"""Models from files and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from rvmon.diagnostics import Source
+from rvmon.diagnostics.text_file import text_of_file
+from rvmon.timed.language.elaborate import elaborate
+from rvmon.timed.language.parse import parse_document
+from rvmon.timed.language.uppaal import read_uppaal
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.rules import model_error
+
+
+def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None) -> Network:
+    """Read a model from a `.ta` file, or from one in UPPAAL's XML.
+
+    Args:
+        path: of the file.
+        constants: other values for constants of the model.
+
+    Raises:
+        ModelError: the file cannot be read, or is no model; it has all findings.
+    """
+    try:
+        text = text_of_file(path, "utf-8-sig")
+    except OSError as error:
+        raise model_error("TA022", f"{path}: {error.strerror}", None) from None
+    except UnicodeDecodeError:
+        mend = "save it as UTF-8 text"
+        raise model_error("TA022", f"{path} is no text", None, mend) from None
+    return loads_network(text, name=str(path), constants=constants)
+
+
+def loads_network(
+    text: str, *, name: str = "<string>", constants: Mapping[str, int] | None = None
+) -> Network:
+    """Read a model from a text.
+
+    Args:
+        text: as in a `.ta` file, or UPPAAL's XML.
+        name: what findings call it.
+        constants: other values for constants of the model.
+
+    Raises:
+        ModelError: the text is no model; it has all findings.
+
+    >>> loads_network("automaton a { location l start l }").automata[0].locations[0].name
+    'l'
+    """
+    source = Source(name, text)
+    if not text.lstrip().startswith("<"):
+        return elaborate(parse_document(source), constants)
+    document, warnings = read_uppaal(source)
+    network = elaborate(document, constants)
+    return replace(network, warnings=(*network.warnings, *warnings))

@@ -1,0 +1,324 @@
+"""A model as it was written: names unresolved, templates not instantiated, places noted.
+
+Both text forms, `.ta` and UPPAAL's XML, are read into these types; `elaborate` makes a `Network`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.diagnostics import Source, Span
+from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, PathOp, UnaryOp
+
+# Expressions: of guards, invariants, updates, declarations and queries alike.
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An integer; `true` and `false` are 1 and 0."""
+
+    value: int
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """Anything that has a name."""
+
+    name: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """`base[index]`."""
+
+    base: Expression
+    index: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """`base.name`: a location or a local variable of an automaton."""
+
+    base: Expression
+    name: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """`name(arguments)`: an instance of a template; functions are not supported."""
+
+    name: str
+    arguments: tuple[Expression, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """An operator on one operand."""
+
+    op: UnaryOp
+    operand: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """An operator on two operands."""
+
+    op: BinaryOp
+    left: Expression
+    right: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Conditional:
+    """`condition ? then : otherwise`."""
+
+    condition: Expression
+    then: Expression
+    otherwise: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Quantified:
+    """`forall (name : type) body` or `exists (…) …` over a finite type."""
+
+    universal: bool
+    name: str
+    type: TypeText
+    body: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A path operator on a formula; `bound` is the T of `[<=T]`."""
+
+    op: PathOp
+    body: Expression
+    bound: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class LeadsTo:
+    """`left --> right`, with `[<=T]` if bounded."""
+
+    left: Expression
+    right: Expression
+    bound: Expression | None
+    span: Span
+
+
+Expression = (
+    Number
+    | Name
+    | Index
+    | Member
+    | Call
+    | Unary
+    | Binary
+    | Conditional
+    | Quantified
+    | Path
+    | LeadsTo
+)
+
+
+# Declarations.
+
+
+@dataclass(frozen=True, slots=True)
+class TypeText:
+    """A type as written.
+
+    Attributes:
+        low, high: the range of an int; `None` if it has none.
+        name: of the typedef, for `NAMED`.
+        const, broadcast, urgent: the prefixes.
+    """
+
+    base: BaseType
+    span: Span
+    low: Expression | None = None
+    high: Expression | None = None
+    name: str = ""
+    const: bool = False
+    broadcast: bool = False
+    urgent: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """`{a, b, …}`: the initial values of an array."""
+
+    items: tuple[Initial, ...]
+    span: Span
+
+
+Initial = Expression | Values
+
+Size = Expression | TypeText
+"""The size of an array: a number, or a type whose values are its indices."""
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """One declared name."""
+
+    type: TypeText
+    name: str
+    sizes: tuple[Size, ...]
+    initial: Initial | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TypeDefinition:
+    """`typedef type name`."""
+
+    name: str
+    type: TypeText
+    span: Span
+
+
+Declared = Declaration | TypeDefinition
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a template; a `reference` stands for the thing itself."""
+
+    type: TypeText
+    name: str
+    sizes: tuple[Size, ...]
+    reference: bool
+    span: Span
+
+
+# Automata.
+
+
+@dataclass(frozen=True, slots=True)
+class LocationText:
+    """A location of a template."""
+
+    name: str
+    kind: LocationKind
+    invariant: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SyncText:
+    """`channel!` or `channel?`."""
+
+    channel: Expression
+    sends: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class UpdateText:
+    """`target = value`; `x += v` and `x++` are written out."""
+
+    target: Expression
+    value: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """`name : type` of an edge: one edge for each value."""
+
+    name: str
+    type: TypeText
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeText:
+    """An edge of a template; `label` names the action for people and recordings."""
+
+    source: Name
+    target: Name
+    span: Span
+    selections: tuple[Selection, ...] = ()
+    guard: Expression | None = None
+    sync: SyncText | None = None
+    updates: tuple[UpdateText, ...] = ()
+    weight: float = 1.0
+    label: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A template; without parameters it is an automaton by itself."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    declarations: tuple[Declared, ...]
+    locations: tuple[LocationText, ...]
+    initial: Name | None
+    edges: tuple[EdgeText, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """`name(parameters) = template(arguments)`."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    template: Name
+    arguments: tuple[Expression, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class QueryText:
+    """A query with its id and its sentence for people, either may be empty, and its own text."""
+
+    id: str
+    remark: str
+    text: str
+    formula: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SignalText:
+    """`signal name = value`: what a specification calls something of the model."""
+
+    name: str
+    value: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A whole model as written.
+
+    Attributes:
+        unit: ticks of one unit of the model's time; `None` if it says nothing.
+        system: the automata and templates that run; `None`: all that are there.
+        open_ints: whether `int` without a range is allowed, as UPPAAL's 16 bits.
+    """
+
+    source: Source
+    name: str
+    title: str
+    unit: int | None
+    declarations: tuple[Declared, ...]
+    templates: tuple[Template, ...]
+    instances: tuple[Instance, ...]
+    system: tuple[Name, ...] | None
+    queries: tuple[QueryText, ...]
+    signals: tuple[SignalText, ...] = ()
+    open_ints: bool = False

@@ -1,0 +1,386 @@
+"""The parser's tree to the types of `syntax`, rule by rule."""
+
+# ruff: noqa: ARG002, D102 - the methods are the grammar's rules, called with one signature
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from lark import Token, Transformer, Tree, v_args
+from lark.tree import Meta
+
+from rvmon.diagnostics import Span
+from rvmon.timed.language import syntax
+from rvmon.timed.language.syntax import TypeText
+from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, PathOp, UnaryOp
+from rvmon.timed.model.rules import model_error
+from rvmon.trace.time import TICKS_PER_UNIT
+
+LARGEST = (1 << 31) - 1
+"""The largest number that a model may contain, as in UPPAAL."""
+
+_CTL = {
+    "EF": PathOp.POSSIBLY,
+    "AG": PathOp.INVARIANTLY,
+    "AF": PathOp.EVENTUALLY,
+    "EG": PathOp.POTENTIALLY_ALWAYS,
+}
+
+
+@v_args(meta=True)
+class SyntaxBuilder(Transformer[Token, Any]):
+    """One method per rule of the grammar; `place` maps offsets of the text to spans."""
+
+    def __init__(self, place: Callable[[int, int], Span]) -> None:
+        super().__init__()
+        self._place = place
+
+    def _span(self, meta: Meta) -> Span:
+        return self._place(0, 0) if meta.empty else self._place(meta.start_pos, meta.end_pos)
+
+    def _token_span(self, token: Token) -> Span:
+        return self._place(token.start_pos or 0, token.end_pos or 0)
+
+    def _name(self, token: Token) -> syntax.Name:
+        return syntax.Name(str(token), self._token_span(token))
+
+    # The document.
+
+    def document(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
+        header, unit, system = ("model", ""), None, None
+        for item in items:
+            match item:
+                case Tree(data="header", children=[name]):
+                    header = (str(name), "")
+                case Tree(data="header", children=[name, title]):
+                    header = (str(name), str(title)[1:-1])
+                case Tree(data="unit", children=[ticks]):
+                    unit = ticks
+                case Tree(data="system_line", children=names):
+                    system = tuple(names)
+        return (
+            *header,
+            unit,
+            _all(items, syntax.Declaration | syntax.TypeDefinition),
+            _all(items, syntax.Template),
+            _all(items, syntax.Instance),
+            system,
+            _all(items, syntax.QueryText),
+            _all(items, syntax.SignalText),
+        )
+
+    def unit(self, meta: Meta, items: Sequence[Token]) -> Tree[int]:
+        number, unit = self._whole(items[0]), items[1]
+        if unit not in TICKS_PER_UNIT or number == 0:
+            mend = "write a whole number above 0 of " + ", ".join(TICKS_PER_UNIT)
+            raise model_error("TA001", "this is no unit of time", self._span(meta), mend)
+        return Tree("unit", [number * TICKS_PER_UNIT[unit]])
+
+    def system_line(self, meta: Meta, items: Sequence[Token]) -> Tree[syntax.Name]:
+        return Tree("system_line", [self._name(i) for i in items if i.type == "NAME"])
+
+    def system(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
+        return (
+            _all(items, syntax.Declaration | syntax.TypeDefinition),
+            _all(items, syntax.Instance),
+            tuple(items[-1].children),
+        )
+
+    def query_item(self, meta: Meta, items: Sequence[Any]) -> syntax.QueryText:
+        *head, formula = items
+        identifier = next((h.children[0] for h in head if isinstance(h, Tree)), "")
+        remark = next((h[1:-1] for h in head if isinstance(h, Token)), "")
+        text = formula.span.text
+        return syntax.QueryText(str(identifier), remark, text, formula, self._span(meta))
+
+    def signal_item(self, meta: Meta, items: Sequence[Any]) -> syntax.SignalText:
+        return syntax.SignalText(str(items[0]), items[1], self._token_span(items[0]))
+
+    # Automata.
+
+    def automaton(self, meta: Meta, items: Sequence[Any]) -> syntax.Template:
+        name, *rest = items
+        parameters: tuple[syntax.Parameter, ...] = ()
+        if rest and isinstance(rest[0], tuple):
+            parameters, *rest = rest
+        starts: list[syntax.Name] = [i.children[0] for i in rest if _is(i, "initial")]
+        for second in starts[1:]:
+            raise model_error("TA003", "a second initial location", second.span)
+        return syntax.Template(
+            str(name),
+            parameters,
+            _all(rest, syntax.Declaration | syntax.TypeDefinition),
+            _all(rest, syntax.LocationText),
+            starts[0] if starts else None,
+            _all(rest, syntax.EdgeText),
+            self._token_span(name),
+        )
+
+    def initial(self, meta: Meta, items: Sequence[Token]) -> Tree[syntax.Name]:
+        return Tree("initial", [self._name(items[0])])
+
+    def location(self, meta: Meta, items: Sequence[Any]) -> syntax.LocationText:
+        kind = LocationKind.NORMAL
+        if items[0].type in ("URGENT", "COMMITTED"):
+            kind, *items = LocationKind(items[0]), *items[1:]
+        invariant = items[1] if len(items) > 1 else None
+        return syntax.LocationText(str(items[0]), kind, invariant, self._token_span(items[0]))
+
+    def invariant(self, meta: Meta, items: Sequence[Any]) -> syntax.Expression:
+        expression: syntax.Expression = items[0]
+        return expression
+
+    def edge(self, meta: Meta, items: Sequence[Any]) -> syntax.EdgeText:
+        source, target, *clauses = items
+        parts: dict[str, Any] = {}
+        for key, value in clauses:
+            if key in parts:
+                raise model_error("TA003", f"two `{key}` clauses on one edge", self._span(meta))
+            parts[key] = value
+        return syntax.EdgeText(
+            self._name(source),
+            self._name(target),
+            self._span(meta),
+            parts.get("select", ()),
+            parts.get("when"),
+            parts.get("on"),
+            parts.get("do", ()),
+            parts.get("weight", 1.0),
+            parts.get("as", ""),
+        )
+
+    def select_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
+        return "select", items[0]
+
+    def guard_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
+        return "when", items[0]
+
+    def sync_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
+        return "on", items[0]
+
+    def update_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
+        return "do", items[0]
+
+    def weight_clause(self, meta: Meta, items: Sequence[Token]) -> tuple[str, Any]:
+        weight = float(items[0])
+        if not 0 < weight <= 1:
+            mend = "a weight is a share: above 0, at most 1"
+            raise model_error("TA017", f"weight {items[0]}", self._span(meta), mend)
+        return "weight", weight
+
+    def label_clause(self, meta: Meta, items: Sequence[Token]) -> tuple[str, Any]:
+        return "as", str(items[0]).strip('"')
+
+    def instance(self, meta: Meta, items: Sequence[Any]) -> syntax.Instance:
+        name, *parameters, template, arguments = items
+        return syntax.Instance(
+            str(name),
+            parameters[0] if parameters else (),
+            self._name(template),
+            arguments,
+            self._token_span(name),
+        )
+
+    def instances(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Instance, ...]:
+        return tuple(items)
+
+    def parameter_list(self, meta: Meta, items: Sequence[Any]) -> Any:
+        return items[0]
+
+    # Declarations.
+
+    def declarations(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Declared, ...]:
+        return _all(items, syntax.Declaration | syntax.TypeDefinition)
+
+    def declaration(self, meta: Meta, items: Sequence[Any]) -> Tree[syntax.Declaration]:
+        kind, *declarators = items
+        return Tree(
+            "declaration",
+            [syntax.Declaration(kind, name, sizes, initial, span)
+             for name, sizes, initial, span in declarators],
+        )  # fmt: skip
+
+    def declarator(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
+        name, *rest = items
+        sizes = tuple(item.children[0] for item in rest if isinstance(item, Tree))
+        initial = rest[-1] if rest and not isinstance(rest[-1], Tree) else None
+        return str(name), sizes, initial, self._token_span(name)
+
+    def size(self, meta: Meta, items: Sequence[Any]) -> Tree[Any]:
+        return Tree("size", list(items))
+
+    def values(self, meta: Meta, items: Sequence[Any]) -> syntax.Values:
+        return syntax.Values(tuple(items), self._span(meta))
+
+    def typedef(self, meta: Meta, items: Sequence[Any]) -> syntax.TypeDefinition:
+        return syntax.TypeDefinition(str(items[1]), items[0], self._token_span(items[1]))
+
+    def prefix(self, meta: Meta, items: Sequence[Token]) -> str:
+        return str(items[0])
+
+    def type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        *prefixes, base = items
+        return TypeText(
+            base.base,
+            self._span(meta),
+            base.low,
+            base.high,
+            base.name,
+            const="const" in prefixes,
+            broadcast="broadcast" in prefixes,
+            urgent="urgent" in prefixes,
+        )
+
+    def int_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        low, high = items or (None, None)
+        return TypeText(BaseType.INT, self._span(meta), low, high)
+
+    def bool_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        return TypeText(BaseType.BOOL, self._span(meta))
+
+    def clock_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        return TypeText(BaseType.CLOCK, self._span(meta))
+
+    def channel_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        return TypeText(BaseType.CHANNEL, self._span(meta))
+
+    def named_type(self, meta: Meta, items: Sequence[Token]) -> TypeText:
+        return TypeText(BaseType.NAMED, self._span(meta), name=str(items[0]))
+
+    def parameters(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Parameter, ...]:
+        return tuple(items)
+
+    def parameter(self, meta: Meta, items: Sequence[Any]) -> syntax.Parameter:
+        kind, *rest = items
+        reference = _is(rest[0], "reference")
+        name, *sizes = rest[1:] if reference else rest
+        return syntax.Parameter(
+            kind,
+            str(name),
+            tuple(size.children[0] for size in sizes),
+            reference,
+            self._token_span(name),
+        )
+
+    def selections(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Selection, ...]:
+        return tuple(items)
+
+    def selection(self, meta: Meta, items: Sequence[Any]) -> syntax.Selection:
+        return syntax.Selection(str(items[0]), items[1], self._span(meta))
+
+    # Labels.
+
+    def sync(self, meta: Meta, items: Sequence[Any]) -> syntax.SyncText:
+        return syntax.SyncText(items[0], items[1] == "!", self._span(meta))
+
+    def channel_use(self, meta: Meta, items: Sequence[Any]) -> syntax.Expression:
+        channel: syntax.Expression = items[0]
+        return channel
+
+    def updates(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
+        return tuple(items[0]) if items else ()
+
+    def update_list(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
+        return tuple(items)
+
+    def assign(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
+        target, sign, value = items
+        span = self._span(meta)
+        if sign not in (":=", "="):
+            value = syntax.Binary(BinaryOp(sign[0]), target, value, span)
+        return syntax.UpdateText(target, value, span)
+
+    def step(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
+        target, sign = items if items[1] in ("++", "--") else reversed(items)
+        span = self._span(meta)
+        value = syntax.Binary(BinaryOp(sign[0]), target, syntax.Number(1, span), span)
+        return syntax.UpdateText(target, value, span)
+
+    # Expressions.
+
+    def _binary(self, meta: Meta, op: BinaryOp, items: Sequence[Any]) -> syntax.Binary:
+        return syntax.Binary(op, items[0], items[-1], self._span(meta))
+
+    def imply(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
+        return self._binary(meta, BinaryOp.IMPLY, items)
+
+    def either(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
+        return self._binary(meta, BinaryOp.OR, items)
+
+    def both(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
+        return self._binary(meta, BinaryOp.AND, items)
+
+    def binary(self, meta: Meta, items: Sequence[Any]) -> syntax.Binary:
+        return self._binary(meta, BinaryOp(items[1]), items)
+
+    def negation(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
+        return syntax.Unary(UnaryOp.NOT, items[0], self._span(meta))
+
+    def negative(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
+        return syntax.Unary(UnaryOp.NEGATE, items[-1], self._span(meta))
+
+    def conditional(self, meta: Meta, items: Sequence[Any]) -> syntax.Conditional:
+        return syntax.Conditional(items[0], items[1], items[2], self._span(meta))
+
+    def quantified(self, meta: Meta, items: Sequence[Any]) -> syntax.Quantified:
+        word, name, kind, body = items
+        return syntax.Quantified(word == "forall", str(name), kind, body, self._span(meta))
+
+    def number(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
+        return syntax.Number(self._whole(items[0]), self._span(meta))
+
+    def _whole(self, token: Token) -> int:
+        # Python itself refuses to read a few thousand digits.
+        if len(token.lstrip("0")) > len(str(LARGEST)) or int(token) > LARGEST:
+            mend = f"numbers go up to {LARGEST:,}"
+            raise model_error("TA007", "the number is too large", self._token_span(token), mend)
+        return int(token)
+
+    def truth(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
+        return syntax.Number(int(items[0] == "true"), self._span(meta))
+
+    def name(self, meta: Meta, items: Sequence[Token]) -> syntax.Name:
+        return self._name(items[0])
+
+    def index(self, meta: Meta, items: Sequence[Any]) -> syntax.Index:
+        return syntax.Index(items[0], items[1], self._span(meta))
+
+    def member(self, meta: Meta, items: Sequence[Any]) -> syntax.Member:
+        return syntax.Member(items[0], str(items[1]), self._span(meta))
+
+    def call(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
+        return syntax.Call(str(items[0]), items[1], self._span(meta))
+
+    def arguments(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Expression, ...]:
+        return tuple(items)
+
+    # Queries.
+
+    def path(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
+        word, *bound, body = items
+        return syntax.Path(PathOp(word), body, bound[0] if bound else None, self._span(meta))
+
+    def path_prefix(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
+        word, *bound, body = items
+        return syntax.Path(_CTL[word], body, bound[0] if bound else None, self._span(meta))
+
+    def leads_to(self, meta: Meta, items: Sequence[Any]) -> syntax.LeadsTo:
+        left, *bound, right = items
+        return syntax.LeadsTo(left, right, bound[0] if bound else None, self._span(meta))
+
+    def bound(self, meta: Meta, items: Sequence[Any]) -> syntax.Expression:
+        expression: syntax.Expression = items[0]
+        return expression
+
+
+def _is(item: object, rule: str) -> bool:
+    return isinstance(item, Tree) and item.data == rule
+
+
+def _all(items: Sequence[Any], kind: Any) -> tuple[Any, ...]:
+    """The items of a kind; the declarators of one declaration stand in a tree of their own."""
+    flat: list[Any] = []
+    for item in items:
+        flat += item.children if _is(item, "declaration") else [item]
+    return tuple(item for item in flat if isinstance(item, kind))

@@ -1,0 +1,197 @@
+"""UPPAAL's XML to syntax.
+
+Read: declarations, templates with parameters, locations (invariant, urgent, committed), edges
+(select, guard, synchronisation, assignment), instances, the system line, queries. Rates of
+locations without invariant (`exponentialrate`), colours, coordinates and test code do not change
+which runs there are: they are passed over. Refused, with place and reason: branch points,
+functions, stop-watches, and what `ta.lark` has no rule for. A query that cannot be read is a
+warning, and left out.
+
+A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
+comments as `export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and
+`as name` in an edge's comments; `query R1` alone on the first line of a query's comment.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from rvmon.diagnostics import Diagnostic, Severity, Source
+from rvmon.errors import ModelError
+from rvmon.timed.language import syntax
+from rvmon.timed.language.declare import Findings
+from rvmon.timed.language.parse import parse_part
+from rvmon.timed.language.xml_tree import Element, read_xml
+from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.model.rules import finding, model_error
+from rvmon.trace.time import TICKS_PER_UNIT
+
+_UNIT = re.compile(r"^[ \t]*//[ \t]*unit[ \t]+([1-9]\d{0,9})[ \t]+(\w+)[ \t]*$", re.MULTILINE)
+_NAME = re.compile(
+    r"^[ \t]*//[ \t]*network[ \t]+(\w+)(?:[ \t]+\"([^\"\n]*)\")?[ \t]*$", re.MULTILINE
+)
+_WEIGHT = re.compile(r"^[ \t]*weight[ \t]+(\d+(?:\.\d+)?)[ \t]*$", re.MULTILINE)
+_QUERY = re.compile(r"\s*query[ \t]+([A-Za-z_]\w*)[ \t]*(?:\n|$)")
+_LABEL = re.compile(r"^[ \t]*as[ \t]+(\S+)[ \t]*$", re.MULTILINE)
+
+
+def read_uppaal(source: Source) -> tuple[syntax.Document, list[Diagnostic]]:
+    """Read a model in UPPAAL's XML.
+
+    Returns:
+        The model, and warnings.
+
+    Raises:
+        ModelError: with everything that cannot be read.
+    """
+    root = read_xml(source)
+    if root.name != "nta":
+        mend = "the outermost element of UPPAAL's models is `nta`"
+        raise model_error("TA018", f"`{root.name}` is no model", root.span(), mend)
+    findings, warnings = Findings(), list[Diagnostic]()
+    declarations = _part(root.first("declaration"), "declarations", findings, ())
+    templates = tuple(_template(element, findings) for element in root.all("template"))
+    instances, system = _system(root, findings)
+    queries = tuple(_queries(root, warnings))
+    findings.raise_errors()
+    text = _text(root.first("declaration"))
+    name, unit = _NAME.search(text), _UNIT.search(text)
+    document = syntax.Document(
+        source,
+        name[1] if name else "model",
+        (name[2] or "") if name else "",
+        int(unit[1]) * TICKS_PER_UNIT[unit[2]] if unit and unit[2] in TICKS_PER_UNIT else None,
+        (*declarations, *system[0]),
+        templates,
+        instances,
+        system[1],
+        queries,
+        open_ints=True,
+    )
+    return document, warnings
+
+
+def _text(element: Element | None) -> str:
+    return "" if element is None else element.text
+
+
+def _part(element: Element | None, start: str, findings: Findings, default: Any) -> Any:
+    """The text of an element, read by a rule of the grammar; `default` if there is none."""
+    if element is None or not element.text.strip():
+        return default
+    return findings.attempt(lambda: parse_part(element.text, start, element.place), default)
+
+
+def _system(
+    root: Element, findings: Findings
+) -> tuple[
+    tuple[syntax.Instance, ...],
+    tuple[tuple[syntax.Declared, ...], tuple[syntax.Name, ...] | None],
+]:
+    first = _part(root.first("instantiation"), "instances", findings, ())
+    element = root.first("system")
+    declared, instances, names = _part(element, "system", findings, ((), (), None))
+    return (*first, *instances), (declared, names)
+
+
+def _template(element: Element, findings: Findings) -> syntax.Template:
+    name = element.first("name")
+    span = element.span() if name is None else name.place(0, len(name.text))
+    if name is None or not name.text.strip():
+        findings.add(finding("TA018", "a template without a name", span))
+    names = {
+        place.attributes.get("id", ""): _location_name(place) for place in element.all("location")
+    }
+    for branch in element.all("branchpoint"):
+        mend = "make one edge for each branch, with its probability as weight"
+        message = "branch points (probabilities) are not supported"
+        findings.add(finding("TA016", message, branch.span(), mend))
+    locations = tuple(_location(place, findings) for place in element.all("location"))
+    return syntax.Template(
+        _text(name).strip(),
+        _part(element.first("parameter"), "parameters", findings, ()),
+        _part(element.first("declaration"), "declarations", findings, ()),
+        locations,
+        _reference(element.first("init"), names),
+        tuple(_edge(edge, names, findings) for edge in element.all("transition")),
+        span,
+    )
+
+
+def _location_name(element: Element) -> str:
+    return _text(element.first("name")).strip() or element.attributes.get("id", "")
+
+
+def _location(element: Element, findings: Findings) -> syntax.LocationText:
+    kind = LocationKind.NORMAL
+    for mark in (LocationKind.URGENT, LocationKind.COMMITTED):
+        if element.first(mark.value) is not None:
+            kind = mark
+    labels = _labels(element)
+    name = element.first("name")
+    span = element.span() if name is None else name.place(0, len(name.text))
+    invariant = _part(labels.get("invariant"), "expression", findings, None)
+    return syntax.LocationText(_location_name(element), kind, invariant, span)
+
+
+def _labels(element: Element) -> dict[str, Element]:
+    return {label.attributes.get("kind", ""): label for label in element.all("label")}
+
+
+def _reference(element: Element | None, names: Mapping[str, str]) -> syntax.Name | None:
+    """The location that a `ref` means; an unknown one keeps its id, which no location has."""
+    if element is None:
+        return None
+    reference = element.attributes.get("ref", "")
+    return syntax.Name(names.get(reference, reference), element.span())
+
+
+def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syntax.EdgeText:
+    labels = _labels(element)
+    nowhere = syntax.Name("", element.span())
+    comments = _text(labels.get("comments"))
+    weight, label = _WEIGHT.search(comments), _LABEL.search(comments)
+    if weight and not 0 < float(weight[1]) <= 1:
+        message, mend = f"weight {weight[1]}", "a weight is a share: above 0, at most 1"
+        findings.add(finding("TA017", message, labels["comments"].span(), mend))
+        weight = None
+    if "probability" in labels:
+        message = "probabilities of branches are not supported"
+        findings.add(finding("TA016", message, labels["probability"].span()))
+    return syntax.EdgeText(
+        _reference(element.first("source"), names) or nowhere,
+        _reference(element.first("target"), names) or nowhere,
+        element.span(),
+        _part(labels.get("select"), "selections", findings, ()),
+        _part(labels.get("guard"), "expression", findings, None),
+        _part(labels.get("synchronisation"), "sync", findings, None),
+        _part(labels.get("assignment"), "updates", findings, ()),
+        float(weight[1]) if weight else 1.0,
+        label[1] if label else "",
+    )
+
+
+def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.QueryText]:
+    queries = root.first("queries")
+    for number, element in enumerate([] if queries is None else queries.all("query"), start=1):
+        formula = element.first("formula")
+        if formula is None or not formula.text.strip():
+            continue
+        comment = _text(element.first("comment"))
+        named = _QUERY.match(comment)
+        remark = " ".join((comment[named.end() :] if named else comment).split())
+        try:
+            read = parse_part(formula.text, "query", formula.place)
+        except ModelError as error:
+            why = "; ".join(diagnostic.message for diagnostic in error.diagnostics)
+            span = error.diagnostics[0].spans[0].span if error.diagnostics[0].spans else None
+            message = f"query {number} is left out: {why}"
+            mend = error.diagnostics[0].help or "E<>, A[], A<>, E[] and --> are understood"
+            warnings.append(finding("TA020", message, span, mend, severity=Severity.WARNING))
+            continue
+        length = len(formula.text.rstrip())
+        text = formula.text.strip()
+        span = formula.place(0, length)
+        yield syntax.QueryText(named[1] if named else "", remark, text, read, span)

@@ -1,0 +1,1 @@
+"""Networks of timed automata with all names resolved: data, and what their expressions mean."""

@@ -1,0 +1,143 @@
+"""Conditions in normal form: negation at the atoms, clocks apart from variables."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from rvmon.diagnostics import Span
+from rvmon.timed.model.expressions import (
+    TRUE,
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Deadlock,
+    Expression,
+    InLocation,
+    Lookup,
+    PathFormula,
+    UnaryOperation,
+    VariableValue,
+)
+from rvmon.timed.model.network import Guard
+from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
+from rvmon.timed.model.rules import model_error
+
+_NEGATED_CLOCK = {
+    ClockOp.LT: ClockOp.GE,
+    ClockOp.LE: ClockOp.GT,
+    ClockOp.GE: ClockOp.LT,
+    ClockOp.GT: ClockOp.LE,
+}
+_NEGATED_PATH = {
+    PathOp.POSSIBLY: PathOp.INVARIANTLY,
+    PathOp.INVARIANTLY: PathOp.POSSIBLY,
+    PathOp.EVENTUALLY: PathOp.POTENTIALLY_ALWAYS,
+    PathOp.POTENTIALLY_ALWAYS: PathOp.EVENTUALLY,
+}
+
+
+def is_discrete(expression: Expression) -> bool:
+    """Whether locations and variables alone give the expression a value."""
+    match expression:
+        case Constant() | VariableValue() | Lookup() | InLocation():
+            return True
+        case ClockCompare() | Deadlock() | PathFormula():
+            return False
+        case UnaryOperation(_, operand):
+            return is_discrete(operand)
+        case BinaryOperation(_, left, right):
+            return is_discrete(left) and is_discrete(right)
+        case Choice(condition, then, otherwise):
+            return is_discrete(condition) and is_discrete(then) and is_discrete(otherwise)
+        case _:
+            assert_never(expression)
+
+
+def normal_form(expression: Expression, positive: bool = True) -> Expression:
+    """The expression, or its negation, with `and` and `or` over discrete parts and atoms."""
+    if is_discrete(expression):
+        return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
+    match expression:
+        case ClockCompare(clock, op, bound):
+            return expression if positive else ClockCompare(clock, _NEGATED_CLOCK[op], bound)
+        case Deadlock():
+            return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
+        case PathFormula(op, body, bound):
+            if positive:
+                return PathFormula(op, normal_form(body), bound)
+            return PathFormula(_NEGATED_PATH[op], normal_form(body, positive), bound)
+        case UnaryOperation(UnaryOp.NOT, operand):
+            return normal_form(operand, not positive)
+        case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):
+            if not positive:
+                op = BinaryOp.OR if op is BinaryOp.AND else BinaryOp.AND
+            parts = normal_form(left, positive), normal_form(right, positive)
+            return BinaryOperation(op, *parts)
+        case BinaryOperation(BinaryOp.IMPLY, left, right):
+            op = BinaryOp.OR if positive else BinaryOp.AND
+            return BinaryOperation(
+                op, normal_form(left, not positive), normal_form(right, positive)
+            )
+        case BinaryOperation(BinaryOp.EQ | BinaryOp.NE as op, left, right):
+            same = (op is BinaryOp.EQ) == positive
+            return BinaryOperation(
+                BinaryOp.OR,
+                BinaryOperation(BinaryOp.AND, normal_form(left), normal_form(right, same)),
+                BinaryOperation(
+                    BinaryOp.AND, normal_form(left, positive=False), normal_form(right, not same)
+                ),
+            )
+        case Choice(condition, then, otherwise):
+            return BinaryOperation(
+                BinaryOp.OR,
+                BinaryOperation(BinaryOp.AND, normal_form(condition), normal_form(then, positive)),
+                BinaryOperation(
+                    BinaryOp.AND,
+                    normal_form(condition, positive=False),
+                    normal_form(otherwise, positive),
+                ),
+            )
+        case _:  # arithmetic, and what is discrete
+            raise AssertionError(f"{expression} is no condition")
+
+
+def with_deadlock(formula: Expression, value: bool) -> Expression:
+    """A normalised formula in which `deadlock` is true, or false."""
+    match formula:
+        case Deadlock():
+            return Constant(int(value))
+        case UnaryOperation(UnaryOp.NOT, Deadlock()):
+            return Constant(int(not value))
+        case BinaryOperation(op, left, right) if not is_discrete(formula):
+            return BinaryOperation(op, with_deadlock(left, value), with_deadlock(right, value))
+        case _:
+            return formula
+
+
+def split_guard(expression: Expression, span: Span) -> Guard:
+    """A condition as its discrete part and its clock bounds, which must all hold.
+
+    Raises:
+        ModelError: clocks stand under `or`.
+    """
+    data: Expression = TRUE
+    clocks: list[ClockCompare] = []
+    for part in _conjuncts(normal_form(expression)):
+        if isinstance(part, ClockCompare):
+            clocks.append(part)
+        elif is_discrete(part):
+            data = part if data == TRUE else BinaryOperation(BinaryOp.AND, data, part)
+        else:
+            mend = "make one edge (or location) for each alternative"
+            raise model_error("TA009", "a clock under `or`", span, mend)
+    return Guard(data, tuple(clocks))
+
+
+def _conjuncts(expression: Expression) -> list[Expression]:
+    match expression:
+        case BinaryOperation(BinaryOp.AND, left, right):
+            return [*_conjuncts(left), *_conjuncts(right)]
+        case _:
+            return [expression]

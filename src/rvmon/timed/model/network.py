@@ -1,0 +1,175 @@
+"""A network of timed automata with all names resolved: what every algorithm here starts from.
+
+Clocks, variables, channels, automata, locations and edges are referred to by their index in the
+tuples of `Network`. Arrays are spread over neighbouring indices.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.timed.model.expressions import TRUE, ClockCompare, Expression, Slot
+from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.model.scope import Names
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """A clock; all start at 0 and run at the rate of time."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """An integer in `[low, high]`; a bool is one in `[0, 1]`."""
+
+    name: str
+    low: int
+    high: int
+    initial: int
+    is_bool: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """A channel: a sender meets one receiver, or all that can receive if `broadcast`.
+
+    Time does not pass while an `urgent` one can be used.
+    """
+
+    name: str
+    broadcast: bool = False
+    urgent: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Sync:
+    """One end of a channel."""
+
+    slot: Slot
+    sends: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """`slot = value`; the value must lie in the variable's range."""
+
+    slot: Slot
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Reset:
+    """`clock = value`, a number of units of time that is not negative."""
+
+    clock: int
+    value: Expression
+    span: Span | None = field(default=None, compare=False)
+
+
+Update = Assignment | Reset
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """A condition: on the variables and, all together, on clocks."""
+
+    data: Expression = TRUE
+    clocks: tuple[ClockCompare, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """A location; its invariant bounds clocks from above only."""
+
+    name: str
+    kind: LocationKind
+    invariant: Guard
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """An edge between two locations of one automaton.
+
+    Attributes:
+        updates: in the order in which they happen.
+        weight: share of the runs that take it where they can, in (0, 1].
+        label: the action's name in recordings; empty: the channel's name, if it has one.
+        text: the edge for people.
+    """
+
+    source: int
+    target: int
+    guard: Guard
+    sync: Sync | None
+    updates: tuple[Update, ...]
+    weight: float
+    label: str
+    text: str
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Automaton:
+    """One process of the network."""
+
+    name: str
+    locations: tuple[Location, ...]
+    edges: tuple[Edge, ...]
+    initial: int
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LeadsToFormula:
+    """Wherever `left` holds, `right` will on every run, within `bound` if there is one."""
+
+    left: Expression
+    right: Expression
+    bound: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Query:
+    """A question to the model checker; `formula` has a path operator outermost."""
+
+    id: str
+    remark: str
+    text: str
+    formula: Expression | LeadsToFormula
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A name of specifications for something of the network."""
+
+    name: str
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """Automata that run in parallel.
+
+    Attributes:
+        unit: ticks of one unit of time; `None` if the model names none.
+        signals: what specifications may call by name, read off locations and variables.
+        warnings: what is odd about it but no error.
+        names: what queries may refer to.
+    """
+
+    name: str
+    title: str
+    unit: int | None
+    clocks: tuple[Clock, ...]
+    variables: tuple[Variable, ...]
+    channels: tuple[Channel, ...]
+    automata: tuple[Automaton, ...]
+    queries: tuple[Query, ...]
+    signals: tuple[Signal, ...]
+    warnings: tuple[Diagnostic, ...] = field(compare=False)
+    names: Names = field(compare=False, repr=False)

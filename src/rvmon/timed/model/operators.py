@@ -1,0 +1,58 @@
+"""Operators and kinds, which a model as written and its network have in common."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class UnaryOp(StrEnum):
+    """Operators on one operand."""
+
+    NOT = "not"
+    NEGATE = "-"
+
+
+class BinaryOp(StrEnum):
+    """Operators on two operands."""
+
+    AND = "and"
+    OR = "or"
+    IMPLY = "imply"
+    LT = "<"
+    LE = "<="
+    EQ = "=="
+    NE = "!="
+    GE = ">="
+    GT = ">"
+    ADD = "+"
+    SUB = "-"
+    MUL = "*"
+    DIV = "/"
+    MOD = "%"
+
+
+class PathOp(StrEnum):
+    """What must hold of the runs from a state."""
+
+    POSSIBLY = "E<>"
+    INVARIANTLY = "A[]"
+    EVENTUALLY = "A<>"
+    POTENTIALLY_ALWAYS = "E[]"
+
+
+class BaseType(StrEnum):
+    """What a declared name holds."""
+
+    INT = "int"
+    BOOL = "bool"
+    CLOCK = "clock"
+    CHANNEL = "chan"
+    NAMED = "typedef"
+
+
+class LocationKind(StrEnum):
+    """Whether time passes in a location, and whether it must be left next."""
+
+    NORMAL = "normal"
+    URGENT = "urgent"
+    COMMITTED = "committed"

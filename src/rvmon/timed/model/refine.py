@@ -1,0 +1,58 @@
+"""The same network in a finer unit of time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rvmon.timed.model.expressions import BinaryOperation, ClockCompare, Constant, Expression
+from rvmon.timed.model.network import Automaton, Edge, Guard, Location, Network, Reset, Update
+from rvmon.timed.model.operators import BinaryOp
+
+
+def finer(network: Network, factor: int) -> Network:
+    """A network whose unit of time is so many times smaller, and whose runs are the same.
+
+    Its queries are left out, since they would speak of the old unit.
+    """
+    return replace(
+        network,
+        unit=None if network.unit is None else network.unit // factor,
+        automata=tuple(_automaton(automaton, factor) for automaton in network.automata),
+        queries=(),
+    )
+
+
+def _automaton(automaton: Automaton, factor: int) -> Automaton:
+    return replace(
+        automaton,
+        locations=tuple(_location(location, factor) for location in automaton.locations),
+        edges=tuple(_edge(edge, factor) for edge in automaton.edges),
+    )
+
+
+def _location(location: Location, factor: int) -> Location:
+    return replace(location, invariant=_guard(location.invariant, factor))
+
+
+def _edge(edge: Edge, factor: int) -> Edge:
+    updates = tuple(_update(update, factor) for update in edge.updates)
+    return replace(edge, guard=_guard(edge.guard, factor), updates=updates)
+
+
+def _update(update: Update, factor: int) -> Update:
+    return (
+        replace(update, value=_times(update.value, factor)) if isinstance(update, Reset) else update
+    )
+
+
+def _guard(guard: Guard, factor: int) -> Guard:
+    return Guard(
+        guard.data,
+        tuple(ClockCompare(one.clock, one.op, _times(one.bound, factor)) for one in guard.clocks),
+    )
+
+
+def _times(number: Expression, factor: int) -> Expression:
+    if isinstance(number, Constant):
+        return Constant(number.value * factor)
+    return BinaryOperation(BinaryOp.MUL, number, Constant(factor))

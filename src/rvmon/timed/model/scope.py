@@ -1,0 +1,147 @@
+"""What names stand for while a model is elaborated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from rvmon.diagnostics import Span
+from rvmon.timed.model.expressions import Expression, Slot
+from rvmon.timed.model.operators import BaseType
+
+ConstantValue = int | tuple["ConstantValue", ...]
+"""A number, or an array of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedType:
+    """A type with its constants evaluated; an int always has a range."""
+
+    base: BaseType
+    low: int = 0
+    high: int = 1
+    const: bool = False
+    broadcast: bool = False
+    urgent: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantSymbol:
+    """A constant, a parameter's value, or a bound variable of a quantifier or `select`.
+
+    Attributes:
+        extents: the indices of each dimension, if it is an array.
+    """
+
+    value: ConstantValue
+    extents: tuple[range, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class VariableSymbol:
+    """A variable, or an array of them while the slot has fewer indices than extents."""
+
+    slot: Slot
+
+
+@dataclass(frozen=True, slots=True)
+class ClockSymbol:
+    """A clock, or an array of them while the slot has fewer indices than extents."""
+
+    slot: Slot
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelSymbol:
+    """A channel, or an array of them while the slot has fewer indices than extents."""
+
+    slot: Slot
+
+
+@dataclass(frozen=True, slots=True)
+class TypeSymbol:
+    """A typedef."""
+
+    type: ResolvedType
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenSymbol:
+    """An element of a constant array, chosen by the variables; `extent` are its indices."""
+
+    values: tuple[int, ...]
+    extent: range
+    index: Expression
+
+
+Symbol = ConstantSymbol | ChosenSymbol | VariableSymbol | ClockSymbol | ChannelSymbol | TypeSymbol
+
+
+@dataclass(slots=True)
+class Scope:
+    """Names of one level, and those of the levels around it.
+
+    Attributes:
+        prefix: put before the names of what is declared here, such as `Train(1).`.
+        places: where each name was declared.
+        families: names of automata, templates and instances.
+    """
+
+    parent: Scope | None = None
+    prefix: str = ""
+    symbols: dict[str, Symbol] = field(default_factory=dict)
+    places: dict[str, Span] = field(default_factory=dict)
+    families: set[str] = field(default_factory=set)
+
+    def find(self, name: str) -> Symbol | None:
+        """The innermost meaning of a name."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.symbols:
+                return scope.symbols[name]
+            scope = scope.parent
+        return None
+
+    def declares(self, name: str) -> bool:
+        """Whether a name is declared here or around, be it without a meaning."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.places:
+                return True
+            scope = scope.parent
+        return False
+
+    def names_automaton(self, name: str) -> bool:
+        """Whether a name without another meaning is that of an automaton."""
+        return name in self.families or (
+            self.parent is not None and self.parent.names_automaton(name)
+        )
+
+    def names(self) -> list[str]:
+        """All names that can be seen from here."""
+        return [*self.symbols, *(self.parent.names() if self.parent else ())]
+
+    def inner(self, symbols: Mapping[str, Symbol]) -> Scope:
+        """A level inside this one with some names of its own."""
+        return Scope(self, self.prefix, dict(symbols))
+
+
+@dataclass(frozen=True, slots=True)
+class AutomatonSymbol:
+    """An automaton as queries see it: its locations and its local names."""
+
+    index: int
+    locations: Mapping[str, int]
+    scope: Scope
+
+
+AutomatonKey = tuple[str, tuple[int, ...]]
+"""The name of an automaton's template or instance, and the values of its parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """All that a query on a network may refer to."""
+
+    top: Scope
+    automata: Mapping[AutomatonKey, AutomatonSymbol]

@@ -1,0 +1,1 @@
+"""Requirements of a specification, checked on all runs of a network."""

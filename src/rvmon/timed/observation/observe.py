@@ -1,0 +1,155 @@
+"""Requirements of a specification, checked on all runs of a network."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from rvmon.automaton.construct import Budget as TableBudget
+from rvmon.automaton.construct import DoesNotCloseError, construct
+from rvmon.formula.alphabet import alphabet_of
+from rvmon.formula.factory import Factory
+from rvmon.formula.horizon import horizon
+from rvmon.formula.lower import lower
+from rvmon.formula.state import StateOp
+from rvmon.spec.checked.formula import BoundAtom
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
+from rvmon.timed.conformance.recordings import labels_of
+from rvmon.timed.language.elaborate import signal_on
+from rvmon.timed.model.evaluate import Evaluator, evaluator
+from rvmon.timed.model.expressions import VariableValue
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.refine import finer
+from rvmon.timed.model.rules import model_error
+from rvmon.timed.model.scope import VariableSymbol
+from rvmon.timed.observation.observed_run import observed_run
+from rvmon.timed.observation.observer import (
+    Observed,
+    ObservedLink,
+    ObservedSite,
+    Phase,
+    is_failed,
+    is_passed,
+)
+from rvmon.timed.observation.outcome import Observation
+from rvmon.timed.observation.propositions import Letters, NotExpressibleError
+from rvmon.timed.search.explore import explore
+from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.problem import UNLIMITED, Budget, Node, Watch
+from rvmon.timed.zones.start import check_start
+from rvmon.trace.time import TICKS_PER_UNIT
+
+UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
+"""What is said of a requirement without deadline that no finite run fails."""
+
+_Node = Node[ObservedSite, ObservedLink]
+
+
+def observe(
+    network: Network,
+    spec: CheckedSpec,
+    *,
+    bindings: Mapping[str, str] | None = None,
+    budget: Budget = UNLIMITED,
+    watch: Watch | None = None,
+) -> Iterator[Observation]:
+    """Check each requirement of a specification on all runs of a network.
+
+    Signals are the network's `signal` lines, its variables of the same name, or bindings; events
+    are labels of its edges, or its channels.
+
+    Args:
+        network: with a unit of time.
+        spec: in held time.
+        bindings: expressions over the network by signal.
+        budget: when to give up, for each requirement.
+        watch: called now and then.
+
+    Raises:
+        ModelError: the network has no unit or cannot start, or a binding has no meaning on it.
+    """
+    if network.unit is None:
+        raise model_error("TA023", "the model has no unit of time", None, "write `unit 50 ms`")
+    check_start(network)
+    bound = [signal_on(network, name, text) for name, text in (bindings or {}).items()]
+    network = replace(network, signals=(*network.signals, *bound))
+    for requirement in spec.requirements.values():
+        meter = Meter(budget, watch)
+        try:
+            yield _observe(network, spec, requirement, meter)
+        except NotExpressibleError as error:
+            yield Observation(
+                requirement.id, requirement.text, None, None, None, None, network,
+                meter.statistics(), f"not expressible: {error}",
+            )  # fmt: skip
+
+
+def _observe(
+    network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
+) -> Observation:
+    if spec.time is not TimeModel.HELD:
+        raise NotExpressibleError("only requirements in held time are checked on models")
+    if requirement.captures or requirement.for_each is not None:
+        raise NotExpressibleError("it captures values")
+    factory = Factory()
+    obligation = lower(requirement, factory)
+    alphabet = alphabet_of(obligation.owed)
+    letters = Letters(signals_of(network), frozenset(labels_of(network)))
+    trigger = obligation.trigger
+    if trigger is None:
+        raise NotExpressibleError("it is judged at the end of a trace")
+    if not (trigger.op is StateOp.LEAF and isinstance(trigger.leaf, BoundAtom)):
+        letters.require(trigger)
+    for proposition in alphabet.propositions:
+        letters.require(proposition)
+    try:
+        automaton = construct(factory.next(obligation.owed), alphabet, TableBudget())
+    except DoesNotCloseError as error:
+        raise NotExpressibleError(f"it has no finite monitor: {error}") from None
+    unit = network.unit or 1
+    ticks = [cut for place in automaton.locations for cuts in place.cuts for cut in cuts]
+    if any(tick % unit > 1 for tick in ticks) and unit % TICKS_PER_UNIT["ms"] == 0:
+        network = finer(network, unit // TICKS_PER_UNIT["ms"])
+    problem = Observed(network, obligation, requirement.pulse, automaton, letters)
+    first: dict[str, _Node] = {}
+
+    def tell(node: _Node) -> None:
+        if node.site.phase is not Phase.IDLE:
+            first.setdefault("triggered", node)
+        if is_passed(node.site):
+            first.setdefault("passing", node)
+        elif is_failed(node.site):
+            first.setdefault("failing", node)
+
+    explore(problem, meter, tell)
+    runs = {name: observed_run(network, problem, node) for name, node in first.items()}
+    holds: bool | None = "failing" not in first
+    remark = ""
+    if meter.stopped and holds:
+        holds, remark = None, f"not decided: {meter.stopped}"
+    elif holds and "triggered" not in first:
+        remark = "vacuous: no run triggers it"
+    elif holds and horizon(obligation.owed) is None:
+        remark = UNDECIDED_IN_THE_END
+    return Observation(
+        requirement.id,
+        requirement.text,
+        holds,
+        runs.get("triggered"),
+        runs.get("passing"),
+        runs.get("failing"),
+        network,
+        meter.statistics(),
+        remark,
+    )
+
+
+def signals_of(network: Network) -> dict[str, Evaluator]:
+    """How specifications' names are read off the network; its own variables come last."""
+    signals = {}
+    for name, symbol in network.names.top.symbols.items():
+        if isinstance(symbol, VariableSymbol) and not symbol.slot.extents:
+            signals[name] = evaluator(VariableValue(symbol.slot))
+    for signal in network.signals:
+        signals[signal.name] = evaluator(signal.value)
+    return signals

@@ -1,0 +1,170 @@
+"""All timed runs along a path: the difference constraints between its firing times.
+
+The times of the steps along a path satisfy constraints `t[q] − t[p] <= c`; closed, they are exactly
+the set of timed runs. A solution with integer constants and strict bounds exists if and only if one
+exists on a grid of 1/scale, where `scale` is larger than the number of steps: so all is done in
+integers, a strict bound being one grid step short.
+
+Source: Alur, Kurshan, Viswanathan, Membership Questions for Timed and Hybrid Automata, RTSS 1998
+(a path's timed runs as difference constraints).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise, product
+from math import ceil, inf, isqrt
+from random import Random
+from typing import TYPE_CHECKING
+
+from rvmon.timed.runs.run import Timing, Window
+from rvmon.timed.zones.dbm import Atom, Zone
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class TimedStep:
+    """A step as far as its time matters.
+
+    Attributes:
+        waits: whether time may pass before it.
+        leave: bounds that hold at its instant, before it.
+        resets: clocks that it sets, and their values.
+        enter: bounds that hold at its instant, after it.
+    """
+
+    waits: bool
+    leave: tuple[Atom, ...]
+    resets: tuple[tuple[int, float], ...]
+    enter: tuple[Atom, ...]
+
+
+def timing_of(
+    steps: Sequence[TimedStep], start: Zone | None = None, *, rounds: int = 1
+) -> Timing | None:
+    """The timed runs along a path; `None` if there are none.
+
+    Args:
+        steps: of the path.
+        start: the valuations it may start from; `None`: all clocks are 0. If given, the last rows
+            and columns of the result are the instants at which each clock was 0 before.
+        rounds: how often the path will be put together with itself: the grid is as much finer.
+    """
+    import numpy as np
+
+    dim = 1 if start is None else isqrt(len(start))
+    size = len(steps) + dim
+    scale = rounds * size + 1
+    bounds = np.full((size, size), inf)
+    np.fill_diagonal(bounds, 0.0)
+
+    def limit(p: int, q: int, bound: float) -> None:
+        bounds[p, q] = min(bounds[p, q], on_grid(bound, scale))
+
+    reset_at: dict[int, tuple[int, float]] = {}
+    if start is not None:
+        born = [0, *range(len(steps) + 1, size)]
+        reset_at = {clock: (born[clock], 0.0) for clock in range(1, dim)}
+        for x, y in product(range(dim), repeat=2):
+            if start[x * dim + y] < inf:
+                limit(born[y], born[x], start[x * dim + y])
+
+    def apply(atoms: Iterable[Atom], now: int) -> None:
+        for x, y, bound in atoms:
+            # A clock's value now is t[now] − t[its reset] + its value then; clock 0 is 0.
+            (p, low), (q, high) = reset_at.get(x, (0, 0.0)), reset_at.get(y, (0, 0.0))
+            if x == 0:
+                limit(q, now, bound - high)
+            elif y == 0:
+                limit(now, p, bound + low)
+            else:
+                limit(q, p, bound - high + low)
+
+    for now, step in enumerate(steps, start=1):
+        limit(now, now - 1, 0.0)
+        if not step.waits:
+            limit(now - 1, now, 0.0)
+        apply(step.leave, now)
+        for clock, value in step.resets:
+            reset_at[clock] = now, value
+        apply(step.enter, now)
+    close(bounds)
+    return None if bool((np.diagonal(bounds) < 0).any()) else Timing(bounds, scale)
+
+
+def on_grid(bound: float, scale: int) -> float:
+    """A finite bound in grid steps, a strict one short of one."""
+    whole = ceil(bound)
+    return whole * scale - (bound != whole)
+
+
+def close(bounds: NDArray[np.float64]) -> None:
+    """Tighten all bounds to those that they imply together, in place."""
+    import numpy as np
+
+    for middle in range(len(bounds)):
+        np.minimum(bounds, bounds[:, middle, None] + bounds[None, middle, :], out=bounds)
+
+
+def windows(timing: Timing) -> list[Window]:
+    """How long the wait before each step can last, over all runs along the path."""
+    found = []
+    for after in range(1, len(timing.bounds)):
+        low = -float(timing.bounds[after, after - 1])
+        high = float(timing.bounds[after - 1, after])
+        low_units, high_units = int(low // timing.scale), None
+        if high != inf:
+            high_units = int(-(-high // timing.scale))
+        found.append(
+            Window(
+                low_units,
+                high_units,
+                low_units * timing.scale != low,
+                high_units is not None and high_units * timing.scale != high,
+            )
+        )
+    return found
+
+
+def earliest(timing: Timing) -> list[Fraction]:
+    """The delay before each step in the run that does every step as early as possible.
+
+    The least solution of difference constraints is one of them, so no choice hinders a later one;
+    a strict bound is kept by one grid step.
+    """
+    times = [-float(timing.bounds[now, 0]) for now in range(len(timing.bounds))]
+    return _delays(times, timing.scale)
+
+
+def sample(timing: Timing, random: Random, longest: int) -> list[Fraction]:
+    """The delay before each step in a random run.
+
+    The times are fixed in turn, each within what those before it leave open.
+
+    Args:
+        timing: the runs to choose from.
+        random: the source of all choices.
+        longest: units of time that a wait without upper bound may last beyond its lower one.
+    """
+    import numpy as np
+
+    bounds = timing.bounds.copy()
+    times = [0.0]
+    for now in range(1, len(bounds)):
+        low, high = -float(bounds[now, 0]), float(bounds[0, now])
+        if high == inf:
+            high = low + longest * timing.scale
+        time = float(random.randint(int(low), int(high)))
+        times.append(time)
+        for p, q, bound in ((0, now, time), (now, 0, -time)):
+            np.minimum(bounds, bounds[:, p, None] + bound + bounds[None, q, :], out=bounds)
+    return _delays(times, timing.scale)
+
+
+def _delays(times: Sequence[float], scale: int) -> list[Fraction]:
+    return [Fraction(int(later - before), scale) for before, later in pairwise(times)]

@@ -1,0 +1,1 @@
+"""The model checker: search, queries, witnesses, and suites that cover a network."""

@@ -1,0 +1,96 @@
+"""Keeping a search within its budget, and quick."""
+
+from __future__ import annotations
+
+import gc
+import mmap
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rvmon.timed.search.problem import Budget, Progress, Statistics, Watch
+
+CHECK_EVERY = 128
+"""States between two looks at the clock and at the memory."""
+
+
+@contextmanager
+def paused_collector() -> Iterator[None]:
+    """Keep the garbage collector still: a search makes many objects, and none in cycles."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+class Meter:
+    """Counts states against a budget and tells a watcher how far the search is.
+
+    Attributes:
+        visited: states so far.
+        stored: those that a search still held when it ended.
+        stopped: which limit was met; empty while none was.
+    """
+
+    def __init__(self, budget: Budget, watch: Watch | None) -> None:
+        self._budget = budget
+        self._watch = watch
+        self._start = time.perf_counter()
+        self.visited = 0
+        self.stored = 0
+        self.stopped = ""
+
+    @property
+    def seconds(self) -> float:
+        """Since the meter was made."""
+        return time.perf_counter() - self._start
+
+    def statistics(self) -> Statistics:
+        """What was counted, as data."""
+        return Statistics(self.visited, self.stored, self.seconds)
+
+    def count(self, waiting: int) -> bool:
+        """Count one state; False if the search must stop."""
+        self.visited += 1
+        budget = self._budget
+        if budget.states is not None and self.visited > budget.states:
+            self.stopped = f"{budget.states:,} states were visited"
+        elif self.visited % CHECK_EVERY == 0:
+            self._look(waiting)
+        return not self.stopped
+
+    def _look(self, waiting: int) -> None:
+        budget, seconds = self._budget, self.seconds
+        if budget.seconds is not None and seconds > budget.seconds:
+            self.stopped = f"{budget.seconds:g} s went by"
+        elif budget.megabytes is not None and _is_full(budget.megabytes):
+            self.stopped = f"{budget.megabytes:,} MB of memory were in use"
+        elif self._watch is not None:
+            self._watch(Progress(self.visited, waiting, seconds))
+
+
+def _is_full(limit: int) -> bool:
+    if _megabytes() <= limit:
+        return False
+    gc.collect()  # what earlier searches left behind goes round in circles
+    return _megabytes() > limit
+
+
+def _megabytes() -> float:
+    """What the process holds now; at its highest, or 0, where the system tells no more."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+        return pages * mmap.PAGESIZE / (1 << 20)
+    except OSError:
+        pass
+    try:
+        import resource
+    except ImportError:
+        return 0.0
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)

@@ -1,0 +1,1 @@
+"""The symbolic semantics: zones, discrete states, and the steps between them."""

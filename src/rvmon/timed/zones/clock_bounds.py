@@ -1,0 +1,138 @@
+"""The numbers that clocks are compared with before they are next reset, per location.
+
+Source: Behrmann, Bouyer, Fleury, Larsen, Static Guard Analysis in Timed Automata Verification,
+TACAS 2003; lower and upper bounds apart as in Behrmann et al., Lower and Upper Bounds in Zone-Based
+Abstractions of Timed Automata, 2006.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import inf, prod
+
+from rvmon.timed.model.expressions import (
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    InLocation,
+    Lookup,
+    UnaryOperation,
+    VariableValue,
+)
+from rvmon.timed.model.network import Automaton, Network, Reset
+from rvmon.timed.model.operators import BinaryOp, UnaryOp
+
+
+@dataclass(frozen=True, slots=True)
+class ClockBounds:
+    """For each clock the largest number in a lower and in an upper bound; −inf if there is none."""
+
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+
+    def joined(self, others: Sequence[ClockBounds]) -> ClockBounds:
+        """The largest of these and all others, clock by clock."""
+        if not others:
+            return self
+        return ClockBounds(
+            tuple(map(max, self.lower, *(other.lower for other in others))),
+            tuple(map(max, self.upper, *(other.upper for other in others))),
+        )
+
+    def levelled(self) -> ClockBounds:
+        """The larger of the lower and the upper bound in both places."""
+        both = tuple(map(max, self.lower, self.upper))
+        return ClockBounds(both, both)
+
+
+def no_bounds(clocks: int) -> ClockBounds:
+    """What holds where no clock is compared with anything."""
+    return ClockBounds((-inf,) * clocks, (-inf,) * clocks)
+
+
+def location_bounds(network: Network, automaton: Automaton) -> list[ClockBounds]:
+    """The bounds of each location of an automaton, from its guards and invariants."""
+    clocks = len(network.clocks)
+    lower = [[-inf] * clocks for _ in automaton.locations]
+    upper = [[-inf] * clocks for _ in automaton.locations]
+    for index, location in enumerate(automaton.locations):
+        _note(location.invariant.clocks, lower[index], upper[index], network)
+    kept: list[tuple[int, int, list[int]]] = []
+    for edge in automaton.edges:
+        _note(edge.guard.clocks, lower[edge.source], upper[edge.source], network)
+        resets = {update.clock for update in edge.updates if isinstance(update, Reset)}
+        kept.append((edge.source, edge.target, [c for c in range(clocks) if c not in resets]))
+    changed = True
+    while changed:
+        changed = False
+        for source, target, clocks_kept in kept:
+            for table in (lower, upper):
+                for clock in clocks_kept:
+                    if table[target][clock] > table[source][clock]:
+                        table[source][clock] = table[target][clock]
+                        changed = True
+    return [ClockBounds(tuple(low), tuple(high)) for low, high in zip(lower, upper, strict=True)]
+
+
+def compared_bounds(network: Network, compares: Iterable[ClockCompare]) -> ClockBounds:
+    """The bounds that some comparisons alone need."""
+    clocks = len(network.clocks)
+    lower, upper = [-inf] * clocks, [-inf] * clocks
+    _note(compares, lower, upper, network)
+    return ClockBounds(tuple(lower), tuple(upper))
+
+
+def _note(
+    compares: Iterable[ClockCompare], lower: list[float], upper: list[float], network: Network
+) -> None:
+    for compare in compares:
+        table = lower if compare.op in (ClockOp.GE, ClockOp.GT) else upper
+        highest = value_range(compare.bound, network)[1]
+        table[compare.clock] = max(table[compare.clock], float(max(highest, 0)))
+
+
+def value_range(expression: Expression, network: Network) -> tuple[int, int]:
+    """Numbers between which an expression over the variables lies."""
+    match expression:
+        case Constant(value):
+            return value, value
+        case VariableValue(slot):
+            variables = network.variables[slot.first : slot.first + prod(map(len, slot.extents))]
+            return min(v.low for v in variables), max(v.high for v in variables)
+        case Lookup(values, _, _):
+            return min(values), max(values)
+        case Choice(_, then, otherwise):
+            return _hull(value_range(then, network), value_range(otherwise, network))
+        case UnaryOperation(UnaryOp.NEGATE, operand):
+            low, high = value_range(operand, network)
+            return -high, -low
+        case BinaryOperation(op, left, right):
+            return _binary_range(op, value_range(left, network), value_range(right, network))
+        case InLocation() | UnaryOperation():
+            return 0, 1
+        case _:
+            raise AssertionError(f"{expression} is no number")
+
+
+def _binary_range(op: BinaryOp, left: tuple[int, int], right: tuple[int, int]) -> tuple[int, int]:
+    match op:
+        case BinaryOp.ADD:
+            return left[0] + right[0], left[1] + right[1]
+        case BinaryOp.SUB:
+            return left[0] - right[1], left[1] - right[0]
+        case BinaryOp.MUL:
+            products = [a * b for a in left for b in right]
+            return min(products), max(products)
+        case BinaryOp.DIV | BinaryOp.MOD:
+            limit = max(map(abs, left))
+            return -limit, limit
+        case _:
+            return 0, 1
+
+
+def _hull(*ranges: Sequence[int]) -> tuple[int, int]:
+    return min(low for low, _ in ranges), max(high for _, high in ranges)

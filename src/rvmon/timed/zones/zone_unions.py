@@ -1,0 +1,138 @@
+"""State formulas as unions of convex sets of clock valuations, state by state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from rvmon.timed.model.evaluate import Locations, Values, evaluator
+from rvmon.timed.model.expressions import (
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    ClockOp,
+    Deadlock,
+    Expression,
+    PathFormula,
+    UnaryOperation,
+)
+from rvmon.timed.model.guards import is_discrete
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.operators import BinaryOp
+from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds
+from rvmon.timed.zones.compile import atoms_of
+from rvmon.timed.zones.dbm import Atom
+
+Piece = tuple[Atom, ...]
+"""Bounds that hold together; the empty one holds everywhere."""
+
+PieceMaker = Callable[[Locations, Values], list[Piece]]
+"""The pieces of a formula in a discrete state; none: it holds nowhere there."""
+
+EVERYWHERE: Piece = ()
+
+
+def piece_maker(formula: Expression) -> PieceMaker:
+    """Make a function that gives the pieces of a formula.
+
+    Args:
+        formula: normalised, without `deadlock` and path operators.
+    """
+    if is_discrete(formula):
+        holds = evaluator(formula)
+        return lambda locations, values: [EVERYWHERE] if holds(locations, values) else []
+    match formula:
+        case ClockCompare():
+            atoms = atoms_of((formula,), None)
+            return lambda locations, values: [tuple(atoms(locations, values))]
+        case BinaryOperation(BinaryOp.AND, left, right):
+            return _both(piece_maker(left), piece_maker(right))
+        case BinaryOperation(BinaryOp.OR, left, right):
+            return _either(piece_maker(left), piece_maker(right))
+        case _:
+            raise AssertionError(f"{formula} is not normalised")
+
+
+def _both(left: PieceMaker, right: PieceMaker) -> PieceMaker:
+    def pieces(locations: Locations, values: Values) -> list[Piece]:
+        firsts = left(locations, values)
+        seconds = right(locations, values) if firsts else []
+        return [(*first, *second) for first in firsts for second in seconds]
+
+    return pieces
+
+
+def _either(left: PieceMaker, right: PieceMaker) -> PieceMaker:
+    def pieces(locations: Locations, values: Values) -> list[Piece]:
+        firsts = left(locations, values)
+        if EVERYWHERE in firsts:
+            return [EVERYWHERE]
+        seconds = right(locations, values)
+        return [EVERYWHERE] if EVERYWHERE in seconds else [*firsts, *seconds]
+
+    return pieces
+
+
+def compares_of(formula: Expression) -> Iterator[ClockCompare]:
+    """All comparisons of clocks in a formula."""
+    match formula:
+        case ClockCompare():
+            yield formula
+        case UnaryOperation(_, operand):
+            yield from compares_of(operand)
+        case BinaryOperation(_, left, right):
+            yield from compares_of(left)
+            yield from compares_of(right)
+        case Choice(condition, then, otherwise):
+            for part in (condition, then, otherwise):
+                yield from compares_of(part)
+        case PathFormula(_, body, _):
+            yield from compares_of(body)
+        case _:
+            return
+
+
+def speaks_of_deadlock(formula: Expression) -> bool:
+    """Whether `deadlock` occurs in a formula."""
+    match formula:
+        case Deadlock():
+            return True
+        case UnaryOperation(_, operand):
+            return speaks_of_deadlock(operand)
+        case BinaryOperation(_, left, right):
+            return speaks_of_deadlock(left) or speaks_of_deadlock(right)
+        case Choice(condition, then, otherwise):
+            return any(map(speaks_of_deadlock, (condition, then, otherwise)))
+        case PathFormula(_, body, _):
+            return speaks_of_deadlock(body)
+        case _:
+            return False
+
+
+def has_paths(formula: Expression) -> bool:
+    """Whether a path operator occurs in a formula."""
+    match formula:
+        case PathFormula():
+            return True
+        case UnaryOperation(_, operand):
+            return has_paths(operand)
+        case BinaryOperation(_, left, right):
+            return has_paths(left) or has_paths(right)
+        case Choice(condition, then, otherwise):
+            return any(map(has_paths, (condition, then, otherwise)))
+        case _:
+            return False
+
+
+def formula_bounds(formula: Expression, network: Network) -> ClockBounds:
+    """What a formula compares clocks with."""
+    return compared_bounds(network, compares_of(formula))
+
+
+def has_strict_bounds(network: Network, *formulas: Expression) -> bool:
+    """Whether some clock is compared by `<` or `>`, in the network or in a formula."""
+    compares = [
+        *(c for a in network.automata for place in a.locations for c in place.invariant.clocks),
+        *(c for a in network.automata for edge in a.edges for c in edge.guard.clocks),
+        *(c for formula in formulas for c in compares_of(formula)),
+    ]
+    return any(compare.op in (ClockOp.LT, ClockOp.GT) for compare in compares)

@@ -1,0 +1,1 @@
+"""Tests; and tools in `tests.tools`, for benchmarks as well."""

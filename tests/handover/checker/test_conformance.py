@@ -1,0 +1,36 @@
+"""The correct robot does what the model says; robots with faults do not."""
+
+import pytest
+
+from handover.checker.conformance import check_run
+from handover.driver import run_test
+from handover.generator.model_based import model_based
+from handover.generator.pseudorandom import constrained, pseudorandom
+from handover.model import handover_network
+
+
+@pytest.fixture(scope="module")
+def network():
+    """The network, read once."""
+    return handover_network()
+
+
+@pytest.mark.parametrize(
+    "test",
+    [*pseudorandom(2, seed=1), *constrained(1, seed=1), *model_based(4, seed=1)[:2]],
+    ids=lambda test: test.name,
+)
+def test_runs_of_the_correct_robot_conform(network, test):
+    """Whatever the human does, the network explains what the robot does."""
+    assert check_run(network, run_test(test)).conforms is True
+
+
+@pytest.mark.parametrize(
+    ("mutation", "witness"),
+    [("forgets-to-release", 0), ("releases-late", 0), ("ignores-pressure", 1),
+     ("ends-silently", 0)],
+)  # fmt: skip
+def test_faults_are_divergences(network, mutation, witness):
+    """A robot with a fault leaves the network on the test that meets the fault."""
+    run = run_test(model_based(4, seed=1)[witness], mutation=mutation, startup_loss=False)
+    assert check_run(network, run).conforms is False

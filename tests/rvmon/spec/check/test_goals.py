@@ -1,0 +1,98 @@
+"""Cover goals, coverpoints and crosses."""
+
+import pytest
+
+from rvmon.spec.checked.goals import BinKind
+from rvmon.spec.print.printer import format_formula
+
+
+def bins(checked, text):
+    """The bins of a coverpoint as text."""
+    point = checked(f"coverpoint p {text}").coverpoints["p"]
+    return {bin_.name: format_formula(bin_.formula) for bin_ in point.bins}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("= a {yes: true, no: false}", {"yes": "a", "no": "not a"}),
+        ("= state {idle, go: moving}", {"idle": "state == idle", "go": "state == moving"}),
+        ("= n {zero: 0, one: 1}", {"zero": "n == 0", "one": "n == 1"}),
+        (
+            "= d {near: [0 m, 50 cm), far: [50 cm, inf)}",
+            {"near": "d >= 0 m and d < 0.5 m", "far": "d >= 0.5 m"},
+        ),
+        ("= d {mid: (1 m, 2 m]}", {"mid": "d > 1 m and d <= 2 m"}),
+        ("= d {fast: speed > 1 m/s}", {"fast": "speed > 1 m/s"}),
+        ("{x: a and once b, y: e}", {"x": "a and once b", "y": "e"}),
+    ],
+)
+def test_bins_are_formulas(checked, text, expected):
+    """Values, ranges, labels and formulas all become the formula that hits the bin."""
+    assert bins(checked, text) == expected
+
+
+def test_clauses(checked):
+    """Sampling, goals, unwanted bins."""
+    point = checked("coverpoint p = a {yes: true, illegal no: false} upon e goal 3").coverpoints[
+        "p"
+    ]
+    assert (format_formula(point.upon), point.goal) == ("e", 3)
+    assert [bin_.kind for bin_ in point.bins] == [BinKind.GOAL, BinKind.ILLEGAL]
+
+
+def test_cross(checked):
+    """Combinations that are ignored or illegal are listed."""
+    spec = checked(
+        "coverpoint p = a {yes: true, no: false}\ncoverpoint q = state {idle, moving}\n"
+        "cross c = p, q\n  ignore p == no and q == idle\n  illegal p == no <-> q != idle\n  goal 2"
+    )
+    cross = spec.crosses["c"]
+    assert (cross.points, cross.goal) == (("p", "q"), 2)
+    assert cross.ignored == {("no", "idle")}
+    assert cross.illegal == {("no", "moving"), ("yes", "idle")}
+
+
+def test_cover(checked):
+    """A cover goal is shown where its formula holds at some instant."""
+    assert format_formula(checked("cover C = a and e").covers["C"].formula) == (
+        "eventually (a and e)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "codes_found"),
+    [
+        ("coverpoint p = a {yes}", ["RV060"]),
+        ("coverpoint p {yes: 3}", ["RV060"]),
+        ("coverpoint p {yes: [1, 2]}", ["RV060"]),
+        ("coverpoint p = a {yes: F b}", ["RV060"]),
+        ("coverpoint p = a {yes: true} upon F b", ["RV060"]),
+        ("coverpoint p = a {yes: true} goal 0", ["RV060"]),
+        ("coverpoint p = a {yes: true} goal 1.5", ["RV060"]),
+        ("coverpoint p = a {yes: true} ignore a", ["RV060"]),
+        ("coverpoint p = a {yes: true, yes: false}", ["RV011"]),
+        ("coverpoint p = state {stopped}", ["RV013"]),
+        ("coverpoint p = d {near: [0 m, 3 s]}", ["RV022"]),
+        ("coverpoint p = d {near: 3}", ["RV023"]),
+        ("coverpoint p = aa {yes: true}", ["RV012"]),
+        ("coverpoint p = aa {yes: true}\ncross c = p", ["RV012"]),
+        ("coverpoint p = a {yes: true}\ncross c = p, p", ["RV061"]),
+        ("cross c = p", ["RV061"]),
+        ("coverpoint p = a {yes: true}\ncross c = p ignore a", ["RV061"]),
+        ("coverpoint p = a {yes: true}\ncross c = p ignore p == maybe", ["RV013"]),
+        ("cover C = aa", ["RV012"]),
+        ("cover C = end", ["RV041"]),
+        ("cover C = a\nrequirement C always a", ["RV011"]),
+    ],
+)
+def test_goals_that_are_refused(codes, text, codes_found):
+    """Each mistake is found by its rule."""
+    assert codes(text) == codes_found
+
+
+def test_crosses_are_limited(codes):
+    """A cross of too many combinations is refused."""
+    many = ", ".join(f"b{number}: {number}" for number in range(101))
+    points = f"coverpoint p = n {{{many}}}\ncoverpoint q = x {{{many}}}\n"
+    assert codes(f"{points}cross c = p, q") == ["RV061"]

@@ -1,0 +1,121 @@
+"""The formatter: canonical, idempotent, comments and meaning kept."""
+
+import random
+import re
+
+import pytest
+from tests.tools.spec_text import meaning, scribbled, spec_text
+
+from rvmon.errors import SpecError
+from rvmon.spec.compile import compile_text
+from rvmon.spec.print.formatter import format_text
+from rvmon.testing.generate_spec import Profile, random_spec
+
+EXAMPLE = """# Head
+
+spec   demo   "A title"
+time sampled  every   20ms
+
+
+signal gaze_ok,b:bool input
+signal distance : real[m] input stale   after 200ms # how far
+signal range : real[m] ignore
+  NaN stale after 1 s
+signal far : real ignore NaN
+event sensed  input
+event released output
+define ready=gaze_ok&b
+# About R1
+requirement R1 "text" upon sensed&ready then F<=3 s released
+  # why it is so
+  source "ISO" at   end strict
+requirement R2 G(distance<0.5m->!b)   scope  between(sensed)and(released)
+property P1:A[ ](gaze_ok->AF[0,3s]b)
+coverpoint c=gaze_ok{yes:true,ignore no:false}goal 3
+# the end
+"""
+CANONICAL = """# Head
+
+spec demo "A title"
+time sampled every 20 ms
+
+signal gaze_ok, b : bool      input
+signal distance   : real [m]  input  stale after 200 ms  # how far
+signal range      : real [m]  ignore NaN stale after 1 s
+signal far        : real      ignore NaN
+event  sensed  input
+event  released  output
+define ready = gaze_ok and b
+
+# About R1
+requirement R1 "text"
+  upon sensed and ready
+  then eventually <= 3 s released
+  # why it is so
+  source "ISO"
+  at end: strict
+
+requirement R2
+  always (distance < 0.5 m -> not b)
+  scope between (sensed) and (released)
+
+property P1: A[] (gaze_ok -> AF[0, 3 s] b)
+
+coverpoint c = gaze_ok {yes: true, ignore no: false}
+  goal 3
+# the end
+"""
+
+
+def test_canonical_form():
+    """Words for symbols, one clause per line, declarations in columns, comments in their place."""
+    assert format_text(EXAMPLE) == CANONICAL
+    assert format_text(CANONICAL) == CANONICAL
+
+
+@pytest.mark.parametrize("seed", range(120))
+def test_laws(seed):
+    """Of random specifications in random writing meaning and comments are kept."""
+    dice = random.Random(seed)
+    text = scribbled(spec_text(random_spec(dice, Profile())), dice)
+    once = format_text(text)
+    assert format_text(once) == once
+    assert meaning(compile_text(once)[0]) == meaning(compile_text(text)[0])
+    comments = [sorted(re.findall(r"#.*", version)) for version in (text, once)]
+    assert comments[0] == comments[1]
+
+
+def test_a_name_does_not_become_a_unit():
+    """A name on the line below a number stays there: beside it, it would be read as its unit."""
+    text = "signal s : bool\n\nrequirement R\n  within 0\n    s\n"
+    assert format_text(text) == text
+    assert "R" in compile_text(text)[0].requirements
+
+
+def test_long_lines_are_broken_at_loose_operators():
+    """What does not fit is broken before operators, the loosest first."""
+    names = [f"signal_number_{number}" for number in range(12)]
+    text = f"signal {', '.join(names)} : bool\nrequirement R always ({' and '.join(names)} -> a)"
+    lines = format_text(text).splitlines()
+    assert max(map(len, lines)) <= 100
+    assert any(line.strip().startswith("-> a") for line in lines)
+    assert format_text("\n".join(lines)) == "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("text", ["", "# only a comment\n", "\n\n", "# a\n\n# b\n\n"])
+def test_file_without_items(text):
+    """Comments alone stay."""
+    assert format_text(text).strip() == text.strip()
+
+
+def test_file_that_cannot_be_read_is_refused():
+    """Nothing is laid out that is not understood."""
+    with pytest.raises(SpecError, match="RV001"):
+        format_text("requirement R upon a")
+    with pytest.raises(SpecError, match="RV002"):
+        format_text("requirement R always a and b")
+
+
+def test_unknown_names_do_not_matter():
+    """A layout needs no declarations."""
+    assert format_text("requirement R G a") == "requirement R\n  always a\n"

@@ -1,0 +1,95 @@
+"""Printing a formula and reading it again gives the same formula."""
+
+import random
+
+import pytest
+from tests.tools.spec_text import meaning, spec_text
+
+from rvmon.spec.checked.formula import Arithmetic, Compare, Literal, SignalValue
+from rvmon.spec.checked.tense import subformulas
+from rvmon.spec.compile import compile_text
+from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
+from rvmon.spec.syntax.units import unit_table
+from rvmon.testing.generate_spec import Profile, random_spec
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_parse_after_print_is_identity(seed):
+    """Random specifications survive being printed and read."""
+    spec = random_spec(random.Random(seed), Profile())
+    once, _ = compile_text(spec_text(spec))
+    if not any(map(is_constant_arithmetic, numbers_of(spec))):  # which the compiler folds
+        assert meaning(once) == meaning(spec)
+    twice, _ = compile_text(spec_text(once))
+    assert meaning(twice) == meaning(once)
+
+
+def numbers_of(spec):
+    """All numbers of a specification, the inner ones too."""
+    for requirement in spec.requirements.values():
+        for formula in (requirement.trigger, requirement.consequent):
+            for part in subformulas(formula):
+                if isinstance(part, Compare):
+                    yield part
+                    yield from arithmetic_in((part.left, part.right))
+
+
+def arithmetic_in(numbers):
+    """Those of the numbers that are arithmetic, and those inside of them."""
+    for number in numbers:
+        if isinstance(number, Arithmetic):
+            yield number
+            yield from arithmetic_in(number.args)
+
+
+def is_constant_arithmetic(node):
+    """Whether an operation or comparison has nothing but literals."""
+    args = (node.left, node.right) if isinstance(node, Compare) else node.args
+    return all(isinstance(arg, Literal) for arg in args)
+
+
+def test_random_texts_are_varied():
+    """The random specifications use all operators of the language."""
+    text = " ".join(spec_text(random_spec(random.Random(seed), Profile())) for seed in range(150))
+    for word in ("until", "unless", "since", " R", " M", "once", "within", "for each", "let",
+                 "held(", "rise(", "updated(", "->", "<->", "xor", "next", "previous"):  # fmt: skip
+        assert word in text, word
+
+
+def test_durations():
+    """The largest unit of which it is a whole number."""
+    shown = [format_duration(ticks) for ticks in (3600 * 10**9, 90 * 10**9, 1_500_000, 1001)]
+    assert shown == ["1 h", "90 s", "1500 us", "1001 ns"]
+
+
+def test_literals():
+    """Short decimals, units, negative numbers, quoted names."""
+    assert format_numeric(Literal(0.05, "m")) == "0.05 m"
+    assert format_numeric(Literal(1e-9)) == "0.000000001"
+    assert format_numeric(Literal(1e300)) == "1e+300"
+    assert format_numeric(Literal(-3)) == "-3"
+    assert format_numeric(SignalValue("next")) == "`next`"
+    assert format_numeric(SignalValue("a b.c")) == "`a b.c`"
+
+
+@pytest.mark.parametrize("value", [0.1, 1 / 3, 5e-324, 1.7976931348623157e308, 2.0**60])
+def test_numbers_survive(value):
+    """A printed number is read as the same float."""
+    spec, _ = compile_text(
+        f"signal x : real\nrequirement R always x < {format_numeric(Literal(value))}"
+    )
+    compare = spec.requirements["R"].consequent
+    assert isinstance(compare, Compare)
+    assert compare.right.value == value
+    assert format_formula(compare).startswith("x < ")
+
+
+@pytest.mark.parametrize("unit", [*sorted(unit_table()), "m/s", "1/s", "1/s/m", "m/A", "W*s/m^2"])
+def test_units_survive(unit):
+    """A literal is printed with its unit in a way that can be read, whatever the unit."""
+    text = f"signal x : real [{unit}]\nrequirement R always "
+    compare = compile_text(text + "(x < 0 or 2 * x - x > 0)")[0].requirements["R"].consequent
+    again = compile_text(text + f"({format_formula(compare)})")[0].requirements["R"].consequent
+    assert again.left.right == compare.left.right
+    assert again.left.right.unit == compare.left.right.unit
+    assert again.right.left == compare.right.left

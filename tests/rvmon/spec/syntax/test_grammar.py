@@ -1,0 +1,256 @@
+"""The grammar is unambiguous, and words and numbers are read as the language page says."""
+
+import io
+import logging
+
+import lark
+import pytest
+from lark import logger
+
+from rvmon.errors import SpecError
+from rvmon.spec.checked.reads import names_of_spec
+from rvmon.spec.compile import compile_text
+from rvmon.spec.syntax.parse import GRAMMAR_OPTIONS, grammar_text
+from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
+
+
+def test_grammar_has_no_conflicts():
+    """Building the parser in debug mode logs no conflict."""
+    log = io.StringIO()
+    handler = logging.StreamHandler(log)
+    level = logger.level
+    logger.addHandler(handler)
+    logger.setLevel(logging.DEBUG)
+    try:
+        lark.Lark(grammar_text(), debug=True, **GRAMMAR_OPTIONS)
+        ambiguous = 'start: a? a?\na: "x"'
+        lark.Lark(ambiguous, debug=True, parser="lalr")
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(level)
+    lines = log.getvalue().splitlines()
+    assert [line for line in lines if "onflict" in line] == [
+        line for line in lines if "<start : a" in line or "_a" in line
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "printed"),
+    [
+        ("not a and b", "not a and b"),
+        ("! a & b", "not a and b"),
+        ("a && b || c", "a and b or c"),
+        ("a | b and c", "a or b and c"),
+        ("a xor b or c", "a xor b or c"),
+        ("a or b xor c and a", "a or b xor c and a"),
+        ("a -> b -> c", "a -> b -> c"),
+        ("(a -> b) -> c", "(a -> b) -> c"),
+        ("a implies b iff c", "a -> b <-> c"),
+        ("a <-> b <-> c", "a <-> b <-> c"),
+        ("F a", "eventually a"),
+        ("G[0, 3 s] a", "for 3 s a"),
+        ("within 200 ms a", "within 200 ms a"),
+        ("eventually <= 3 s a", "within 3 s a"),
+        ("F(1 s, 2 s] a", "eventually[1000000001 ns, 2 s] a"),
+        ("F[1 s, 2 s) a", "eventually[1 s, 1999999999 ns] a"),
+        ("F[1 s, inf) a", "eventually[1 s, inf) a"),
+        ("F[1 s, ∞) a", "eventually[1 s, inf) a"),
+        ("F(a)", "eventually a"),
+        ("within (2 * 3 s) (a or b)", "within 6 s (a or b)"),
+        ("a U b", "a until b"),
+        ("a U[1 s, 2 s] b", "a until[1 s, 2 s] b"),
+        ("a until <= 1 s b", "a until[0, 1 s] b"),
+        ("a weak until b", "a unless b"),
+        ("a W b", "a unless b"),
+        ("a unless b", "a unless b"),
+        ("a R b", "a R b"),
+        ("a M b", "a M b"),
+        ("a S b", "a since b"),
+        ("a U b U c", "a until b until c"),
+        ("(a U b) U c", "(a until b) until c"),
+        ("a and b U c", "a and b until c"),
+        ("O a", "once a"),
+        ("H[0, 1 s] a", "historically[0, 1 s] a"),
+        ("rise(a) and fall(b and c)", "rise(a) and fall(b and c)"),
+        ("held(a, 3 s)", "held(a, 3 s)"),
+        ("changed(x) or updated(e) or known(x)", "changed(x) or updated(e) or known(x)"),
+        ("x < 3 and y >= 2", "x < 3 and y >= 2"),
+        ("not x < 3", "not x < 3"),
+        ("x = 3 or x == 4 or x != 5", "x == 3 or x == 4 or x != 5"),
+        ("x + y * 2 < -x", "x + y * 2 < -x"),
+        ("(x + y) * 2 < 1", "(x + y) * 2 < 1"),
+        ("x - (y - 1) < 1", "x - (y - 1) < 1"),
+        ("x / y / 2 < 1", "x / y / 2 < 1"),
+        ("abs(x) < max(y, 1, 2)", "abs(x) < max(y, 1, 2)"),
+        ("hypot(x, y) < sqrt(x)", "hypot(x, y) < sqrt(x)"),
+        ("prev(x) < delta(y)", "prev(x) < delta(y)"),
+        ("rate(d) < 5 m/s", "rate(d) < 5 m/s"),
+        ("state == moving", "state == moving"),
+        ("moving != state", "moving != state"),
+        ("state == S", "state == S"),
+        ("pick.ok and pick.id = 3", "pick.ok and pick.id == 3"),
+        ("pick.kind == nut", "pick.kind == nut"),
+        ("prev(state) == idle", "prev(state) == idle"),
+        ("true -> false", "true -> false"),
+        ("immediately a and b", "a and b"),
+        ("x < 1e3", "x < 1000"),
+        ("a and always b", "a and always b"),
+        ("always (a) and b", "(always a) and b"),
+    ],
+)
+def test_operators(owed, text, printed):
+    """Words and symbols mean the same, precedence is as stated, printing uses few brackets."""
+    assert owed(text) == printed
+
+
+@pytest.mark.parametrize("text", ["a U b W c", "a until b since c", "a R b U c"])
+def test_mixed_chains_need_brackets(codes, text):
+    """Different operators of the until family need brackets."""
+    assert codes(f"requirement R upon start then {text}") == ["RV003"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "always not a and b",
+        "always a -> b",
+        "b or F a and c",
+        "within 3 s a or b",
+        "not once a and b",
+        "F a U b",
+        "c and (always a or b)",
+    ],
+)
+def test_reach_of_temporal_prefix_is_said(codes, text):
+    """A temporal prefix before an unbracketed connective is an error."""
+    assert codes(f"requirement R upon start then {text}") == ["RV002"]
+
+
+def test_both_readings_are_shown(message):
+    """The message shows the two readings with their brackets."""
+    text = message("requirement R always not a and speed < 1 m/s")
+    assert "`always (not a and speed < 1 m/s)` or `(always not a) and speed < 1 m/s`" in text
+
+
+@pytest.mark.parametrize("name", sorted(RESERVED))
+def test_reserved_words_are_no_names(codes, name):
+    """Words of the language cannot be declared, but quoted they can, and dotted they are others."""
+    assert codes(f"signal z, {name} : bool")[:1] == ["RV010"]
+    assert codes(f"signal `{name}`, {name}.z : bool\nrequirement R always `{name}`") == []
+
+
+@pytest.mark.parametrize("name", sorted(INFIX_WORDS | CLAUSE_WORDS))
+def test_infix_and_clause_words_may_be_names(codes, name):
+    """Where an operand stands, infix words and clause words are names."""
+    assert codes(f"signal {name} : bool\nrequirement R always ({name} and {name})") == []
+
+
+def test_infix_words_may_be_labels(owed):
+    """A label may be called `S`, and the operator still works beside it."""
+    assert owed("state == S S state != S") == "state == S since state != S"
+
+
+@pytest.mark.parametrize(
+    ("text", "printed"),
+    [
+        ("speed < 5 m/s", "speed < 5 m/s"),
+        ("speed < 5 mm/s", "speed < 0.005 m/s"),
+        ("speed < 18 km/h", "speed < 5 m/s"),
+        ("d < 5cm", "d < 0.05 m"),
+        ("d / 2 m < x", "d / 2 m < x"),
+        ("5 m/s > speed", "5 m/s > speed"),
+        ("d < 5 m and a", "d < 5 m and a"),
+        ("d < 5 m until b", "d < 5 m until b"),
+        ("d < 5 m U b", "d < 5 m until b"),
+        ("x < 5 U b", "x < 5 until b"),
+        ("x < 50 %", "x < 0.5"),
+    ],
+)
+def test_numbers_and_units(owed, text, printed):
+    """A name behind a number is its unit; a compound unit has known parts and no spaces."""
+    assert owed(text) == printed
+
+
+def test_division_by_a_signal_called_like_a_unit(checked):
+    """With spaces, `5 m / s` divides by the signal s."""
+    spec = checked("signal s : real\nrequirement R always 5 m / s < d")
+    assert "s" in names_of_spec(spec)
+    with pytest.raises(SpecError, match="RV022"):
+        checked("signal s : real\nrequirement R always 5 m/s < d")
+
+
+@pytest.mark.parametrize("words", [RESERVED, INFIX_WORDS | CLAUSE_WORDS])
+def test_tables_of_words_and_grammar_agree(words):
+    """Every word of the tables stands in the grammar, so that neither is out of date."""
+    single = {word for word in words if len(word) == 1} | {"AG", "AF", "AX", "EG", "EF", "EX"}
+    assert {word for word in words - single if word not in grammar_text()} == set()
+
+
+def test_property_is_a_clause_or_an_item(checked):
+    """`property` with a name and a colon is an item, else a clause of the requirement above."""
+    spec = checked("requirement R\n  always a\nproperty AG a\nproperty P: AG b")
+    assert spec.requirements["R"].property == "AG a"
+    assert spec.properties["P"].text == "AG b"
+
+
+def test_items_may_be_indented(checked):
+    """An item starts with its word at a line's start, whatever the indent."""
+    spec = checked("    requirement R1 always a\n    requirement R2 always b")
+    assert list(spec.requirements) == ["R1", "R2"]
+
+
+def test_all_errors_of_a_file_appear_at_once(codes):
+    """Each item is read alone."""
+    text = (
+        "requirement R1 always (\n"
+        "requirement R2 always aa\n"
+        "requirement R3 always d < 5\n"
+        "requirment R4 always a\n"
+        "signal z boool\n"
+        "requirement R5 always z"
+    )
+    assert codes(text) == ["RV001", "RV012", "RV023", "RV001", "RV001"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("requirement R upon a within 3 s b", "`then`"),
+        ("requirement R always (a or", "a formula or a number"),
+        ("requirement R always a b", "an operator such as"),
+        ("signal z", "`:`"),
+        ("signal z : boool", "`bool`"),
+        ("requirement", "a name"),
+        ("requirement R rise (a)", "a call has no space before its bracket: `rise(`"),
+        ("requirement R always a ≤ b", "write `<=`"),
+        ("requirement R always a and A[] b", "put brackets around"),
+        ('requirement R always a\n  sorce "x"', "did you mean `source`?"),
+        ("requirement R always a;", "items and clauses need no `;`"),
+        ("requirement R upon a then within 3 b", "`3 s b`"),
+    ],
+)
+def test_syntax_errors_speak_the_language(message, text, expected):
+    """A syntax error says what could have stood there, or how to mend it."""
+    assert expected in message(text)
+
+
+def test_byte_order_mark_is_ignored():
+    """What some editors put at the start of a file does no harm."""
+    spec, _ = compile_text("\ufeffspec demo\nsignal a : bool\nrequirement R always a")
+    assert spec.name == "demo"
+    assert compile_text("\ufeff# comment\r\nspec demo\r\n")[0].name == "demo"
+
+
+@pytest.mark.parametrize("sign", ["and", "or", "&&", "+"])
+def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
+    """One plain finding, however long the chain is."""
+    chain = f" {sign} ".join(["p"] * 100_000)
+    with pytest.raises(SpecError, match="more than 5,000 operators") as caught:
+        compile_text(f"signal p : bool\nrequirement R\n  always ({chain})\n")
+    assert [finding.code for finding in caught.value.diagnostics] == ["RV005"]
+
+
+def test_words_in_texts_and_comments_are_no_operators():
+    """A long comment stands in no one's way."""
+    text = 'signal p : bool\nrequirement R "' + "and " * 3000 + '"\n  always p  # ' + "or " * 3000
+    compile_text(text)

@@ -1,0 +1,137 @@
+"""What people write who come from elsewhere is mended in the words of the language."""
+
+import pytest
+
+from rvmon.errors import SpecError
+from rvmon.spec.compile import compile_text
+from rvmon.spec.syntax.expected import _word
+from rvmon.spec.syntax.parse import grammar
+
+HEAD = """spec demo
+event asked, released
+signal speed : real [m/s]
+const T = 3 s
+"""
+
+
+def first_finding(text):
+    """The first finding of a specification."""
+    with pytest.raises(SpecError) as caught:
+        compile_text(HEAD + text)
+    return caught.value.diagnostics[0]
+
+
+@pytest.mark.parametrize(
+    ("owed", "mend"),
+    [
+        ("within -1 s released", "write it without `-`"),
+        ("within -T released", "write it without `-`"),
+        ("within 1,5 s released", "write `1.5`"),
+        ("within .5 s released", "write `0.5`"),
+        ("within 1. s released", "write `1.0`"),
+        ("within (3) released", "did you mean `3 s`?"),
+        ("within 1.5 released", "`1.5 s released`"),
+        ("within 3 s, released", "no comma stands behind a duration"),
+        ("within [1 s, 2 s] released", "a window stands behind `eventually`"),
+        ("for [1 s, 2 s] released", "a window stands behind `always`"),
+        ("within T + 1 s released", "a duration that is computed stands in brackets"),
+        ("within 3 sec released", "did you mean `s`?"),
+        ("eventually[3 s, 1 s] released", "did you mean `[1 s, 3 s]`?"),
+        ("eventually(3 s, 3 s] released", "an open bound leaves its own instant out"),
+        ("released within 3 s", "`within 3 s (…)`"),
+        ("always (speed < 1,5 m/s)", "write `1.5`"),
+        ("within 3 s relesed", "did you mean `released`?"),
+        ("within 3 s xyzzy", "declare it, as `signal xyzzy : bool` or `event xyzzy`"),
+        ("within 3 s released asked", "an operator is missing before `asked`"),
+        ("after 2 s released", "write `eventually[2 s, 2 s] (…)`"),
+    ],
+)
+def test_what_is_owed(owed, mend):
+    """Durations, numbers and names that are written as they are elsewhere."""
+    assert mend in first_finding(f"requirement R\n  upon asked\n  then {owed}\n").help
+
+
+@pytest.mark.parametrize(
+    ("item", "mend"),
+    [
+        ("requirement R if asked then within 3 s released", "for `if` write `upon`"),
+        ("requirement R when asked then within 3 s released", "for `when` write `upon`"),
+        ("requirement R upon asked, then released", "what is owed stands behind `then`"),
+        ('requirement "R" upon asked then released', "its name comes first"),
+        ("signal x", "a signal has a type"),
+        ("signal x : float", "write `real`"),
+        ("signal x : string", "write `{one, another}`"),
+        ("requirement R-16 always released", "`R-16` is no name: write `R_16`"),
+        ('requirement R-16 "text" upon asked then released', "`R-16` is no name"),
+        ("requirement always released", "its name comes first: `requirement R1 always …`"),
+        ("requirement upon asked then released", "its name comes first"),
+        ("requirement\n  released", "`released` is taken for its name"),
+        ("requirement R let z = speed upon asked then released", "stands behind what is owed"),
+        ("requirement R upon asked let z = speed then released", "stands behind what is owed"),
+        ("requirement R upon asked then let z = speed released", "stands behind what is owed"),
+        ("event e(x)", "a field has a type"),
+    ],
+)
+def test_items(item, mend):
+    """Items in the manner of other languages."""
+    assert mend in first_finding(item + "\n").help
+
+
+def test_a_trigger_and_what_is_owed_are_both_looked_at():
+    """What looks ahead in a trigger is found beside errors in what is owed, and in clauses."""
+    with pytest.raises(SpecError) as caught:
+        compile_text(
+            HEAD + "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"
+        )
+    assert [found.code for found in caught.value.diagnostics] == ["RV040", "RV012", "RV045"]
+
+
+def test_the_expected_is_said_in_words():
+    """No pattern of the grammar comes through."""
+    found = first_finding("requirement R\n  upon asked\n  then within ! released\n")
+    assert found.message == "found `!`, expected a duration such as `3 s`"
+
+
+@pytest.mark.parametrize(
+    ("word", "mend"), [("boolean", "bool"), ("integer", "int"), ("reals", "real")]
+)
+def test_words_are_found_whole(word, mend):
+    """A word that starts like one of the language is not cut in two."""
+    found = first_finding(f"signal x : {word}\n")
+    assert found.message.startswith(f"found `{word}`, ")
+    assert f"`{mend}`" in found.help
+
+
+@pytest.mark.parametrize(
+    ("formula", "mend"),
+    [
+        ('state = "idle"', "labels have no quotes: `idle`"),
+        ("(asked) => (released)", "write `->`"),
+    ],
+)
+def test_signs_of_other_languages(formula, mend):
+    """Labels in quotes and other arrows; what could have stood there is said in words."""
+    found = first_finding(f"signal state : {{idle, on}}\nrequirement R\n  always {formula}\n")
+    assert mend in found.help
+    assert found.message.endswith("expected a number or a name")
+
+
+def test_every_terminal_has_words():
+    """No pattern of the grammar comes through, whichever terminal is expected."""
+    for terminal in grammar().terminals:
+        if not terminal.name.startswith("__IGNORE"):
+            assert not set(_word(terminal.name, grammar())) & set("\\?|^"), terminal.name
+
+
+@pytest.mark.parametrize("formula", ["never (asked)", "never(asked)", "never asked"])
+def test_never(formula):
+    """What shall never be is said by `always not`."""
+    assert first_finding(f"requirement R\n  {formula}\n").help == (
+        "for `never` write `always not (…)`"
+    )
+
+
+@pytest.mark.parametrize("item", ["signal x : real m\n", "event hit(force: real m)\n"])
+def test_a_unit_without_brackets(item):
+    """The unit of a type is told from its other parts by brackets."""
+    assert "a unit stands in brackets: `[m]`" in first_finding(item).help

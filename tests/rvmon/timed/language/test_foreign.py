@@ -1,0 +1,104 @@
+"""What UPPAAL has and this checker has not is refused by name, with its place and a way out."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.load import loads_network
+
+
+def model(declaration="", local="", invariant="", system="system T;", queries="", **labels):
+    """A model in UPPAAL's XML with one edge whose labels are given."""
+    texts = "".join(f'<label kind="{kind}">{text}</label>' for kind, text in labels.items())
+    return f"""<nta><declaration>{declaration}</declaration>
+<template><name>T</name><declaration>{local}</declaration>
+<location id="a"><name>A</name><label kind="invariant">{invariant}</label></location><init ref="a"/>
+<transition><source ref="a"/><target ref="a"/>{texts}</transition></template>
+<system>{system}</system><queries>{queries}</queries></nta>"""
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ({"declaration": "int f(int a) { return a; }"}, "functions"),
+        ({"local": "void g() { i++; }"}, "functions"),
+        ({"declaration": 'import "lib.so" { int f(); };'}, "functions from outside"),
+        ({"declaration": "struct { int a; } s;"}, "records"),
+        ({"declaration": "typedef scalar[3] S;"}, "scalar sets"),
+        ({"declaration": "meta int i;"}, "meta variables"),
+        ({"declaration": "hybrid clock x;"}, "hybrid clocks"),
+        ({"declaration": "double d;"}, "floating point"),
+        ({"declaration": "double d = 0.5;"}, "floating point"),
+        ({"declaration": "const string s = &quot;a&quot;;"}, "texts"),
+        ({"declaration": "chan a, b; chan priority a &lt; b;"}, "priorities"),
+        ({"declaration": "dynamic T();"}, "templates that are started by runs"),
+        ({"declaration": "before_update { i = 0 }"}, "updates around every step"),
+        ({"declaration": "const N 5;"}, "a constant without a type"),
+        ({"system": "system T &lt; U;"}, "priorities"),
+        ({"declaration": "clock x;", "invariant": "x' == 0"}, "rates of clocks"),
+        ({"declaration": "clock x;", "guard": "x &gt; 0.5"}, "floating point"),
+        ({"declaration": "clock x;", "guard": "x &gt; 1, x &lt; 3"}, "a list of conditions"),
+        ({"declaration": "int i;", "guard": "(i &amp; 1) == 1"}, "operators on bits"),
+        ({"declaration": "int i;", "guard": "i &lt;&lt; 1 == 2"}, "operators on bits"),
+        ({"declaration": "int i;", "guard": "(i &lt;? 1) == 1"}, "minimum"),
+        ({"declaration": "int i[2];", "guard": "sum (k : int[0,1]) i[k] == 0"}, "sums"),
+        ({"guard": "f(3) == 2"}, "functions"),
+        ({"assignment": "f(3)"}, "functions"),
+        ({"declaration": "int i, j;", "assignment": "i = j = 3"}, "an assignment is no value"),
+        ({"assignment": "if (1) { }"}, "statements"),
+    ],
+)  # fmt: skip
+def test_what_is_not_supported_is_called_by_its_name(parts, message):
+    """One finding says what it is, where it stands and what to do instead."""
+    with pytest.raises(ModelError) as caught:
+        loads_network(model(**parts))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TA016"
+    assert message in diagnostic.message
+    assert diagnostic.help
+    assert diagnostic.spans
+
+
+@pytest.mark.parametrize(
+    ("formula", "message"),
+    [
+        ("Pr[<=10](<> T.A)", "statistical queries"),
+        ("simulate [<=10] { T.A }", "statistical queries"),
+        ("sup: T.A", "extreme values"),
+        ("control: A<> T.A", "games"),
+        ("E<> T.A under s", "games"),
+        ("A[ T.A U T.A ]", "until"),
+    ],
+)
+def test_foreign_queries_are_called_by_their_name(formula, message):
+    """As a query of its own it is refused; in a file it is left out with a warning."""
+    with pytest.raises(ModelError, match=message):
+        query_on(loads_network(model()), formula)
+    text = formula.replace("<", "&lt;").replace(">", "&gt;")
+    queries = f"<query><formula>{text}</formula></query>"
+    network = loads_network(model(queries=queries))
+    (warning,) = network.warnings
+    assert message in warning.message
+    assert network.queries == ()
+
+
+def test_what_changes_no_run_is_passed_over():
+    """Charts and progress measures behind the system line are no error."""
+    charts = "system T; progress { 1; } gantt { T: 1 -&gt; 2; }"
+    assert loads_network(model(system=charts)).warnings == ()
+
+
+def test_steps_may_stand_before_the_variable():
+    """`++i` is `i++`."""
+    network, same = (
+        loads_network(model(declaration="int i;", assignment=text)) for text in ("++i", "i++")
+    )
+    assert network.automata == same.automata
+
+
+@pytest.mark.parametrize("text", ["do", "for", "priority", "E"])
+def test_names_of_the_text_form_are_free(text):
+    """A mistake in a `.ta` file is not blamed on a word that only UPPAAL knows."""
+    with pytest.raises(ModelError) as caught:
+        loads_network(f"automaton A {{ location {text} location end\n edge {text} -> end do = 3 }}")
+    assert caught.value.diagnostics[0].code == "TA001"

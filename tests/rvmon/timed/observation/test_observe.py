@@ -1,0 +1,202 @@
+"""Requirements on all runs of a network: claims, witnesses and counterexamples, judged twice."""
+
+from fractions import Fraction
+
+import pytest
+
+import rvmon
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.observation.observe import observe
+from rvmon.timed.search.problem import Budget
+from rvmon.trace.time import TICKS_PER_SECOND
+
+LAMP = """
+unit 1 s
+clock x
+int[0,2] level
+automaton Lamp {
+  location off
+  location on invariant x <= 8
+  start off
+  edge off -> on when x >= 1 do x = 0, level = 1 as pressed
+  edge on -> on when x >= 2 and level < 2 do level = 2 as raised
+  edge on -> off when x >= 5 do x = 0, level = 0 as dark
+}
+signal lit = Lamp.on
+"""
+
+SPEC = """
+spec lamp
+time held
+signal lit : bool
+signal level : int
+event pressed, raised, dark
+{requirements}
+"""
+
+
+def observed(requirements, model=LAMP, **options):
+    """The observations for some requirements, and the spec they come from."""
+    spec = rvmon.loads(SPEC.format(requirements=requirements))
+    return list(observe(loads_network(model), spec.checked, **options)), spec
+
+
+def judged(spec, observation, run):
+    """The verdicts of the attempts of a run, by the engine that monitors recordings."""
+    network, samples, now = observation.network, [], Fraction(0)
+    scale = network.unit
+
+    def values(position):
+        lit = position.locations[0] == 1
+        return {"lit": lit, "level": position.values[0]}
+
+    samples.append((0, values(run.start)))
+    for step in run.steps:
+        now += step.delay
+        if step.action is not None:
+            events = {edge.label: True for _, edge in step.action.edges}
+            t = int(now * scale)
+            if t == samples[-1][0]:
+                samples[-1][1].update(values(step.position) | events)
+            else:
+                samples.append((t, values(step.position) | events))
+    monitor = spec.monitor()
+    attempts = []
+    for t, sample in samples:
+        attempts += monitor.step_ns(t, sample)
+    attempts += monitor.advance_ns(int(now * scale) + 2)
+    return {attempt.verdict.value for attempt in attempts}
+
+
+@pytest.mark.parametrize(
+    ("requirement", "holds"),
+    [
+        ("upon pressed then within 8 s dark", True),
+        ("upon pressed then within 7 s dark", False),
+        ("upon pressed then for 5 s lit", False),
+        ("upon pressed then for 4 s lit", True),
+        ("upon pressed then F[5 s, 8 s] dark", True),
+        ("upon pressed then F[6 s, 8 s] dark", False),
+        ("upon pressed then G[0 s, 2 s] level <= 1", False),
+        ("upon pressed then G[0 s, 1 s] level <= 1", True),
+        ("upon raised then immediately level == 2", True),
+        ("upon pressed then (lit U[0 s, 8 s] dark)", True),
+        ("upon lit then within 8 s not lit", True),
+        ("upon not lit then for 1 s not lit", False),
+        ("upon dark then for 0.5 s not lit", True),
+        ("upon pressed then within 7.5 s dark", False),
+        ("upon pressed and level == 2 then within 1 s dark", True),
+    ],
+)
+def test_claims_on_all_runs(requirement, holds):
+    """Answers that can be read off the model; runs are judged alike by the monitoring engine."""
+    ((one,), spec) = observed(f"requirement R\n  {requirement}")
+    assert one.holds is holds
+    assert (one.failing is None) is holds
+    if one.failing is not None:
+        assert "F" in judged(spec, one, one.failing)
+    if one.passing is not None:
+        assert "P" in judged(spec, one, one.passing)
+
+
+def test_a_requirement_that_no_run_triggers_is_vacuous():
+    """A claim that holds because nothing triggers it is said to be vacuous."""
+    ((one,), _) = observed("requirement R\n  upon raised and dark then within 1 s lit")
+    assert one.holds is True
+    assert one.triggered is None
+    assert "vacuous" in one.remark
+
+
+def test_liveness_is_not_claimed():
+    """That something comes at last is not refuted by a finite run, which is said."""
+    ((one,), _) = observed("requirement R\n  upon pressed then eventually raised")
+    assert one.holds is True
+    assert "in the end" in one.remark
+
+
+def test_an_attempt_may_begin_with_the_run():
+    """`upon start` follows the run from its first instant."""
+    ((one,), spec) = observed("requirement R\n  upon start then for 1 s not lit")
+    assert one.holds is False
+    assert "F" in judged(spec, one, one.failing)
+    ((other,), _) = observed("requirement R\n  upon start then for 0.5 s not lit")
+    assert other.holds is True
+
+
+@pytest.mark.parametrize(
+    ("requirement", "reason"),
+    [
+        ("upon pressed then within 1 s broken", "no action `broken`"),
+        ("upon hot then within 1 s lit", "no signal `hot`"),
+        ("upon pressed and once dark then within 1 s lit", "the past"),
+        ("upon pressed then within 10 ns dark", "whole number"),
+    ],
+)
+def test_what_cannot_be_expressed_is_said(requirement, reason):
+    """Names that the model lacks, the past, and windows finer than the model are no answers."""
+    spec = rvmon.loads(
+        "spec s\ntime held\nsignal lit, hot : bool\nevent pressed, dark, broken\n"
+        f"requirement R\n  {requirement}\n"
+    )
+    (one,) = observe(loads_network(LAMP), spec.checked)
+    assert one.holds is None
+    assert one.remark.startswith("not expressible")
+    assert reason in one.remark
+
+
+def test_signals_can_be_bound_from_outside():
+    """A signal may be any expression over locations and variables."""
+    spec = rvmon.loads(
+        "spec s\ntime held\nsignal bright : bool\nevent pressed\n"
+        "requirement R\n  upon bright then within 6 s not bright\n"
+    )
+    (one,) = observe(loads_network(LAMP), spec.checked, bindings={"bright": "level == 2"})
+    assert one.holds is True
+    (other,) = observe(loads_network(LAMP), spec.checked, bindings={"bright": "Lamp.on"})
+    assert other.holds is False
+
+
+def test_a_budget_is_told():
+    """A search that was cut short decides nothing."""
+    ((one,), _) = observed(
+        "requirement R\n  upon pressed then within 8 s dark", budget=Budget(states=3)
+    )
+    assert one.holds is None
+    assert "not decided" in one.remark
+
+
+def test_times_are_those_of_the_window():
+    """A failing run waits just as long as the window asks."""
+    ((one,), _) = observed("requirement R\n  upon pressed then within 7 s dark")
+    unit = one.network.unit / TICKS_PER_SECOND
+    assert float(one.failing.duration) * unit >= 8
+
+
+PAIR = """
+unit 1 s
+int[0, 1] v
+chan c
+clock x
+automaton p { location a invariant x <= 2 location b start a
+  edge a -> b when x >= 1 on c! as pressed }
+automaton q { location a location b start a edge a -> b on c? as raised }
+signal lit = p.b
+signal level = v
+"""
+
+
+@pytest.mark.parametrize(
+    ("requirement", "holds"),
+    [
+        ("upon raised then immediately pressed", True),
+        ("upon pressed then immediately raised", True),
+        ("upon raised then immediately not pressed", False),
+    ],
+)
+def test_all_labels_of_a_synchronised_move_are_events(requirement, holds):
+    """They occur together, whichever automaton comes first."""
+    (found,), spec = observed(f"requirement R\n  {requirement}", model=PAIR)
+    assert found.triggered is not None
+    assert found.holds is holds
+    if not holds:
+        assert "F" in judged(spec, found, found.failing)

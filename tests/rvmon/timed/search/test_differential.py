@@ -1,0 +1,33 @@
+"""The model checker agrees with the region graph, which shares no code with its search."""
+
+import pytest
+from tests.tools.timed_dice import random_model
+from tests.tools.timed_regions import TooManyRegionsError, decide
+from tests.tools.timed_runs import shows
+
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.verify import verify
+
+
+@pytest.mark.parametrize("first", range(0, 60, 6))
+def test_answers_agree_and_runs_are_runs(first):
+    """On random networks all answers agree, and every run shown is one and shows what it should."""
+    for seed in range(first, first + 6):
+        network = loads_network(random_model(seed))
+        for query in network.queries:
+            outcome = verify(network, query, policy=tuple(Policy)[seed % 3])
+            assert outcome.run is None or shows(network, outcome), (seed, query.text)
+            try:
+                expected = decide(network, query, limit=400)
+            except TooManyRegionsError:
+                continue
+            assert outcome.holds == expected, (seed, query.text)
+
+
+def test_all_kinds_of_parts_are_thrown():
+    """The random networks contain every part of the language that the checker treats apart."""
+    text = "".join(map(random_model, range(200)))
+    for part in ("urgent chan", "broadcast chan", "committed location", "urgent location",
+                 "invariant x < ", "== ", " > ", "= 1", "v = ", "b = "):  # fmt: skip
+        assert part in text

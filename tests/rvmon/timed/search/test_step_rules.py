@@ -1,0 +1,175 @@
+"""Small networks show each rule of the step by what can and cannot be reached."""
+
+import pytest
+
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.search.verify import verify
+
+
+def holds(text, query):
+    """The answer to a query on a model given as text."""
+    return verify(loads_network(text), query).holds
+
+
+PAIR = """
+{kind}chan c
+clock x
+int[0,3] heard
+automaton Sender {{ location s {invariant} location t start s edge s -> t {guard} on c! }}
+automaton Left {{ location l location m start l edge l -> m on c? do heard = heard + 1 }}
+automaton Right {{ location l location m start l edge l -> m on c? do heard = heard * 2 }}
+"""
+
+
+def test_binary_channel_has_one_receiver():
+    """One of two possible receivers takes part, never both."""
+    text = PAIR.format(kind="", invariant="", guard="")
+    assert holds(text, "E<> Left.m") is True
+    assert holds(text, "E<> Right.m") is True
+    assert holds(text, "E<> Left.m and Right.m") is False
+
+
+def test_broadcast_takes_all_receivers_in_order():
+    """Every automaton that can receive does, the updates in the order of the automata."""
+    text = PAIR.format(kind="broadcast ", invariant="", guard="")
+    assert holds(text, "E<> Sender.t and not (Left.m and Right.m)") is False
+    assert holds(text, "E<> heard == 2") is True
+    assert holds(text, "E<> heard == 1") is False
+
+
+def test_sender_updates_first():
+    """A receiver's update sees what the sender has written."""
+    text = """
+    chan c
+    int[0,5] v
+    automaton A { location a location b start a edge a -> b on c! do v = 2 }
+    automaton B { location a location b start a edge a -> b on c? do v = v + 1 }
+    """
+    assert holds(text, "A[] (A.b imply v == 3)") is True
+
+
+def test_guards_are_read_before_the_sender_writes():
+    """A receiver's guard sees the variables as they were before the step."""
+    text = """
+    chan c
+    int[0,5] v
+    automaton A { location a location b start a edge a -> b on c! do v = 2 }
+    automaton B { location a location b start a edge a -> b when v == 2 on c? }
+    """
+    assert holds(text, "E<> A.b") is False
+
+
+def test_urgent_channel_stops_time():
+    """Time does not pass while an urgent channel can be used."""
+    assert holds(PAIR.format(kind="", invariant="", guard=""), "E<> x > 0 and Sender.s") is True
+    assert (
+        holds(PAIR.format(kind="urgent ", invariant="", guard=""), "E<> x > 0 and Sender.s")
+        is False
+    )
+
+
+def test_urgent_broadcast_needs_no_receiver():
+    """An urgent broadcast stops time as soon as its sender can send."""
+    text = """
+    urgent broadcast chan c
+    clock x
+    automaton A { location a location b start a edge a -> b on c! }
+    automaton B { location a start a edge a -> a on c? }
+    """
+    assert holds(text, "E<> A.a and x > 0") is False
+    assert holds(text, "E<> A.b and x > 0") is True
+
+
+@pytest.mark.parametrize("kind", ["urgent", "committed"])
+def test_urgent_and_committed_locations_stop_time(kind):
+    """Time does not pass in an urgent or committed location of any automaton."""
+    text = f"""
+    clock x
+    automaton A {{ {kind} location a location b start a edge a -> b }}
+    automaton B {{ location a location b start a edge a -> b }}
+    """
+    assert holds(text, "E<> A.a and x > 0") is False
+    assert holds(text, "E<> A.b and x > 0") is True
+
+
+def test_committed_location_goes_first():
+    """Only steps that leave a committed location are taken; an urgent one lets others go."""
+    text = """
+    automaton A {{ {kind} location a location b start a edge a -> b }}
+    automaton B {{ location a location b start a edge a -> b }}
+    """
+    assert holds(text.format(kind="committed"), "E<> A.a and B.b") is False
+    assert holds(text.format(kind="urgent"), "E<> A.a and B.b") is True
+
+
+def test_target_invariant_blocks_a_step():
+    """A step whose target's invariant would be false is not taken."""
+    text = """
+    clock x
+    automaton A {
+      location a
+      location b invariant x <= 1
+      start a
+      edge a -> b when x >= 2 {update}
+    }
+    """
+    assert holds(text.replace("{update}", ""), "E<> A.b") is False
+    assert holds(text.replace("{update}", "do x = 0"), "E<> A.b") is True
+
+
+def test_reset_to_a_number():
+    """A clock may be set to a number, and runs on from there."""
+    text = """
+    clock x, y
+    automaton A { location a location b start a edge a -> b when x <= 1 do x = 5 }
+    """
+    assert holds(text, "E<> A.b and x == 5 and y <= 1") is True
+    assert holds(text, "E<> A.b and x < 5") is False
+    assert holds(text, "E<> A.b and x == 7 and y > 3") is False
+    assert holds(text, "E<> A.b and x == 7 and y == 3") is True
+
+
+def test_strict_bounds_are_strict():
+    """`<` and `>` exclude the number itself."""
+    text = """
+    clock x
+    automaton A { location a location b start a edge a -> b when x > 1 and x < 2 }
+    """
+    assert holds(text, "E<> A.b and x <= 1") is False
+    assert holds(text, "E<>[<=1] A.b") is False
+    assert holds(text, "E<>[<=2] A.b") is True
+    assert holds(text.replace("x < 2", "x <= 1"), "E<> A.b") is False
+
+
+def test_weights_below_one_make_the_likeliest_run():
+    """The likeliest run avoids an improbable edge even if more steps are needed."""
+    from rvmon.timed.search.outcome import Policy
+
+    network = loads_network("""
+    automaton A {
+      location a location b location c
+      start a
+      edge a -> c weight 0.1
+      edge a -> b weight 0.9
+      edge b -> c weight 0.5
+    }
+    """)
+    steps = {policy: len(verify(network, "E<> A.c", policy=policy).run.steps) for policy in Policy}
+    assert steps == {Policy.SHORTEST: 1, Policy.FASTEST: 1, Policy.LIKELIEST: 2}
+
+
+def test_arrays_of_channels_and_variables():
+    """Elements chosen by a variable are found as if they were named."""
+    text = """
+    chan c[3]
+    int[0,2] who, list[3] = {2, 0, 1}
+    automaton A { location a location b start a edge a -> b on c[list[who]]! do who = 1 }
+    automaton B {
+      int[0,2] got
+      location a
+      start a
+      edge a -> a select i : int[0,2] on c[i]? do got = i
+    }
+    """
+    assert holds(text, "A[] (A.b imply B.got == 2)") is True
+    assert holds(text, "A[] (A.b imply list[who] == 0)") is True

@@ -1,0 +1,131 @@
+"""Runs come with the exact window of each wait, and any choice inside the windows is a run."""
+
+from fractions import Fraction
+from random import Random
+
+import pytest
+
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.runs.concrete import InvalidRunError, replay
+from rvmon.timed.runs.run import Run, RunStep, Window
+from rvmon.timed.runs.timing import TimedStep, earliest, sample, timing_of, windows
+from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.verify import verify
+
+RELAY = """
+clock x, y
+automaton A {
+  location a invariant x <= 5
+  location b invariant x <= 7
+  location c
+  start a
+  edge a -> b when x >= 2 do y = 0
+  edge b -> c when y > 1 and x < 7
+}
+"""
+
+
+def test_windows_are_exact():
+    """Each wait's window holds all and only the durations that some run has."""
+    run = verify(loads_network(RELAY), "E<> A.c").run
+    assert [step.window for step in run.steps] == [
+        Window(2, 5, False, False),
+        Window(1, 5, True, True),
+    ]
+    assert run.steps[0].delay == 2
+    assert run.steps[1].delay in run.steps[1].window
+
+
+def test_a_wait_shortens_the_next():
+    """Fixing one wait leaves the next only what is left of its window."""
+    steps = [
+        TimedStep(True, ((0, 1, 4.0),), (), ()),
+        TimedStep(True, ((1, 0, -4.0), (0, 1, 4.0)), (), ()),
+    ]
+    timing = timing_of(steps)
+    assert windows(timing) == [Window(0, 4), Window(0, 4)]
+    for seed in range(50):
+        assert sum(sample(timing, Random(seed), 10)) == 4
+
+
+def test_impossible_paths_have_no_timing():
+    """A path that no run can follow is recognised, also if only strictness forbids it."""
+    above, below = (1, 0, -2 - 2.0**-20), (0, 1, 2.0)
+    assert timing_of([TimedStep(True, (above, below), (), ())]) is None
+    assert timing_of([TimedStep(True, ((1, 0, -2.0), below), (), ())]) is not None
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_samples_are_runs(seed):
+    """Every sampled choice of delays is a run of the network."""
+    network = loads_network(RELAY)
+    run = verify(network, "E<> A.c").run
+    bounds = [
+        TimedStep(True, ((0, 1, 5.0), (1, 0, -2.0)), ((2, 0.0),), ((0, 1, 7.0),)),
+        TimedStep(True, ((0, 1, 7.0), (2, 0, -1 - 2.0**-20), (0, 1, 7 - 2.0**-20)), (), ()),
+    ]
+    delays = sample(timing_of(bounds), Random(seed), 10)
+    moved = tuple(
+        RunStep(step.window, delay, step.action, step.position)
+        for step, delay in zip(run.steps, delays, strict=True)
+    )
+    replay(network, Run(run.start, moved))
+
+
+def test_earliest_is_the_least_of_all():
+    """No run along the path does any of its steps earlier."""
+    steps = [
+        TimedStep(True, ((1, 0, -2.0),), (), ()),
+        TimedStep(True, ((1, 0, -3 - 2.0**-20),), (), ()),
+    ]
+    first, second = earliest(timing_of(steps))
+    assert first == 2
+    assert 1 < second < Fraction(3, 2)
+
+
+@pytest.mark.parametrize("position", [0, 1])
+def test_a_wrong_delay_is_no_run(position):
+    """The plain rules reject a run with one delay outside its window."""
+    network = loads_network(RELAY)
+    run = verify(network, "E<> A.c").run
+    steps = list(run.steps)
+    broken = steps[position]
+    wide = Window(0, None)
+    steps[position] = RunStep(wide, Fraction(1, 2), broken.action, broken.position)
+    with pytest.raises(InvalidRunError):
+        replay(network, Run(run.start, tuple(steps)))
+
+
+def test_fastest_beats_shortest():
+    """The fastest run may take more steps than the shortest, and the reverse."""
+    network = loads_network("""
+    clock x
+    automaton A {
+      location a
+      location b
+      location c
+      start a
+      edge a -> c when x >= 9
+      edge a -> b when x >= 1
+      edge b -> c when x >= 2
+    }
+    """)
+    runs = {policy: verify(network, "E<> A.c", policy=policy).run for policy in Policy}
+    assert (len(runs[Policy.SHORTEST].steps), runs[Policy.SHORTEST].duration) == (1, 9)
+    assert (len(runs[Policy.FASTEST].steps), runs[Policy.FASTEST].duration) == (2, 2)
+
+
+def test_the_fastest_run_counts_the_goal_too():
+    """A goal that names a clock may be reached earlier on the way that seems slower."""
+    network = loads_network("""
+    clock x
+    automaton A {
+      location a
+      location b
+      start a
+      edge a -> b when x >= 1 do x = 0
+      edge a -> b when x >= 2
+    }
+    """)
+    run = verify(network, "E<> A.b and x >= 5", policy=Policy.FASTEST).run
+    assert run.duration == 5

@@ -1,0 +1,1 @@
+"""What tests and benchmarks share: cases by hand, the law on them, differential tests, oracles."""

@@ -1,0 +1,213 @@
+"""Formulas, specifications and traces in few words, for tests by hand.
+
+>>> spec = spec_of(requirement(eventually(p, 0, 3), upon=e))
+>>> [sample.t for sample in timeline(p="0..1", e=".1..")]
+[0, 1, 3]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+from typing import Any
+
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Compare,
+    CompareOp,
+    Constant,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Interval,
+    Literal,
+    Numeric,
+    Probe,
+    ProbeAtom,
+    SignalAtom,
+    SignalValue,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.testing.pulse import is_pulse
+from rvmon.testing.vocabulary import BOOLS, CARRIER, FIELD, LABEL, LABELS, NUMBERS, events, signals
+from rvmon.trace.sample import Sample, Value
+
+p, q, r = (SignalAtom(name) for name in BOOLS)
+e, f, g = EventAtom("e"), EventAtom("f"), EventAtom(CARRIER)
+x, y = (SignalValue(name) for name in NUMBERS)
+k = FieldValue(CARRIER, FIELD)
+start, end = BoundAtom(Bound.START), BoundAtom(Bound.END)
+true, false = Constant(True), Constant(False)
+
+
+def no(formula: Formula) -> Formula:
+    """`not formula`."""
+    return Unary(UnaryOp.NOT, formula)
+
+
+def timed(op: UnaryOp, formula: Formula, low: int = 0, high: int | None = None) -> Formula:
+    """A temporal operator with the interval `[low, high]`."""
+    return Unary(op, formula, Interval(low, high))
+
+
+def eventually(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
+    """`F[low, high] formula`."""
+    return timed(UnaryOp.EVENTUALLY, formula, low, high)
+
+
+def always(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
+    """`G[low, high] formula`."""
+    return timed(UnaryOp.ALWAYS, formula, low, high)
+
+
+def once(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
+    """`O[low, high] formula`."""
+    return timed(UnaryOp.ONCE, formula, low, high)
+
+
+def historically(formula: Formula, low: int = 0, high: int | None = None) -> Formula:
+    """`H[low, high] formula`."""
+    return timed(UnaryOp.HISTORICALLY, formula, low, high)
+
+
+def held(formula: Formula, duration: int) -> Formula:
+    """`held(formula, duration)`."""
+    return timed(UnaryOp.HELD, formula, 0, duration)
+
+
+def following(formula: Formula) -> Formula:
+    """`X formula`."""
+    return Unary(UnaryOp.NEXT, formula)
+
+
+def previous(formula: Formula) -> Formula:
+    """`Y formula`."""
+    return Unary(UnaryOp.PREVIOUS, formula)
+
+
+def rise(formula: Formula) -> Formula:
+    """`rise(formula)`."""
+    return Unary(UnaryOp.RISE, formula)
+
+
+def fall(formula: Formula) -> Formula:
+    """`fall(formula)`."""
+    return Unary(UnaryOp.FALL, formula)
+
+
+def two(left: Formula, op: str, right: Formula, *interval: int | None) -> Formula:
+    """`left op right`; a temporal operator may be given `low` and `high`.
+
+    >>> two(p, "U", q, 0, 3).interval
+    Interval(low=0, high=3)
+    """
+    found = BinaryOp(op)
+    if found in _TEMPORAL:
+        low, high = interval if interval else (0, None)
+        return Binary(found, left, right, Interval(low or 0, high))
+    return Binary(found, left, right)
+
+
+_TEMPORAL = (
+    BinaryOp.UNTIL,
+    BinaryOp.RELEASE,
+    BinaryOp.WEAK_UNTIL,
+    BinaryOp.STRONG_RELEASE,
+    BinaryOp.SINCE,
+)
+
+
+def compared(left: Numeric, op: str, right: Numeric | float | str) -> Formula:
+    """`left op right` of numbers or labels."""
+    other = Literal(right) if isinstance(right, int | float | str) else right
+    return Compare(CompareOp(op), left, other)
+
+
+def probe(which: str, name: str) -> Formula:
+    """`known(name)`, `updated(name)` or `changed(name)`."""
+    return ProbeAtom(Probe(which), name)
+
+
+def requirement(
+    consequent: Formula,
+    *,
+    upon: Formula | None = None,
+    whenever: Formula | None = None,
+    name: str = "R",
+    **rest: Any,
+) -> Requirement:
+    """A requirement; `upon start` if no trigger is given.
+
+    Args:
+        consequent: what is owed.
+        upon: the trigger, or
+        whenever: the trigger.
+        name: the id.
+        rest: further fields of `Requirement`.
+    """
+    mode = Mode.UPON if whenever is None else Mode.WHENEVER
+    trigger = upon or whenever or start
+    return Requirement(name, mode, trigger, consequent, pulse=is_pulse(trigger), **rest)
+
+
+def spec_of(
+    *requirements: Requirement,
+    time: TimeModel = TimeModel.HELD,
+    period: int | None = None,
+    stale: Mapping[str, int] | None = None,
+    ignoring: Container[str] = (),
+) -> CheckedSpec:
+    """A specification over the test vocabulary.
+
+    Args:
+        requirements: its requirements.
+        time: the time model.
+        period: of `sampled every`, ticks.
+        stale: `stale after` of signals, ticks.
+        ignoring: the signals of which NaN and null are no update.
+    """
+    return CheckedSpec(
+        name="test",
+        title="",
+        time=time,
+        signals=signals(stale, ignoring),
+        events=events(),
+        requirements={found.id: found for found in requirements},
+        period=period,
+    )
+
+
+def timeline(**rows: str) -> tuple[Sample, ...]:
+    """Samples from one row of characters per name, one character per tick from 0.
+
+    `.` says nothing; `u` is `None`, `n` NaN. For booleans and events `1` and `0`; for numbers a
+    digit; for the label its first letter; for the event with a payload a digit, which is its
+    field, `t`: it occurs without a payload, `v`: with the field `None`.
+    """
+    samples = []
+    for t in range(max(map(len, rows.values()), default=0)):
+        row_at = {name: row[t] for name, row in rows.items() if t < len(row) and row[t] != "."}
+        if row_at:
+            samples.append(Sample(t, {name: _value(name, c) for name, c in row_at.items()}))
+    return tuple(samples)
+
+
+def _value(name: str, character: str) -> Value:
+    match character:
+        case "u":
+            return None
+        case "n":
+            return float("nan")
+    if name in NUMBERS:
+        return int(character)
+    if name == LABEL:
+        return next(label for label in LABELS if label[0] == character)
+    if name == CARRIER and character == "v":
+        return {FIELD: None}
+    if name == CARRIER and character.isdigit():
+        return {FIELD: int(character)}
+    return character in "1t"

@@ -1,0 +1,230 @@
+"""The robustness of attempts, straight from its definition: the oracle of the quantitative engine.
+
+Every position is explicit and every operator a minimum of maxima over positions. Unknown input and
+what lies behind the end may be anything: each figure is an interval.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import assert_never
+
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.spec.checked.specification import Mode
+from rvmon.testing.attempts import Start, counts_in_favour, is_upon_end
+from rvmon.testing.compare import Key
+from rvmon.testing.kleene import Truth, truth_of
+from rvmon.testing.past import is_within
+from rvmon.testing.truths import EVER
+from rvmon.testing.walk import is_proposition
+from rvmon.testing.word import Word
+from rvmon.trace.sample import Scalar
+from tests.tools.judgement import Judgement
+from tests.tools.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
+
+
+def margins(judgement: Judgement) -> dict[Key, tuple[float, float, float]]:
+    """The robustness of each attempt that has a record.
+
+    Args:
+        judgement: of the case.
+
+    Returns:
+        The least it can be, the greatest, and the least if all is well behind the end that has
+        begun and only has to be kept up. Of one in doubt the greatest is infinite, as what was not
+        triggered owes nothing.
+
+    Source: SEMANTICS, sections 1 (Birth), 2, 3 and 5.
+    """
+    found = {}
+    for name, followings in judgement.followings.items():
+        for one in followings.attempts:
+            in_doubt = one.start.sure is None
+            key = (name, in_doubt, one.doubtful_number if in_doubt else one.number)
+            if key in judgement.outcomes:
+                low, high = _owed(one.start, kept=False)
+                kept, _ = _owed(one.start, kept=True)
+                found[key] = (low, TOP[1] if in_doubt else high, kept)
+    return found
+
+
+def _owed(start: Start, *, kept: bool) -> Range:
+    requirement = start.view.requirement
+    favour = counts_in_favour(requirement)
+
+    ranges = _Ranges(start.word, start.captured, favour=favour, kept=kept)
+
+    def consequent(k: int) -> Range:
+        return ranges.range(requirement.consequent, k)
+
+    if is_upon_end(requirement) or (requirement.mode is Mode.UPON and start.sure is not None):
+        return consequent(start.position)
+    trigger = Past(start.word, start.captured)
+
+    def owed(k: int) -> Range:
+        if start.blurred is not None and k >= start.blurred:
+            return ANY
+        if requirement.mode is Mode.UPON:
+            return most([ANY, consequent(k)])
+        excused = negated(trigger.range(requirement.trigger, k, Truth.FALSE))
+        return most([excused, consequent(k)])
+
+    return least([*map(owed, start.owes), TOP if kept or start.stop is not None else ANY])
+
+
+class _Ranges:
+    def __init__(
+        self, word: Word, captured: Mapping[str, Scalar], *, favour: bool, kept: bool
+    ) -> None:
+        self.letters = word.letters
+        self.end = word.end
+        self.reached = word.reached
+        self.favour = favour
+        self.kept = kept
+        self.past = Past(word, captured)
+        self.known: dict[tuple[int, int, bool], Range] = {}
+
+    def range(self, formula: Formula, i: int, *, positive: bool = True) -> Range:
+        key = (id(formula), i, positive)
+        if key not in self.known:
+            self.known[key] = self._range(formula, i, positive)
+        return self.known[key]
+
+    def _range(self, formula: Formula, i: int, positive: bool) -> Range:
+        if is_proposition(formula):
+            unborn = truth_of(positive) if self.favour else Truth.UNKNOWN
+            return self.past.range(formula, i, unborn)
+        match formula:
+            case Unary():
+                return self._unary(formula, i, positive)
+            case Binary():
+                return self._binary(formula, i, positive)
+            case _:
+                raise AssertionError("atoms are propositions")
+
+    def _unary(self, formula: Unary, i: int, positive: bool) -> Range:
+        window = formula.interval or EVER
+
+        def operand(k: int) -> Range:
+            return self.range(formula.operand, k, positive=positive)
+
+        def opposite(k: int) -> Range:
+            return negated(self.range(formula.operand, k, positive=not positive))
+
+        match formula.op:
+            case UnaryOp.NOT:
+                return opposite(i)
+            case UnaryOp.NEXT:
+                return operand(i + 1) if i + 1 < len(self.letters) else ANY
+            case UnaryOp.EVENTUALLY:
+                return self._until(_always(TOP), operand, i, window, positive)
+            case UnaryOp.ALWAYS:
+                return self._release(_always(BOTTOM), operand, i, window, positive)
+            case UnaryOp.PREVIOUS:
+                return operand(i - 1) if i else BOTTOM
+            case UnaryOp.ONCE:
+                return self._since(_always(TOP), operand, i, window)
+            case UnaryOp.HISTORICALLY:
+                return negated(self._since(_always(TOP), _not(operand), i, window))
+            case UnaryOp.HELD:
+                begun = self.letters[i].instant - self.letters[0].instant >= (window.high or 0)
+                whole = negated(self._since(_always(TOP), _not(operand), i, window))
+                return least([TOP if begun else BOTTOM, whole])
+            case UnaryOp.RISE:
+                return least([operand(i), opposite(i - 1) if i else TOP])
+            case UnaryOp.FALL:
+                return least([opposite(i), operand(i - 1) if i else BOTTOM])
+            case _:
+                assert_never(formula.op)
+
+    def _binary(self, formula: Binary, i: int, positive: bool) -> Range:
+        window = formula.interval or EVER
+
+        def left(k: int) -> Range:
+            return self.range(formula.left, k, positive=positive)
+
+        def right(k: int) -> Range:
+            return self.range(formula.right, k, positive=positive)
+
+        def not_left(k: int) -> Range:
+            return negated(self.range(formula.left, k, positive=not positive))
+
+        def not_right(k: int) -> Range:
+            return negated(self.range(formula.right, k, positive=not positive))
+
+        def either(k: int) -> Range:
+            return most([left(k), right(k)])
+
+        def both(k: int) -> Range:
+            return least([left(k), right(k)])
+
+        match formula.op:
+            case BinaryOp.AND:
+                return both(i)
+            case BinaryOp.OR:
+                return either(i)
+            case BinaryOp.IMPLIES:
+                return most([not_left(i), right(i)])
+            case BinaryOp.IFF:
+                return most([both(i), least([not_left(i), not_right(i)])])
+            case BinaryOp.XOR:
+                return most([least([left(i), not_right(i)]), least([not_left(i), right(i)])])
+            case BinaryOp.UNTIL:
+                return self._until(left, right, i, window, positive)
+            case BinaryOp.RELEASE:
+                return self._release(left, right, i, window, positive)
+            case BinaryOp.WEAK_UNTIL:
+                return self._release(right, either, i, window, positive)
+            case BinaryOp.STRONG_RELEASE:
+                return self._until(right, both, i, window, positive)
+            case BinaryOp.SINCE:
+                return self._since(left, right, i, window)
+            case _:
+                assert_never(formula.op)
+
+    def _until(
+        self, left: Operand, right: Operand, i: int, window: Interval, positive: bool
+    ) -> Range:
+        rest = ANY if positive else negated(self._rest(i, window))
+        return self._some(left, right, i, window, rest)
+
+    def _release(
+        self, left: Operand, right: Operand, i: int, window: Interval, positive: bool
+    ) -> Range:
+        rest = negated(self._rest(i, window)) if positive else ANY
+        return negated(self._some(_not(left), _not(right), i, window, rest))
+
+    def _rest(self, i: int, window: Interval) -> Range:
+        opens = self.letters[i].instant + window.low
+        opened = window.high is None and self.end is not None and opens <= self.end
+        return TOP if self.kept and opened else ANY
+
+    def _some(self, left: Operand, right: Operand, i: int, window: Interval, rest: Range) -> Range:
+        now = self.letters[i].instant
+        ways = [
+            least([right(j), *(left(k) for k in range(i, j))])
+            for j in range(i, len(self.letters))
+            if is_within(self.letters[j].instant - now, window)
+        ]
+        if window.high is None or self.reached <= now + window.high:
+            ways.append(least([rest, *(left(k) for k in range(i, len(self.letters)))]))
+        return most(ways)
+
+    def _since(self, left: Operand, right: Operand, i: int, window: Interval) -> Range:
+        now = self.letters[i].instant
+        return most(
+            least([right(j), *(left(k) for k in range(j + 1, i + 1))])
+            for j in range(i + 1)
+            if is_within(now - self.letters[j].instant, window)
+        )
+
+
+Operand = Callable[[int], Range]
+
+
+def _always(value: Range) -> Operand:
+    return lambda _: value
+
+
+def _not(operand: Operand) -> Operand:
+    return lambda k: negated(operand(k))

@@ -1,0 +1,256 @@
+"""The robustness of formulas of the present and past, as intervals, straight from definitions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Compare,
+    CompareOp,
+    Formula,
+    Interval,
+    Unary,
+    UnaryOp,
+)
+from rvmon.testing.kleene import Truth, conjunction, negation
+from rvmon.testing.numbers import events_of, number
+from rvmon.testing.past import is_within
+from rvmon.testing.truths import EVER, Truths
+from rvmon.testing.word import Letter, Word
+from rvmon.trace.sample import Payload, Scalar
+
+Range = tuple[float, float]
+"""Least and greatest value."""
+
+TOP: Range = (math.inf, math.inf)
+BOTTOM: Range = (-math.inf, -math.inf)
+ANY: Range = (-math.inf, math.inf)
+OF_TRUTH = {Truth.FALSE: BOTTOM, Truth.UNKNOWN: ANY, Truth.TRUE: TOP}
+
+
+def negated(value: Range) -> Range:
+    """The robustness of the negation."""
+    return -value[1], -value[0]
+
+
+def least(values: Iterable[Range]) -> Range:
+    """That of a conjunction; of nothing `TOP`."""
+    lows, highs = zip(TOP, *values, strict=True)
+    return min(lows), min(highs)
+
+
+def most(values: Iterable[Range]) -> Range:
+    """That of a disjunction; of nothing `BOTTOM`."""
+    lows, highs = zip(BOTTOM, *values, strict=True)
+    return max(lows), max(highs)
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """A formula at a position.
+
+    Attributes:
+        state: its truth, or that it is not born.
+        read: its robustness, by what it is taken for if it is not born.
+    """
+
+    state: Truth
+    read: Callable[[Truth], Range]
+
+
+class Past:
+    """The robustness of formulas of the present and past at the positions of a word.
+
+    Args:
+        word: the trace.
+        captured: values of `let` and `for each`.
+
+    Source: SEMANTICS, sections 1 (Birth), 2 and 5; decision record 4.
+    """
+
+    def __init__(self, word: Word, captured: Mapping[str, Scalar]) -> None:
+        self._letters = word.letters
+        self._captured = captured
+        self._truths = Truths(word, captured)
+        self._known: dict[tuple[int, int, Truth], Range] = {}
+
+    def range(self, formula: Formula, i: int, unborn: Truth) -> Range:
+        """The robustness at a position; `unborn` is what counts where it is not born."""
+        key = (id(formula), i, unborn)
+        if key not in self._known:
+            self._known[key] = self._range(formula, i, unborn)
+        return self._known[key]
+
+    def _seen(self, formula: Formula, i: int) -> Seen:
+        return Seen(self._truths.state(formula, i), lambda unborn: self.range(formula, i, unborn))
+
+    def _range(self, formula: Formula, i: int, unborn: Truth) -> Range:
+        state = self._truths.state(formula, i)
+        match formula:
+            case Unary():
+                return self._unary(formula, i, unborn)
+            case Binary():
+                return self._binary(formula, i, unborn)
+            case _ if state is Truth.UNBORN:
+                return OF_TRUTH[unborn]
+            case Compare():
+                return _compared(formula, self._letters[i], self._captured)
+            case _:
+                return OF_TRUTH[state]
+
+    def _unary(self, formula: Unary, i: int, unborn: Truth) -> Range:
+        operand, window = formula.operand, formula.interval or EVER
+        here = self._seen(operand, i)
+        is_unborn = self._truths.state(formula, i) is Truth.UNBORN
+        match formula.op:
+            case UnaryOp.NOT:
+                return _not(here).read(unborn)
+            case UnaryOp.PREVIOUS:
+                return self._before(operand, i).read(unborn)
+            case UnaryOp.RISE:
+                return _all([here, _not(_settled(self._before(operand, i)))]).read(unborn)
+            case UnaryOp.FALL:
+                return _all([_not(here), _settled(self._before(operand, i))]).read(unborn)
+            case UnaryOp.ONCE:
+                value = self._since(None, self._candidate(operand), i, window)
+                return _besides(value, is_unborn, unborn)
+            case UnaryOp.HISTORICALLY:
+                value = self._since(None, self._candidate(operand, positive=False), i, window)
+                return negated(_besides(value, is_unborn, negation(unborn)))
+            case UnaryOp.HELD:
+                return self._held(operand, i, window, unborn)
+            case _:
+                raise AssertionError("it speaks of the future")
+
+    def _binary(self, formula: Binary, i: int, unborn: Truth) -> Range:
+        left, right = self._seen(formula.left, i), self._seen(formula.right, i)
+        match formula.op:
+            case BinaryOp.AND:
+                return _all([left, right]).read(unborn)
+            case BinaryOp.OR:
+                return _any([left, right]).read(unborn)
+            case BinaryOp.IMPLIES:
+                return _any([_not(left), right]).read(unborn)
+            case BinaryOp.IFF:
+                same = [_all([left, right]), _all([_not(left), _not(right)])]
+                return _any(same).read(unborn)
+            case BinaryOp.XOR:
+                other = [_all([left, _not(right)]), _all([_not(left), right])]
+                return _any(other).read(unborn)
+            case BinaryOp.SINCE:
+                window = formula.interval or EVER
+                value = self._since(formula.left, self._candidate(formula.right), i, window)
+                is_unborn = self._truths.state(formula, i) is Truth.UNBORN
+                return _besides(value, is_unborn, unborn)
+            case _:
+                raise AssertionError("it speaks of the future")
+
+    def _candidate(self, formula: Formula, *, positive: bool = True) -> Callable[[int], Range]:
+        """What is sought in a window, where it is not born it is none."""
+        if positive:
+            return lambda k: self.range(formula, k, Truth.FALSE)
+        return lambda k: negated(self.range(formula, k, Truth.TRUE))
+
+    def _since(
+        self, left: Formula | None, right: Callable[[int], Range], i: int, window: Interval
+    ) -> Range:
+        """Positions at which `left` is not born do not stand in the way."""
+        now = self._letters[i].instant
+        kept = [TOP if left is None else self.range(left, k, Truth.TRUE) for k in range(i + 1)]
+        return most(
+            least([right(j), *kept[j + 1 :]])
+            for j in range(i + 1)
+            if is_within(now - self._letters[j].instant, window)
+        )
+
+    def _before(self, operand: Formula, i: int) -> Seen:
+        if i == 0:
+            return Seen(Truth.FALSE, lambda _: BOTTOM)
+        state = self._truths.state(operand, i - 1)
+        value = self.range(operand, i - 1, Truth.FALSE)
+        return Seen(state, lambda unborn: _besides(value, state is Truth.UNBORN, unborn))
+
+    def _held(self, operand: Formula, i: int, window: Interval, unborn: Truth) -> Range:
+        start, now = self._letters[0].instant, self._letters[i].instant
+        inside = [k for k in range(i + 1) if is_within(now - self._letters[k].instant, window)]
+        begun = TOP if now - start >= (window.high or 0) else BOTTOM
+        value = least([begun, *(self.range(operand, k, Truth.FALSE) for k in inside)])
+        states = {self._truths.state(operand, k) for k in inside}
+        if states & {Truth.TRUE, Truth.FALSE}:
+            return value
+        if Truth.UNKNOWN in states:
+            return most([value, ANY])
+        return _besides(value, True, unborn)
+
+
+def _besides(value: Range, is_unborn: bool, unborn: Truth) -> Range:
+    """What is at least `unborn` where it is not born."""
+    return most([value, OF_TRUTH[unborn]]) if is_unborn else value
+
+
+def _settled(one: Seen) -> Seen:
+    """False where it is not born, as what lies before the trace."""
+    state = Truth.FALSE if one.state is Truth.UNBORN else one.state
+    return Seen(state, lambda _: one.read(Truth.FALSE))
+
+
+def _not(one: Seen) -> Seen:
+    return Seen(negation(one.state), lambda unborn: negated(one.read(negation(unborn))))
+
+
+def _any(parts: Sequence[Seen]) -> Seen:
+    return _not(_all([_not(one) for one in parts]))
+
+
+def _all(parts: Sequence[Seen]) -> Seen:
+    """What was lost is not excused by what is not there: with it, the whole may be anything."""
+    states = {one.state for one in parts}
+
+    def read(unborn: Truth) -> Range:
+        if unborn is not Truth.FALSE:
+            return least(one.read(unborn) for one in parts)
+        if Truth.UNBORN in states and Truth.UNKNOWN not in states:
+            return BOTTOM
+        return least(one.read(Truth.UNKNOWN) for one in parts)
+
+    return Seen(conjunction(states), read)
+
+
+def _compared(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar]) -> Range:
+    events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
+    ways = []
+    for choice in product(*(letter.events[event].occurrences for event in events)):
+        payloads = {e: o.payload for e, o in zip(events, choice, strict=True)}
+        occur = [OF_TRUTH[occurrence.truth] for occurrence in choice]
+        ways.append(least([*occur, _distance(comparison, letter, payloads, captured)]))
+    return most(ways)
+
+
+def _distance(
+    comparison: Compare,
+    letter: Letter,
+    payloads: Mapping[str, Payload],
+    captured: Mapping[str, Scalar],
+) -> Range:
+    left = number(comparison.left, letter, payloads, captured)
+    right = number(comparison.right, letter, payloads, captured)
+    if left is None or right is None:
+        return ANY
+    op = comparison.op
+    if isinstance(left, str) or isinstance(right, str):
+        return TOP if (left == right) is (op is CompareOp.EQ) else BOTTOM
+    apart = 0.0 if left == right else float(left - right)
+    value = {
+        CompareOp.LT: -apart,
+        CompareOp.LE: -apart,
+        CompareOp.GT: apart,
+        CompareOp.GE: apart,
+        CompareOp.EQ: -abs(apart),
+        CompareOp.NE: abs(apart),
+    }[op]
+    return value, value

@@ -1,0 +1,86 @@
+"""Robustness against its oracle, and its sign against the verdict, on random cases."""
+
+import pytest
+
+from rvmon.monitor.robustness import RobustnessMonitor
+from rvmon.session import Spec
+from rvmon.spec.checked.specification import Mode, TimeModel
+from rvmon.testing.compare import key_of
+from rvmon.testing.drive import tell
+from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.show import show_case
+from rvmon.verdict.attempt import Decision
+from rvmon.verdict.verdict import Verdict
+from tests.tools.differential import case_of
+from tests.tools.judgement import Judgement
+from tests.tools.margins import margins
+
+PAIRS = 90
+
+
+def measured(case):
+    """What the engine finds while the case goes on, by what tells attempts apart.
+
+    What is known of an open attempt must only draw closer, up to its figure.
+    """
+    monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
+    found, bounds = {}, {}
+    for action in case.actions:
+        for one in tell(monitor, action):
+            found[key_of(one)] = one.robustness
+        for one in monitor.open:
+            assert_within(one.robustness, bounds.get(key_of(one)), case)
+            bounds[key_of(one)] = one.robustness
+    settled = len(found)
+    for one in monitor.finish_ns(case.end):
+        found[key_of(one)] = one.robustness
+    for key, figures in found.items():
+        assert_within(figures, bounds.get(key), case)
+    return {key: (one.low, one.high, one.kept) for key, one in found.items()}, settled
+
+
+def assert_within(later, earlier, case):
+    """What is known later lies within what was known earlier."""
+    if earlier is not None:
+        assert earlier.low <= later.low <= later.high <= earlier.high, show_case(case)
+
+
+def fits(attempt, low, high, kept, *, says_nothing):
+    """Whether figures have the sign of a verdict, where they are not 0.
+
+    An episode may be met and say nothing, since something of it had no value.
+    """
+    match attempt.decision, attempt.verdict:
+        case Decision.PREFIX, Verdict.PASS:
+            return low >= 0
+        case Decision.PREFIX, Verdict.FAIL:
+            return high <= 0
+        case Decision.HELD_TO_END, _:
+            return kept >= 0
+        case Decision.OPEN, _:
+            return (low <= 0 or says_nothing) and high >= 0
+        case _:
+            return True
+
+
+@pytest.mark.parametrize("time", TimeModel)
+def test_engine_and_oracle_agree(time):
+    """Each attempt has the oracle's least and greatest value, and the sign of its verdict."""
+    finite = early = doubtful = 0
+    for number in range(PAIRS):
+        case = case_of(f"margins {number}", Profile(time=time), TraceProfile())
+        judgement = Judgement(case)
+        expected = margins(judgement)
+        found, settled = measured(case)
+        assert found == expected, show_case(case)
+        early += settled
+        for attempt in judgement.report.attempts:
+            figures = expected[key_of(attempt)]
+            says_nothing = case.spec.requirements[attempt.requirement].mode is Mode.WHENEVER
+            assert fits(attempt, *figures, says_nothing=says_nothing), show_case(case)
+            doubtful += attempt.in_doubt
+            finite += any(abs(figure) < float("inf") for figure in figures)
+    assert finite > 5
+    assert early > 5
+    assert doubtful > 5

@@ -1,0 +1,326 @@
+"""A slow and obvious decision procedure for small networks of timed automata: the region graph.
+
+Every question is decided by walking through all regions, one representative valuation each, with
+the plain rules of `rvmon.timed.runs.concrete`. It shares no zone, no search and no abstraction with
+the model checker, and so can say whether that is right.
+
+Source: Alur and Dill, A Theory of Timed Automata, 1994, section 4.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from math import floor
+
+import networkx as nx
+
+from rvmon.timed.model.expressions import BinaryOperation, Constant, Expression, PathFormula
+from rvmon.timed.model.guards import normal_form, with_deadlock
+from rvmon.timed.model.network import Edge, LeadsToFormula, Network, Query
+from rvmon.timed.model.operators import BinaryOp, PathOp
+from rvmon.timed.runs.concrete import (
+    Configuration,
+    InvalidRunError,
+    act,
+    channel_index,
+    initial_configuration,
+    is_ready,
+    satisfies,
+    wait,
+)
+from rvmon.timed.runs.run import Action
+from rvmon.timed.zones.zone_unions import compares_of, has_paths, speaks_of_deadlock
+
+
+class TooManyRegionsError(Exception):
+    """A network has more regions than were asked to be walked through."""
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A configuration that stands for all of its region, and the time since a chosen instant.
+
+    Attributes:
+        now: the representative; clocks above all constants are one more than the largest.
+        timer: as the clocks; always 0 if nobody asks for it.
+    """
+
+    now: Configuration
+    timer: Fraction
+
+
+class RegionGraph:
+    """The regions of a network.
+
+    Args:
+        network: small, with constants of one digit.
+        formulas: whose clock constants count too.
+        bound: the largest number that the timer is compared with; `None`: there is no timer.
+        limit: the most regions to walk through.
+    """
+
+    def __init__(
+        self,
+        network: Network,
+        formulas: Iterable[Expression] = (),
+        bound: int | None = None,
+        limit: int = 5_000,
+    ) -> None:
+        compares = [
+            *(c for a in network.automata for place in a.locations for c in place.invariant.clocks),
+            *(c for a in network.automata for edge in a.edges for c in edge.guard.clocks),
+            *(c for formula in formulas for c in compares_of(formula)),
+        ]
+        constants = [c.bound.value for c in compares if isinstance(c.bound, Constant)]
+        self._network = network
+        self._largest = max([0, *constants, bound or 0])
+        self._timed = bound is not None
+        self._limit = limit
+
+    def start(self) -> Region:
+        """The region of the initial configuration."""
+        return Region(initial_configuration(self._network), Fraction(0))
+
+    def region_of(self, now: Configuration) -> Region:
+        """The region of any configuration."""
+        return self._canonical(now, Fraction(0))
+
+    def restarted(self, region: Region) -> Region:
+        """The same region with the timer at 0."""
+        return self._canonical(region.now, Fraction(0))
+
+    def actions(self, region: Region) -> Iterator[Region]:
+        """The regions behind all actions that are possible now."""
+        for action in _all_actions(self._network, region.now):
+            try:
+                after = act(self._network, region.now, action)
+            except InvalidRunError:
+                continue
+            yield self._canonical(after, region.timer)
+
+    def later(self, region: Region) -> Region | None:
+        """The next region that time leads to, the same one if none is left; `None` if it stops."""
+        clocks = [*region.now.clocks, *([region.timer] if self._timed else [])]
+        finite = [clock for clock in clocks if clock <= self._largest]
+        step = Fraction(1)
+        if finite:
+            fractions = sorted({clock - floor(clock) for clock in finite})
+            # Representatives are evenly spread: half a gap leaves an integer, else the largest
+            # fraction reaches the next one.
+            step = (Fraction(1) - fractions[-1]) / 2 if fractions[0] == 0 else 1 - fractions[-1]
+        try:
+            now = wait(self._network, region.now, step)
+        except InvalidRunError:
+            return None
+        return self._canonical(now, region.timer + step if self._timed else region.timer)
+
+    def reachable(
+        self, starts: Iterable[Region], follow: Callable[[Region], bool] = lambda _region: True
+    ) -> set[Region]:
+        """All regions that can be reached, through those that `follow` accepts only."""
+        seen: set[Region] = set()
+        pending = [region for region in starts if follow(region)]
+        while pending:
+            region = pending.pop()
+            if region in seen:
+                continue
+            seen.add(region)
+            if len(seen) > self._limit:
+                raise TooManyRegionsError
+            later = self.later(region)
+            onward = [*self.actions(region), *([] if later is None else [later])]
+            pending += [after for after in onward if after not in seen and follow(after)]
+        return seen
+
+    def is_dead(self, region: Region) -> bool:
+        """Whether no action is possible now or after any delay."""
+        while True:
+            if next(self.actions(region), None) is not None:
+                return False
+            later = self.later(region)
+            if later is None or later == region:
+                return True
+            region = later
+
+    def staying(self, inside: set[Region]) -> set[Region]:
+        """The regions from which some maximal run never leaves a set."""
+        graph = nx.DiGraph()
+        graph.add_nodes_from(inside)
+        taken: list[tuple[Region, Region]] = []
+        good: set[Region] = set()
+        for region in inside:
+            actions, later = list(self.actions(region)), self.later(region)
+            if later == region or (later is None and not actions):
+                good.add(region)
+            taken += [(region, after) for after in actions if after in inside]
+            if later in inside:
+                graph.add_edge(region, later)
+        graph.add_edges_from(taken)
+        component_of = {
+            region: number
+            for number, component in enumerate(nx.strongly_connected_components(graph))
+            for region in component
+        }
+        good |= {a for a, b in taken if component_of[a] == component_of[b]}
+        return leading_to(graph, good)
+
+    def whole(self) -> nx.DiGraph:
+        """All regions that can be reached, with an edge for each action and each delay."""
+        regions = self.reachable([self.start()])
+        graph = nx.DiGraph()
+        graph.add_nodes_from(regions)
+        for region in regions:
+            later = self.later(region)
+            onward = [*self.actions(region), *([] if later is None else [later])]
+            graph.add_edges_from((region, after) for after in onward)
+        return graph
+
+    def _canonical(self, now: Configuration, timer: Fraction) -> Region:
+        """The representative of a configuration's region."""
+        clocks = [*now.clocks, *([timer] if self._timed else [])]
+        finite = [clock for clock in clocks if clock <= self._largest]
+        fractions = sorted({clock - floor(clock) for clock in finite} - {Fraction(0)})
+        gaps = len(fractions) + 1
+        rank = {fraction: Fraction(i, gaps) for i, fraction in enumerate(fractions, start=1)}
+        rank[Fraction(0)] = Fraction(0)
+        moved = [
+            floor(clock) + rank[clock - floor(clock)]
+            if clock <= self._largest
+            else Fraction(self._largest + 1)
+            for clock in clocks
+        ]
+        if self._timed:
+            timer = moved.pop()
+        return Region(Configuration(now.locations, now.values, tuple(moved)), timer)
+
+
+def leading_to(graph: nx.DiGraph, targets: set[Region]) -> set[Region]:
+    """The nodes from which some target can be reached."""
+    found = set(targets)
+    for target in targets:
+        if target in graph:
+            found |= nx.ancestors(graph, target)
+    return found
+
+
+def decide(network: Network, query: Query, limit: int = 5_000) -> bool:
+    """Whether a query holds, by walking through all regions.
+
+    Raises:
+        TooManyRegionsError: there are more than `limit`.
+    """
+    match query.formula:
+        case LeadsToFormula(left, right, bound):
+            return _responds(network, left, right, bound, limit)
+        case PathFormula(PathOp.POSSIBLY, body, None) if has_paths(body):
+            return bool(_satisfying(network, normal_form(body), limit))
+        case PathFormula(PathOp.INVARIANTLY, body, None) if has_paths(body):
+            return not _satisfying(network, normal_form(body, positive=False), limit)
+        case PathFormula(PathOp.POSSIBLY, body, bound):
+            return _reaches(network, normal_form(body), bound, limit)
+        case PathFormula(PathOp.INVARIANTLY, body, bound):
+            return not _reaches(network, normal_form(body, positive=False), bound, limit)
+        case PathFormula(PathOp.EVENTUALLY, body, bound):
+            return not _avoids(network, normal_form(body, positive=False), bound, limit)
+        case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, bound):
+            return _avoids(network, normal_form(body), bound, limit)
+        case _:
+            raise AssertionError(f"{query.text} has no path operator")
+
+
+def _reaches(network: Network, formula: Expression, bound: int | None, limit: int) -> bool:
+    graph = RegionGraph(network, [formula], bound, limit)
+    regions = [r for r in graph.reachable([graph.start()]) if bound is None or r.timer <= bound]
+    if not speaks_of_deadlock(formula):
+        return any(satisfies(region.now, formula) for region in regions)
+    by_death = {dead: with_deadlock(formula, dead) for dead in (True, False)}
+    return any(satisfies(r.now, by_death[graph.is_dead(r)]) for r in regions)
+
+
+def _avoids(network: Network, formula: Expression, bound: int | None, limit: int) -> bool:
+    """Whether some run stays inside a formula for ever, or until the bound is over."""
+    graph = RegionGraph(network, [formula], bound, limit)
+    starts = [graph.start()]
+    if bound is not None and _is_late(graph, starts, formula, bound):
+        return True
+    inside = graph.reachable(starts, lambda region: satisfies(region.now, formula))
+    return bool(graph.staying(inside) & set(starts))
+
+
+def _responds(
+    network: Network, left: Expression, right: Expression, bound: int | None, limit: int
+) -> bool:
+    graph = RegionGraph(network, [left, right], bound, limit)
+    missing = normal_form(right, positive=False)
+    everywhere = graph.reachable([graph.start()])
+    starts = [graph.restarted(r) for r in everywhere if satisfies(r.now, left)]
+    if bound is not None and _is_late(graph, starts, missing, bound):
+        return False
+    inside = graph.reachable(starts, lambda region: satisfies(region.now, missing))
+    return not graph.staying(inside) & set(starts)
+
+
+def _satisfying(network: Network, formula: Expression, limit: int) -> set[Region]:
+    """The regions that can be reached and satisfy a formula that speaks of runs."""
+    regions = RegionGraph(network, [formula], None, limit)
+    graph = regions.whole()
+
+    def where(part: Expression) -> set[Region]:
+        if not has_paths(part):
+            return {region for region in graph if satisfies(region.now, part)}
+        match part:
+            case BinaryOperation(BinaryOp.AND, left, right):
+                return where(left) & where(right)
+            case BinaryOperation(BinaryOp.OR, left, right):
+                return where(left) | where(right)
+            case PathFormula(PathOp.POSSIBLY, body, None):
+                return leading_to(graph, where(body))
+            case PathFormula(PathOp.INVARIANTLY, body, None):
+                return set(graph) - leading_to(graph, where(normal_form(body, positive=False)))
+            case PathFormula(PathOp.POTENTIALLY_ALWAYS, body, None):
+                return regions.staying(where(body))
+            case PathFormula(PathOp.EVENTUALLY, body, None):
+                return set(graph) - regions.staying(where(normal_form(body, positive=False)))
+            case _:
+                raise AssertionError(f"{part} is not decided here")
+
+    return where(formula)
+
+
+def _is_late(graph: RegionGraph, starts: Iterable[Region], inside: Expression, bound: int) -> bool:
+    """Whether the timer can pass the bound with the formula true until then."""
+    waiting = graph.reachable(
+        starts, lambda region: region.timer <= bound and satisfies(region.now, inside)
+    )
+    return any(later is not None and later.timer > bound for later in map(graph.later, waiting))
+
+
+def _all_actions(network: Network, now: Configuration) -> Iterator[Action]:
+    """Every choice of edges that could be an action, whether or not the rules allow it."""
+    edges = [
+        (index, edge)
+        for index, automaton in enumerate(network.automata)
+        for edge in automaton.edges
+        if is_ready(now, index, edge)
+    ]
+    for sender, first in edges:
+        if first.sync is None:
+            yield Action(((sender, first),))
+        elif first.sync.sends:
+            channel = channel_index(now, first)
+            choices: list[list[tuple[int, Edge] | None]] = []
+            for index in range(len(network.automata)):
+                able: list[tuple[int, Edge] | None] = [
+                    (other, edge)
+                    for other, edge in edges
+                    if other == index != sender
+                    and edge.sync is not None
+                    and not edge.sync.sends
+                    and channel_index(now, edge) == channel
+                ]
+                choices.append([*able, None])
+            for chosen in product(*choices):
+                yield Action(((sender, first), *(other for other in chosen if other is not None)))

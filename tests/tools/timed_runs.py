@@ -1,0 +1,89 @@
+"""Whether a run shows what the model checker says it shows, by the plain rules alone."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from rvmon.timed.model.expressions import Expression, PathFormula
+from rvmon.timed.model.guards import normal_form, with_deadlock
+from rvmon.timed.model.network import LeadsToFormula, Network
+from rvmon.timed.model.operators import PathOp
+from rvmon.timed.runs.concrete import (
+    Configuration,
+    act,
+    initial_configuration,
+    replay,
+    satisfies,
+    wait,
+)
+from rvmon.timed.runs.run import Run
+from rvmon.timed.search.outcome import Outcome
+from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
+from tests.tools.timed_regions import RegionGraph
+
+Instants = list[tuple[Fraction, Configuration]]
+
+
+def shows(network: Network, outcome: Outcome) -> bool:
+    """Whether the run of an outcome is one of the network and decides the query as it says.
+
+    Raises:
+        InvalidRunError: the run breaks a rule of the network.
+    """
+    run = outcome.run
+    assert run is not None
+    replay(network, run)
+    instants = instants_of(network, run)
+    match outcome.query.formula:
+        case LeadsToFormula(left, right, bound):
+            missing = normal_form(right, positive=False)
+            return any(
+                satisfies(now, left) and _stays(instants[index:], missing, bound)
+                for index, (_, now) in enumerate(instants)
+            )
+        case PathFormula(op, body, bound):
+            positive = op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS)
+            formula = normal_form(body, positive=positive)
+            if has_paths(formula):
+                return True  # that the run is one was checked; what it leads to is no single run
+            if op in (PathOp.POSSIBLY, PathOp.INVARIANTLY):
+                time, last = instants[-1]
+                in_time = bound is None or time <= bound
+                return in_time and _holds_at_end(network, formula, last)
+            return _stays(instants, formula, bound)
+        case _:
+            raise AssertionError(f"{outcome.query.text} has no path operator")
+
+
+def instants_of(network: Network, run: Run) -> Instants:
+    """Each instant at which something is done, before and after it, and the middle of each wait."""
+    time, now = Fraction(0), initial_configuration(network)
+    instants = [(time, now)]
+    for step in run.steps:
+        half = step.delay / 2
+        instants.append((time + half, wait(network, now, half)))
+        time, now = time + step.delay, wait(network, now, step.delay)
+        instants.append((time, now))
+        if step.action is not None:
+            now = act(network, now, step.action)
+            instants.append((time, now))
+    return instants
+
+
+def _holds_at_end(network: Network, formula: Expression, last: Configuration) -> bool:
+    if not speaks_of_deadlock(formula):
+        return satisfies(last, formula)
+    graph = RegionGraph(network, [formula])
+    dead = graph.is_dead(graph.region_of(last))
+    return satisfies(last, with_deadlock(formula, dead))
+
+
+def _stays(instants: Instants, formula: Expression, bound: int | None) -> bool:
+    """Whether a formula holds throughout, or until more than the bound has gone by."""
+    start = instants[0][0]
+    for time, now in instants:
+        if bound is not None and time - start > bound:
+            return True
+        if not satisfies(now, formula):
+            return False
+    return True

@@ -1,0 +1,138 @@
+"""What an attempt waits for, and until when, by the law."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import Mode
+from rvmon.spec.print.printer import format_formula
+from rvmon.testing.attempts import Readings, Start, counts_in_favour, obligation
+from rvmon.testing.kleene import Truth
+from rvmon.testing.truths import Rest
+from rvmon.testing.walk import intervals, subformulas
+from rvmon.trace.time import format_ticks
+from tests.tools.moments import Moment
+
+_PART = re.compile(r"(`[^`]*`(?: (?:by|until) .*?)?)(?:(?: and |, or )(?=`)|$)")
+
+_PAST = {
+    *(UnaryOp.ONCE, UnaryOp.HISTORICALLY, UnaryOp.HELD, UnaryOp.PREVIOUS),
+    *(UnaryOp.RISE, UnaryOp.FALL, BinaryOp.SINCE),
+}
+
+
+_EDGES = {UnaryOp.RISE, UnaryOp.FALL}
+
+
+class Waiting:
+    """One attempt as it stands at a moment.
+
+    Args:
+        requirement: of the attempt.
+        start: of the attempt.
+        moment: at or after its trigger.
+        simplified: whether an engine may owe something simpler, of the same meaning.
+
+    Attributes:
+        triggered: the instant of the trigger.
+    """
+
+    def __init__(self, start: Start, moment: Moment, *, simplified: bool) -> None:
+        requirement = start.view.requirement
+        letters = tuple(one for one in start.word.letters if one.instant <= moment.end)
+        word = replace(start.word, letters=letters, end=moment.end, reached=moment.reached)
+        self.triggered = start.triggered
+        self._requirement = requirement
+        sure = start.sure
+        stop = start.stop
+        self._void = (
+            counts_in_favour(requirement)
+            and stop is not None
+            and start.word.letters[stop].instant <= moment.end
+            and start.view.is_unborn(stop)
+        )
+        self._in_doubt = sure is None or start.word.letters[sure].instant > moment.end
+        self._simplified = simplified
+        self._start = start
+        self._letters = letters
+        self._reached = moment.reached
+        self._readings = Readings(word, Rest.UNKNOWN)
+        self._truths = self._readings.of(start.captured, favour=counts_in_favour(requirement))
+        parts = [*subformulas(requirement.consequent)]
+        edges = [one for one in parts if isinstance(one, Unary) and one.op in _EDGES]
+        # `rise φ` is `φ and not previous φ`: both may be told by themselves.
+        parts += [Unary(UnaryOp.PREVIOUS, one.operand) for one in edges]
+        looks_back = any(isinstance(p, Unary | Binary) and p.op in _PAST for p in parts)
+        self._concerned = range(0 if looks_back else start.position, len(letters))
+        self._parts = parts
+
+    @property
+    def truth(self) -> Truth:
+        """Of what is owed."""
+        return obligation(self._start, self._readings)
+
+    def deadline(self) -> int | None:
+        """The last instant before time alone decides, if nothing more comes; to be asked last.
+
+        Only at the end of a window can time alone decide something: all of these are tried. What
+        is in doubt, or was over before all was born, is told to have none.
+        """
+        if self._in_doubt or self._void:
+            return None
+        highs = {window.high for window in intervals(self._requirement.consequent)}
+        ends = {
+            self._letters[position].instant + high
+            for position in self._concerned
+            for high in highs
+            if high is not None
+        }
+        for last in sorted(end for end in ends if end >= self._reached):
+            self._readings.reach(last + 1)
+            if self.truth is not Truth.UNKNOWN:
+                return last
+        return None
+
+    def misnamed(self, owed: str) -> Iterator[str]:
+        """What is said to be owed though it is none of the parts that wait for something.
+
+        Args:
+            owed: from the record of an attempt.
+        """
+        parts = _PART.findall(owed)
+        allowed = set(self._undecided())
+        yield from (part for part in parts if part not in allowed)
+        if not parts and owed:
+            yield owed
+
+    def _undecided(self) -> Iterator[str]:
+        """Parts whose truth at a position since the trigger is open, as a record names them."""
+        for part in self._parts:
+            for position in self._concerned:
+                signs = (
+                    self._truths.truth(part, position, positive=sign) for sign in (True, False)
+                )
+                if Truth.UNKNOWN in signs:
+                    yield from _named(part, self._letters[position].instant)
+        if self._requirement.mode is Mode.WHENEVER or self._in_doubt:
+            # It is owed at every position to come, which goes by its name.
+            yield f"`{format_formula(self._requirement.consequent)}`"
+        held = any(isinstance(part, Unary) and part.op is UnaryOp.HELD for part in self._parts)
+        if self._simplified or held:
+            # What a part was made into may have no name.
+            yield "`what is owed`"
+
+
+def _named(part: Formula, instant: int) -> Iterator[str]:
+    window = None
+    if isinstance(part, Unary | Binary) and part.op not in _PAST:
+        window = part.interval
+    until = None if window is None or window.high is None else format_ticks(instant + window.high)
+    for shown in (part, Unary(UnaryOp.NOT, part)):
+        text = f"`{format_formula(shown)}`"
+        if until is None:
+            yield text
+        else:
+            yield from (f"{text} by {until}", f"{text} until {until}")
