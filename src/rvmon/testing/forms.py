@@ -19,7 +19,7 @@ from rvmon.monitor.online_c import CompiledMonitor
 from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.drive import Asked, Monitored
+from rvmon.testing.drive import Monitored, OnlineMonitor
 from rvmon.testing.held_back import HeldBack
 from rvmon.testing.interrupt import Interrupted
 from rvmon.trace.sample import Sample, Value
@@ -99,7 +99,7 @@ class Maker:
             case _:
                 return None
 
-    def _driven(self, compiled: CompiledSpec, case: Case) -> Asked:
+    def _driven(self, compiled: CompiledSpec, case: Case) -> OnlineMonitor:
         dice = random.Random(len(case.actions))  # noqa: S311 - repeatable
         monitor = build_monitor(compiled, engine=self.form, settle=self.settle, sources=case.names)
         driven = Interrupted(monitor, dice) if self._interrupts else monitor

@@ -11,7 +11,7 @@ from tests.tools.differential import campaign, case_of
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError
 from rvmon.session import Spec
-from rvmon.testing.drive import tell
+from rvmon.testing.drive import feed
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
@@ -61,7 +61,7 @@ def test_another_process_could_take_over():
         monitor = Spec(case.spec).monitor(sources=case.names)
         dice = random.Random(number)
         for action in case.actions:
-            tell(monitor, action)
+            feed(monitor, action)
             if dice.random() < 0.2:
                 data = monitor.snapshot()
                 monitor = Spec(case.spec).restore(data)

@@ -36,7 +36,7 @@ class NotExpressibleError(Exception):
     """A requirement speaks of what the network does not have; the message says of what."""
 
 
-class Letters:
+class Labelling:
     """Values of propositions.
 
     Args:
