@@ -9,7 +9,7 @@ from rvmon.codegen.python_nodes import bits
 from rvmon.codegen.python_visit import indented
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import inputs_of
-from rvmon.formula.state import UNKNOWN, Leaf, Missing, Unborn
+from rvmon.formula.state import UNKNOWN, Leaf, Unborn
 from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
@@ -135,9 +135,7 @@ class ValueWriter:
         nodes = self.plan.graph.nodes
         places = self.plan.graph.by_name.get(name, ())
         leaves = [nodes[place] for place in places]
-        return any(
-            isinstance(state.leaf, Unborn | Missing) or state.unborn != UNKNOWN for state in leaves
-        )
+        return any(isinstance(state.leaf, Unborn) or state.unborn != UNKNOWN for state in leaves)
 
     def _found(self, name: str) -> Iterator[str]:
         """What depends on whether the value of a signal is known."""

@@ -183,10 +183,6 @@ class Nodes:
         self.set_wake(place, due if t < due else NEVER)
         return FALSE if t < due else TRUE
 
-    def missing_(self, value: int) -> int:
-        """Whether an atom of this value, 3 if it is not born, is missing or lost."""
-        return TRUE if value == 3 else UNKNOWN if value == UNKNOWN else FALSE
-
     def uncertain_(self, events: Sequence[int]) -> bool:
         """Whether it is not known of some occurrence of these events, or what it says."""
         return any(

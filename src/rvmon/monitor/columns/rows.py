@@ -11,7 +11,7 @@ import numpy as np
 
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.leaves import reads
-from rvmon.formula.state import Leaf, Missing, Unborn
+from rvmon.formula.state import Leaf, Unborn
 from rvmon.monitor.build import build_monitor
 from rvmon.monitor.codegen_support import can_feed, plan_requirements
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
@@ -177,8 +177,6 @@ def _truth(leaf: Leaf, columns: Columns) -> NDArray[np.int8] | None:
             values = columns[name]
             known: NDArray[np.int8] = (values == values).astype(np.int8)
             return known
-        case Missing(atom=atom):
-            return _truth(atom, columns)
         case Unborn(signals=signals) if not any(moved for _, moved in signals):
             return np.zeros(len(next(iter(columns.values()))), np.int8)
         case Compare():
