@@ -16,6 +16,8 @@ from rvmon.testing.build import requirement, spec_of, start
 from rvmon.testing.generate_ltl import random_ltl
 from rvmon.testing.ltl3 import Tableau
 
+pytestmark = pytest.mark.law
+
 GRAMMAR = Lark(
     r"""
     automaton: "HOA:" "v1" header* "--BODY--" state* "--END--"

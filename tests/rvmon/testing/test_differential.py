@@ -44,6 +44,8 @@ from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
+pytestmark = pytest.mark.law
+
 
 class Echo:
     """The oracle as an online monitor: it judges the whole prefix anew at every call."""

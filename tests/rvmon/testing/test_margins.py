@@ -16,7 +16,9 @@ from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
 
-PAIRS = 90
+pytestmark = pytest.mark.law
+
+PAIRS = 40
 
 
 def measured(case):

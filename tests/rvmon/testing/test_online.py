@@ -30,6 +30,8 @@ from rvmon.testing.moments import Moment, moments
 from rvmon.testing.online import online_differences
 from rvmon.verdict.attempt import Attempt, Decision
 
+pytestmark = pytest.mark.law
+
 
 def test_what_is_owed_and_its_deadline_are_compared() -> None:
     """What is shown of an open attempt has to be undecided, and so has time to be, until then."""
