@@ -57,7 +57,7 @@ def test_the_oracle_agrees(nodes, monkeypatch):
     profile = Profile(mixed=False, captures=False, for_each=False)
     seeds = [f"c/{number}" for number in range(8)]
     tally = campaign(Maker("c rows"), seeds, profile, TraceProfile(), each=5, online_every=0)
-    assert tally.pairs >= 30
+    assert tally.pairs >= 20
     assert not tally.disagreements, tally.disagreements[0]
 
 
