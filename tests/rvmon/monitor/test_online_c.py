@@ -393,5 +393,5 @@ def test_the_oracle_agrees():
     profile = Profile(mixed=False, captures=False, for_each=False)
     seeds = [f"online/{number}" for number in range(7)]
     tally = campaign(Maker("c"), seeds, profile, TraceProfile(), each=8, online_every=2)
-    assert tally.pairs >= 30
+    assert tally.pairs >= 16
     assert not tally.disagreements, tally.disagreements[0]
