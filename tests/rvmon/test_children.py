@@ -13,7 +13,10 @@ import rvmon
 from rvmon.children import run
 from rvmon.errors import WorkerLostError
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs the signals of POSIX")
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(os.name != "posix", reason="needs the signals of POSIX"),
+]
 
 WORKERS = """
 import os, sys, time

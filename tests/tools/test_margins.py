@@ -16,7 +16,9 @@ from tests.tools.differential import case_of
 from tests.tools.judgement import Judgement
 from tests.tools.margins import margins
 
-PAIRS = 90
+pytestmark = pytest.mark.law
+
+PAIRS = 40
 
 
 def measured(case):

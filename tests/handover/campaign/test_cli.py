@@ -19,6 +19,8 @@ from handover.checker import spec_path
 from handover.cli import main
 from handover.generator.files import directed, save
 
+pytestmark = pytest.mark.campaign
+
 ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 
 

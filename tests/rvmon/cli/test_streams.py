@@ -8,6 +8,8 @@ from threading import Thread
 
 import pytest
 
+pytestmark = pytest.mark.process
+
 SPEC = """
 spec door
 signal closed : bool
