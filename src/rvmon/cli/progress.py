@@ -1,10 +1,12 @@
-"""A bar on standard error while a long recording is read."""
+"""A bar on standard error while long work is done."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -18,29 +20,50 @@ SAMPLES_PER_LOOK = 4096
 """Samples between two looks at the clock."""
 
 
-def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:
-    """The recording's samples; after a second of reading, a bar shows how far it is.
+@contextmanager
+def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
+    """Show how far work is, once it has taken a second; only a terminal sees it.
 
-    Only a terminal sees the bar.
+    Args:
+        what: is being done.
+        total: of the units in which it is counted.
+
+    Yields:
+        What is to be called with the units done so far.
     """
-    samples = iter(recording)
     if not sys.stderr.isatty():
-        yield from samples
+        yield lambda _: None
         return
     started = time.monotonic()
-    for count, sample in enumerate(samples, 1):
-        yield sample
-        if count % SAMPLES_PER_LOOK == 0 and time.monotonic() - started > PATIENCE_S:
-            break
-    else:
-        return
+    with ExitStack() as stack:
+        update: Callable[[float], None] | None = None
+
+        def tell(done: float) -> None:
+            nonlocal update
+            if update is None:
+                if time.monotonic() - started < PATIENCE_S:
+                    return
+                update = _shown(stack, what, total)
+            update(done)
+
+        yield tell
+
+
+def _shown(stack: ExitStack, what: str, total: float) -> Callable[[float], None]:
     from rich.progress import Progress
 
     from rvmon.report.terminal import Terminal
 
-    with Progress(console=Terminal(stderr=True), transient=True) as progress:
-        task = progress.add_task(recording.path, total=1.0)
-        for count, sample in enumerate(samples):
+    progress = stack.enter_context(Progress(console=Terminal(stderr=True), transient=True))
+    task = progress.add_task(what, total=total)
+    return lambda done: progress.update(task, completed=done)
+
+
+def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:
+    """The recording's samples, and how far it is read."""
+    samples = iter(recording)
+    with bar(recording.path, 1.0) as tell:
+        for sample in samples:
             yield sample
-            if count % SAMPLES_PER_LOOK == 0:
-                progress.update(task, completed=recording.fraction_read)
+            yield from islice(samples, SAMPLES_PER_LOOK)
+            tell(recording.fraction_read)

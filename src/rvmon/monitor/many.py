@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import pickle
-from collections.abc import Iterable, Iterator, Sequence
-from functools import lru_cache, partial
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
-from rvmon.children import workers
-from rvmon.monitor.compiled import CompiledSpec, compile_spec
+from rvmon.execute.parallel import execute
+from rvmon.monitor.compiled import CompiledSpec
 from rvmon.monitor.finished import evaluate_trace
 from rvmon.readers.reading import Reading
 from rvmon.verdict.report import Report
@@ -26,29 +25,18 @@ def evaluate_traces(
     """Judge traces; the reports come in their order.
 
     Args:
-        compiled: the specification; another process compiles it for its first trace.
+        compiled: the specification.
         traces: for several processes what can be pickled.
         reading: how they are read.
         only: ids of the requirements; default all.
         engine: `auto` or the name of one.
         jobs: processes; 1 judges in this one.
     """
-    if jobs < 2:
-        for trace in traces:
-            yield evaluate_trace(compiled, trace, reading, only=only, engine=engine)
-        return
-    sent = pickle.dumps((compiled.checked, reading))
-    with workers(jobs) as pool:
-        yield from pool.map(partial(_evaluate_here, sent, only, engine), traces)
+    begin = partial(_judge, compiled, reading, only, engine)
+    return execute(traces, begin, jobs=jobs, what="trace")
 
 
-def _evaluate_here(sent: bytes, only: Sequence[str] | None, engine: str, trace: Any) -> Report:
-    compiled, reading = _received(sent)
-    return evaluate_trace(compiled, trace, reading, only=only, engine=engine)
-
-
-@lru_cache(maxsize=1)
-def _received(sent: bytes) -> tuple[CompiledSpec, Reading]:
-    """The specification that another process sent, compiled, and how traces are read."""
-    checked, reading = pickle.loads(sent)  # noqa: S301 - from the process that began this one
-    return compile_spec(checked), reading
+def _judge(
+    compiled: CompiledSpec, reading: Reading, only: Sequence[str] | None, engine: str
+) -> Callable[[Any], Report]:
+    return lambda trace: evaluate_trace(compiled, trace, reading, only=only, engine=engine)

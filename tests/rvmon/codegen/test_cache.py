@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import rvmon
-from rvmon.children import run
+from rvmon.execute.command import run
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 
