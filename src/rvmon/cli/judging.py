@@ -77,12 +77,14 @@ def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) ->
             comes behind the last that was judged in order, and each of these says so.
     """
     done = 0
-    begin = partial(_judging, spec, options, shown=len(traces) == 1)
+    alone = len(traces) == 1
+    begin = partial(_judging, spec, options, shown=alone)
     try:
         with bar("recordings", len(traces)) as tell:
             for one in execute(traces, begin, jobs=min(jobs, len(traces)), what="recording"):
                 done += 1
-                tell(done)
+                if not alone:  # that one shows how far it is read
+                    tell(done)
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:

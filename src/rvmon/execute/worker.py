@@ -10,6 +10,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
@@ -43,23 +44,27 @@ def serve(
     _leave_signals(parent)
     chunks: SimpleQueue[list[bytes]] = SimpleQueue()
     threading.Thread(target=_receive, args=(connection, chunks), daemon=True).start()
-    work = None
-    while True:
-        chunk = chunks.get()
-        end = time.monotonic() + CHUNK_S
-        for left, task in zip(reversed(range(len(chunk))), chunk, strict=True):
-            failed = False
-            try:
-                if work is None:
-                    work = begin()
-                result = pickle.dumps(work(pickle.loads(task)))  # noqa: S301 - from the parent
-            except Exception as error:  # noqa: BLE001 - raised where the result is asked for
-                failed = True
-                result = _packed(error)
-            is_last = not left or time.monotonic() >= end
-            connection.send((failed, is_last, result))
-            if is_last:
-                break
+    work: Callable[[Any], Any] | None = None
+
+    def answer(task: bytes) -> tuple[bool, bytes]:
+        nonlocal work
+        try:
+            if work is None:
+                work = begin()
+            return False, pickle.dumps(work(pickle.loads(task)))  # noqa: S301 - from the parent
+        except Exception as error:  # noqa: BLE001 - raised where the result is asked for
+            return True, _packed(error)
+
+    with suppress(OSError):  # nobody takes an answer any more
+        while True:
+            chunk = chunks.get()
+            end = time.monotonic() + CHUNK_S
+            for left, task in zip(reversed(range(len(chunk))), chunk, strict=True):
+                failed, result = answer(task)
+                is_last = not left or time.monotonic() >= end
+                connection.send((failed, is_last, result))
+                if is_last:
+                    break
 
 
 def _leave_signals(parent: int | None) -> None:
