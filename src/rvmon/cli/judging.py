@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -77,22 +77,18 @@ def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) ->
             comes behind the last that was judged in order, and each of these says so.
     """
     done = 0
-    alone = len(traces) == 1
-    begin = partial(_judging, spec, options, shown=alone)
+    is_alone = len(traces) == 1
+    begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
     try:
         with bar("recordings", len(traces)) as tell:
             for one in execute(traces, begin, jobs=min(jobs, len(traces)), what="recording"):
                 done += 1
-                if not alone:  # that one shows how far it is read
+                if not is_alone:  # that one shows how far it is read
                     tell(done)
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
             yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
-
-
-def _judging(spec: Spec, options: Options, *, shown: bool) -> Callable[[str], Judged]:
-    return lambda trace: judge(spec, trace, options, shown=shown)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,14 +103,14 @@ class _Cut:
         return self.samples
 
 
-def judge(spec: Spec, trace: str, options: Options, *, shown: bool = False) -> Judged:
+def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
     """Judge one recording; if it is broken, what was decided before the break stays decided.
 
     Args:
         spec: reads as the options say.
         trace: a path.
         options: how to judge.
-        shown: whether a bar shows how far it is read.
+        is_alone: whether it is the only one, so that a bar shows how far it is read.
     """
     before: list[Attempt] = []
     try:
@@ -141,7 +137,7 @@ def judge(spec: Spec, trace: str, options: Options, *, shown: bool = False) -> J
                 ignored=recording.ignored,
             )
         if report is None:
-            samples = shown_while_reading(recording) if shown else iter(recording)
+            samples = shown_while_reading(recording) if is_alone else iter(recording)
             samples = _up_to(end, samples, ordered=ordered)
             if options.robustness:
                 meter = _Meter(spec, options.only, recording.names)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rich.progress import Progress
+
     from rvmon.readers.recording import FileRecording
     from rvmon.trace.sample import Sample
 
@@ -35,28 +37,26 @@ def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
         yield lambda _: None
         return
     started = time.monotonic()
-    with ExitStack() as stack:
-        update: Callable[[float], None] | None = None
+    progress: Progress | None = None
 
-        def tell(done: float) -> None:
-            nonlocal update
-            if update is None:
-                if time.monotonic() - started < PATIENCE_S:
-                    return
-                update = _shown(stack, what, total)
-            update(done)
+    def tell(done: float) -> None:
+        nonlocal progress
+        if progress is None and time.monotonic() - started >= PATIENCE_S:
+            from rich.progress import Progress
 
+            from rvmon.report.terminal import Terminal
+
+            progress = Progress(console=Terminal(stderr=True), transient=True)
+            progress.add_task(what, total=total)
+            progress.start()
+        if progress is not None:
+            progress.update(progress.task_ids[0], completed=done)
+
+    try:
         yield tell
-
-
-def _shown(stack: ExitStack, what: str, total: float) -> Callable[[float], None]:
-    from rich.progress import Progress
-
-    from rvmon.report.terminal import Terminal
-
-    progress = stack.enter_context(Progress(console=Terminal(stderr=True), transient=True))
-    task = progress.add_task(what, total=total)
-    return lambda done: progress.update(task, completed=done)
+    finally:
+        if progress is not None:
+            progress.stop()
 
 
 def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:

@@ -7,8 +7,9 @@ import pickle
 import signal
 import threading
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -68,6 +69,7 @@ def execute(
         yield work(task)
 
 
+@dataclass(eq=False, slots=True)
 class _Worker:
     """A process that works, seen from here.
 
@@ -79,12 +81,11 @@ class _Worker:
         size: tasks of its next chunk.
     """
 
-    def __init__(self, process: BaseProcess, connection: Connection) -> None:
-        self.process = process
-        self.connection = connection
-        self.tasks: deque[tuple[int, bytes]] = deque()
-        self.given = 0
-        self.size = 1
+    process: BaseProcess
+    connection: Connection
+    tasks: deque[tuple[int, bytes]] = field(default_factory=deque)
+    given: int = 0
+    size: int = 1
 
 
 class _Pool:
@@ -139,20 +140,16 @@ class _Pool:
 
     def _share(self) -> None:
         """Give tasks to all workers that have none; if there are more, to further ones."""
-        for worker in self._workers:
-            if not worker.tasks and not self._give(worker, list(islice(self._left(), worker.size))):
+        resting = [one for one in self._workers if not one.tasks]
+        while resting or len(self._workers) < self._jobs:
+            chunk = list(islice(self._left(), resting[-1].size if resting else 1))
+            if not chunk:
                 return
-        while len(self._workers) < self._jobs and (chunk := list(islice(self._left(), 1))):
-            self._give(self._begun(), chunk)
-
-    def _give(self, worker: _Worker, chunk: Sequence[tuple[int, bytes]]) -> bool:
-        """Give a worker tasks, if these are any."""
-        worker.tasks.extend(chunk)
-        worker.given = len(chunk)
-        if chunk:
+            worker = resting.pop() if resting else self._begun()
+            worker.tasks.extend(chunk)
+            worker.given = len(chunk)
             with suppress(OSError):  # it was ended: no answer will say so
                 worker.connection.send([task for _, task in chunk])
-        return bool(chunk)
 
     def _begun(self) -> _Worker:
         from rvmon.execute.worker import serve
@@ -162,9 +159,8 @@ class _Pool:
         is_main = threading.current_thread() is threading.main_thread()
         parent = os.getpid() if forked and is_main else None
         here, there = self._context.Pipe()
-        process = self._context.Process(
-            target=serve, args=(there, here, self._begin, parent), daemon=True
-        )
+        arguments = (there, here, self._begin, parent)
+        process = self._context.Process(target=serve, args=arguments, daemon=True)
         try:
             with _without_interrupts():
                 process.start()
@@ -198,12 +194,19 @@ class _Pool:
 
     def _take(self, worker: _Worker) -> None:
         """Take an answer of a worker, or that there will be none."""
+        number = worker.tasks[0][0]
         try:
             failed, is_last, result = worker.connection.recv()
         except (EOFError, OSError):
-            self._lose(worker)
+            told = (
+                f"the process that had {self._what} {number + 1} was ended from outside, as "
+                "systems do when memory runs out: use fewer processes (jobs)"
+            )
+            self._fail(number, WorkerLostError(told))
+            self._workers.remove(worker)
+            worker.process.join()
             return
-        number, _ = worker.tasks.popleft()
+        worker.tasks.popleft()
         if failed:
             self._fail(number, pickle.loads(result))  # noqa: S301 - as above
         else:
@@ -213,20 +216,6 @@ class _Pool:
             worker.size = done if worker.tasks else min(2 * done, MOST_TASKS)
             while worker.tasks:
                 heappush(self._returned, worker.tasks.pop())
-
-    def _lose(self, worker: _Worker) -> None:
-        number, _ = worker.tasks[0]
-        worker.tasks.clear()
-        self._fail(
-            number,
-            WorkerLostError(
-                f"the process that had {self._what} {number + 1} was ended from outside, as "
-                "systems do when memory runs out: use fewer processes (jobs)"
-            ),
-        )
-        self._workers.remove(worker)
-        worker.process.join()
-        worker.connection.close()
 
     def _fail(self, number: int, error: Exception) -> None:
         """A task has no result: what comes behind it is not begun."""
