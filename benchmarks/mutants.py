@@ -34,7 +34,8 @@ from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
 
-from rvmon.children import interrupted_by_sigterm, run
+from rvmon.execute.command import run
+from rvmon.execute.interrupt import interrupted_by_sigterm
 from rvmon.monitor.compiled import ENGINES as SWITCHABLE
 from rvmon.testing.forms import INTERRUPT, NEXT
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -316,16 +316,18 @@ class Spec:
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
         ['P', 'F']
         """
-        from rvmon.monitor.many import evaluate_traces
+        from rvmon.execute.parallel import execute
+        from rvmon.monitor.finished import evaluate_trace
 
-        return evaluate_traces(
+        begin = partial(
+            partial,
+            evaluate_trace,
             self._compiled,
-            traces,
-            self._reading(**reading),
+            reading=self._reading(**reading),
             only=requirements_asked(self.checked, only),
             engine=engine,
-            jobs=jobs,
         )
+        return execute(traces, begin, jobs=jobs, what="trace")
 
     def evaluate_file(
         self,

@@ -16,11 +16,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
-from rvmon.children import interrupted_by_sigterm
 from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
 from rvmon.cli.say import warn
 from rvmon.errors import RvmonError
+from rvmon.execute.interrupt import interrupted_by_sigterm
 
 if TYPE_CHECKING:
     import argparse

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from rvmon.children import workers
 from rvmon.cli.post_analysis import can_be_read_again, post_analysis
-from rvmon.cli.progress import shown_while_reading
+from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.errors import TraceError, WorkerLostError
-from rvmon.loading import load
-from rvmon.readers.reading import Telling
+from rvmon.execute.parallel import execute
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
@@ -39,7 +37,6 @@ class Options:
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
         allow_missing: the names that recordings in columns may lack; `True`: all.
-        told: how recordings tell things, as `Spec.reading` takes it.
     """
 
     only: tuple[str, ...] | None = None
@@ -48,7 +45,6 @@ class Options:
     strict_columns: bool = False
     robustness: bool = False
     allow_missing: bool | tuple[str, ...] = False
-    told: Telling = field(default_factory=Telling)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,44 +66,29 @@ class Judged:
     missing: tuple[str, ...] = ()
 
 
-def judge_all(
-    spec: Spec,
-    path: str,
-    constants: Mapping[str, str],
-    traces: Sequence[str],
-    options: Options,
-    jobs: int,
-) -> Iterator[Judged]:
+def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) -> Iterator[Judged]:
     """Judge recordings, in their order.
 
     Args:
-        spec: for judging in this process; it reads as the options say.
-        path: of the same spec, for other processes to load.
-        constants: overridden in it.
+        spec: reads as the options say.
         traces: paths.
         options: how to judge.
         jobs: processes; 1 judges here. If one of several is lost, so are the verdicts on what
             comes behind the last that was judged in order, and each of these says so.
     """
-    if jobs > 1 and len(traces) > 1:
-        done = 0
-        try:
-            with workers(min(jobs, len(traces))) as pool:
-                for one in pool.map(partial(_load_and_judge, path, constants, options), traces):
-                    done += 1
-                    yield one
-        except WorkerLostError as error:
-            for trace in traces[done:]:
-                yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
-    else:
-        for trace in traces:
-            yield judge(spec, trace, options)
-
-
-def _load_and_judge(
-    path: str, constants: Mapping[str, str], options: Options, trace: str
-) -> Judged:
-    return judge(load(path, const=constants).reading(**options.told), trace, options)
+    done = 0
+    is_alone = len(traces) == 1
+    begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
+    try:
+        with bar("recordings", len(traces)) as tell:
+            for one in execute(traces, begin, jobs=min(jobs, len(traces)), what="recording"):
+                done += 1
+                if not is_alone:  # that one shows how far it is read
+                    tell(done)
+                yield one
+    except WorkerLostError as error:
+        for trace in traces[done:]:
+            yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,8 +103,15 @@ class _Cut:
         return self.samples
 
 
-def judge(spec: Spec, trace: str, options: Options) -> Judged:
-    """Judge one recording; if it is broken, what was decided before the break stays decided."""
+def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
+    """Judge one recording; if it is broken, what was decided before the break stays decided.
+
+    Args:
+        spec: reads as the options say.
+        trace: a path.
+        options: how to judge.
+        is_alone: whether it is the only one, so that a bar shows how far it is read.
+    """
     before: list[Attempt] = []
     try:
         again = can_be_read_again(trace)
@@ -149,7 +137,8 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
                 ignored=recording.ignored,
             )
         if report is None:
-            samples = _up_to(end, shown_while_reading(recording), ordered=ordered)
+            samples = shown_while_reading(recording) if is_alone else iter(recording)
+            samples = _up_to(end, samples, ordered=ordered)
             if options.robustness:
                 meter = _Meter(spec, options.only, recording.names)
                 samples = meter.seeing(samples)

@@ -124,17 +124,17 @@ def test_many_recordings_are_counted(files, capsys):
 def test_a_process_that_is_killed_costs_only_what_was_not_judged(files, capsys, monkeypatch):
     """As where memory runs out: what was judged is shown, the rest named, with a mend."""
 
-    def killed(spec, trace, options):
+    def killed(spec, trace, options, **how):
         if trace == "I.csv":
             os.kill(os.getpid(), signal.SIGKILL)
-        return judge(spec, trace, options)
+        return judge(spec, trace, options, **how)
 
     monkeypatch.setattr(judging, "judge", killed)
     traces = ["P.csv", "I.csv", "NT.csv"]
     code = main(["run", "door.rv", *traces, "--jobs", "2", "--format", "json", "--junit", "j.xml"])
     told = capsys.readouterr()
     assert code == 2
-    assert "I.csv: not judged: a process that shared the work was ended from outside" in told.err
+    assert "I.csv: not judged: the process that had recording 2 was ended from outside" in told.err
     assert "use fewer processes (jobs)" in told.err
     assert "Traceback" not in told.err
     assert len(json.loads(told.out)) == len(traces)

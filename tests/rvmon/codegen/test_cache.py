@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import rvmon
-from rvmon.children import run
+from rvmon.execute.command import run
 
 pytestmark = pytest.mark.compiler
 
