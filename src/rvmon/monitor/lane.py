@@ -203,9 +203,13 @@ class Lane:
         self._look_over()
 
     def _look_over(self) -> None:
-        self._soonest = INFINITY
-        for judge in self.judges:
-            self._note(judge)
+        soonest = INFINITY
+        for judge in self.judges:  # there may be thousands, most of which nothing happened to
+            if judge.due < soonest:
+                soonest = judge.due
+            if judge.restless:
+                self._restless[judge] = None
+        self._soonest = soonest
 
     def _note(self, judge: AttemptJudge) -> None:
         """Remember when a judge has to be seen to, after something was done to it."""
