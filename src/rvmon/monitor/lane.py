@@ -164,7 +164,10 @@ class Lane:
             # What fails may be followed by another attempt at once.
             stop = min(until, self._soonest) if self.episodes else until
             self._pass_to(stop)
-            if stop < until or self._next_start < position:
+            starts = self._next_start < position
+            if stop < until and self._soonest <= stop and not starts:
+                raise AssertionError("what has passed is due again: no run comes to stand so")
+            if stop < until or starts:
                 continue
             if position > limit:
                 return
