@@ -78,7 +78,7 @@ def post_analysis(
     silent = _silent(spec, report)
     asked = [names for names, _ in late.values()] + list(silent.values())
     looked_at = frozenset[str]().union(*(names for names in asked if names is not None))
-    changes = _changes(spec, trace, looked_at, end) if asked else None
+    changes = _changes(spec, trace, looked_at, end, samples) if looked_at else None
 
     def read(names: frozenset[str] | None) -> Sequence[Sample]:
         return samples() if names is None or changes is None else changes.samples(names)
@@ -179,20 +179,26 @@ def _misses(
     return {name: miss for name, miss in found.items() if miss}
 
 
-def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Changes | None:
-    """What changes of these names; `None` if the file is not plain."""
+def _changes(
+    spec: Spec,
+    trace: str,
+    names: frozenset[str],
+    end: int,
+    samples: Callable[[], Sequence[Sample]],
+) -> Changes:
+    """What changes of these names, read by columns if the file is plain."""
     from rvmon.readers.block_readers import reader_of
     from rvmon.readers.changes import Changes
 
     schema = spec.schema
-    reader = reader_of(trace, schema, Counter())
-    if reader is None or spec.checked.max_delay is not None:
-        return None
-    try:
-        blocks = reader(trace, schema, frozenset((*schema.signals, *schema.events)))
-        return Changes(blocks, names, schema.events.keys(), end)
-    except NotPlainError:
-        return None
+    reader = reader_of(trace, schema, Counter()) if spec.checked.max_delay is None else None
+    if reader is not None:
+        try:
+            blocks = reader(trace, schema, frozenset((*schema.signals, *schema.events)))
+            return Changes(blocks, names, schema.events.keys(), end)
+        except NotPlainError:
+            pass
+    return Changes.in_samples(samples(), names, schema.events.keys())
 
 
 def _goals(

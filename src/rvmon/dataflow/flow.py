@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Container, Iterable, Mapping
-from copy import deepcopy
 from heapq import heappop, heappush
 from typing import assert_never
 
@@ -335,9 +335,13 @@ class Flow:
             self._wakes.pop(place, None)
 
 
-def _copy_memory(source: Memory, target: Memory) -> None:
-    for name in type(target).__slots__:
-        setattr(target, name, deepcopy(getattr(source, name)))
+def _copy_memory(source: object, target: object) -> None:
+    for name in type(target).__slots__:  # type: ignore[attr-defined]
+        one = getattr(source, name)
+        if hasattr(type(one), "__slots__"):
+            _copy_memory(one, getattr(target, name))
+        else:
+            setattr(target, name, deque(map(list, one)) if isinstance(one, deque) else one)
 
 
 def _remembered(node: object) -> tuple[object, ...]:

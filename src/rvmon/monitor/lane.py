@@ -164,7 +164,10 @@ class Lane:
             # What fails may be followed by another attempt at once.
             stop = min(until, self._soonest) if self.episodes else until
             self._pass_to(stop)
-            if stop < until or self._next_start < position:
+            starts = self._next_start < position
+            if stop < until and self._soonest <= stop and not starts:
+                raise AssertionError("what has passed is due again: no run comes to stand so")
+            if stop < until or starts:
                 continue
             if position > limit:
                 return
@@ -203,9 +206,13 @@ class Lane:
         self._look_over()
 
     def _look_over(self) -> None:
-        self._soonest = INFINITY
-        for judge in self.judges:
-            self._note(judge)
+        soonest = INFINITY
+        for judge in self.judges:  # there may be thousands, most of which nothing happened to
+            if judge.due < soonest:
+                soonest = judge.due
+            if judge.restless:
+                self._restless[judge] = None
+        self._soonest = soonest
 
     def _note(self, judge: AttemptJudge) -> None:
         """Remember when a judge has to be seen to, after something was done to it."""

@@ -330,10 +330,9 @@ class Lanes:
     ) -> None:
         """Start an attempt at the position `t` of a lane."""
         rank = 0 if instance is None else instance.rank
-        for episode in lane.episodes:
-            if episode.judge is judge:
-                lane.begin_episode(episode, t)
-                return
+        if judge.episode is not None:
+            lane.begin_episode(judge.episode, t)
+            return
         attempt = judge.new_attempt(t, triggered)
         attempt.void = lane.flow.is_cut
         if hidden:

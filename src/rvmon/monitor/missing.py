@@ -29,12 +29,12 @@ def names_read(compiled: CompiledSpec, only: Sequence[str] | None) -> dict[str, 
         compiled: the specification.
         only: ids of the requirements; default all.
     """
-    found: dict[str, tuple[str, ...]] = {}
+    found: dict[str, list[str]] = {}
     for name, requirement in compiled.requirements.items():
         if only is None or name in only:
             for read in sorted(requirement.reads):
-                found[read] = (*found.get(read, ()), name)
-    return found
+                found.setdefault(read, []).append(name)
+    return {read: tuple(names) for read, names in found.items()}
 
 
 def expect_names(

@@ -189,3 +189,30 @@ def test_most_hostile_snapshots_are_refused_at_once():
             restored.finish()
         except RvmonError:
             continue
+
+
+def test_a_snapshot_whose_times_have_passed_is_refused():
+    """With any one number of what waits in a network below zero, restoring comes to an end."""
+    text = "spec s\nsignal p, q : bool\nsignal v : real\nrequirement R1\n"
+    spec = rvmon.loads(text + "  whenever v > 3 then (p until[0 s, 4 s] q)\n")
+    monitor = spec.monitor(engine="network")
+    for t, (p, q, v) in enumerate([(True, False, 4.0), (None, False, None), (True, None, 5.0)]):
+        monitor.step(t, {"p": p, "q": q, "v": v})
+    head, _, body = monitor.snapshot().partition(b"\n")
+    document = json.loads(body)
+    refused = 0
+    for path in places_in(document["state"]):
+        hostile = copy.deepcopy(document)
+        inner = hostile["state"]
+        for key in path[:-1]:
+            inner = inner[key]
+        if type(inner[path[-1]]) is not int:
+            continue
+        inner[path[-1]] = -1
+        sealed = json.dumps(hostile, separators=(",", ":")).encode()
+        seal = hashlib.sha256(sealed).hexdigest().encode()
+        try:
+            spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed).finish()
+        except RvmonError:
+            refused += 1
+    assert refused

@@ -55,19 +55,25 @@ class Monitor:
     def __init__(self, absent: Sequence[str] = ()) -> None:
         machines = [Table(*tables) for tables in self.TABLES]
         self.unit = self.UNIT(machines, frozenset(absent))
+        self.unit.after = -LIMIT
         self.reset()
 
     def reset(self) -> None:
         """Forget the run."""
-        self.unit.restart(self, [self] * len(self.UNIT.RULES))
-        self.attempts: list[Attempt] = []
-        self.fresh: list[Attempt] = []
-        self.counts = [0] * len(self.NAMES)
-        self.doubts = [0] * len(self.NAMES)
-        self.void: list[tuple[Rule, Open]] = []
-        self.last: int | None = None
-        self.reached: int | None = None
-        self.finished = False
+        self._enter()
+        try:
+            self.unit.restart(self, [self] * len(self.UNIT.RULES))
+            self.unit.after = BUSY  # the call goes on
+            self.attempts: list[Attempt] = []
+            self.fresh: list[Attempt] = []
+            self.counts = [0] * len(self.NAMES)
+            self.doubts = [0] * len(self.NAMES)
+            self.void: list[tuple[Rule, Open]] = []
+            self.last: int | None = None
+            self.reached: int | None = None
+            self.finished = False
+        finally:
+            self.unit.after = -LIMIT
 
     # What the generated code calls.
 
@@ -156,19 +162,22 @@ class Monitor:
 
     def other(self, t: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample that needs a closer look."""
-        self._expect_alone()
-        if self.finished:
-            raise ValueError("the run is finished: call reset() before the next")
-        if t.__class__ is not int or not self.unit.after < t < LIMIT:
-            raise ValueError(
-                f"sample at {t!r}: expected whole nanoseconds, later than {self.unit.after}"
-            )
-        if not hasattr(values, "items"):
-            raise ValueError(f"sample at {t}: expected values by name, found {values!r}")
-        plain = {name: self._plain(name, value) for name, value in values.items()}
-        self.unit.through(t - 1)
-        self.unit.take(t, plain)
-        return self._flush()
+        after = self._enter()
+        try:
+            if self.finished:
+                raise ValueError("the run is finished: call reset() before the next")
+            if t.__class__ is not int or not after < t < LIMIT:
+                raise ValueError(f"sample at {t!r}: expected whole nanoseconds, later than {after}")
+            if not hasattr(values, "items"):
+                raise ValueError(f"sample at {t}: expected values by name, found {values!r}")
+            plain = {name: self._plain(name, value) for name, value in values.items()}
+            self.unit.through(t - 1)
+            self.unit.take(t, plain)
+            self.unit.after = BUSY  # the call goes on
+            after = t
+            return self._flush()
+        finally:
+            self.unit.after = after
 
     def _plain(self, name: str, value: Any) -> Any:
         if name not in self.KINDS or name in self.unit.absent:
@@ -213,38 +222,46 @@ class Monitor:
 
     def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
         """Say that no sample before `t_ns` will come."""
-        self._expect_alone()
-        if self.finished:
-            raise ValueError("the run is finished: call reset() before the next")
-        self._see()
-        if self.reached is None or t_ns > self.reached:
-            self.unit.advance(t_ns)
-            self.reached = t_ns
-            self.unit.after = max(self.unit.after, t_ns - 1)
-        return self._flush()
+        after = self._enter()
+        try:
+            if self.finished:
+                raise ValueError("the run is finished: call reset() before the next")
+            self._see(after)
+            if self.reached is None or t_ns > self.reached:
+                self.unit.advance(t_ns)
+                self.reached = t_ns
+                after = max(after, t_ns - 1)
+            return self._flush()
+        finally:
+            self.unit.after = after
 
-    def _expect_alone(self) -> None:
-        if self.unit.after == BUSY:
+    def _enter(self) -> int:
+        """Refuse all other calls until `after` is set again; returns what it was."""
+        after = self.unit.after
+        if after == BUSY:
             raise RuntimeError(
                 "another call of this monitor is under way: give each thread a monitor of its "
                 "own, or hold a lock round the calls"
             )
+        self.unit.after = BUSY
+        return after
 
-    def _see(self) -> None:
+    def _see(self, after: int) -> None:
         """Note the last sample, which only the generated code knows of."""
-        after = self.unit.after
         if after > -LIMIT and (self.reached is None or after > self.reached - 1):
             self.last = self.reached = after
 
     def finish_ns(self, t_ns: int | None = None) -> dict[str, str]:
         """End the run, at `t_ns` if that is later; returns the verdict of each requirement."""
-        self._expect_alone()
-        if not self.finished:
-            self._see()
-            self.finished = True
-            if self.last is not None:
-                self._close(t_ns)
-            self.unit.after = LIMIT
+        after = self._enter()
+        try:
+            if not self.finished:
+                self._see(after)
+                self.finished, after = True, LIMIT
+                if self.last is not None:
+                    self._close(t_ns)
+        finally:
+            self.unit.after = after
         found = {}
         for index, name in enumerate(self.NAMES):
             seen = {one.verdict for one in self.attempts if one.requirement == name}
