@@ -36,8 +36,7 @@ _AUTOMATA = tuple(
 )
 _PLANS = tuple(f"codegen/{name}.py" for name in ("planning", "tables"))
 _RUNTIME = tuple(
-    f"codegen/runtime/{name}.py"
-    for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
+    f"runtime/{name}.py" for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
 )
 _GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "hosted", "seat"))
 
@@ -50,7 +49,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
-    "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "codegen/runtime/standalone.py"),
+    "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "runtime/standalone.py"),
     "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/online_c.py"),
     "network": (
         "dataflow/time_decisions.py",

@@ -69,7 +69,7 @@ def python_file(plan: Plan) -> str:
 
 def _body(name: str) -> str:
     """A module of the runtime without its docstring and imports."""
-    text = files("rvmon.codegen").joinpath("runtime", f"{name}.py").read_text(encoding="utf-8")
+    text = files("rvmon.runtime").joinpath(f"{name}.py").read_text(encoding="utf-8")
     text = text.split('"""', 2)[2]
     text = re.sub(r"^if TYPE_CHECKING:\n(?:    .*\n|\n)+?(?=\S)", "", text, flags=re.MULTILINE)
     text = re.sub(r"^(?:from|import) (?:.*\(\n(?: .*\n)*\)|.*)\n", "", text, flags=re.MULTILINE)

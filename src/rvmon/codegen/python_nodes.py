@@ -241,7 +241,7 @@ class NodeWriter:
                 yield "    n = m"
 
     def _within(self, place: int, high: int, left: str, right: str) -> Iterator[str]:
-        """As `rvmon.codegen.runtime.past.within`, both readings at once."""
+        """As `rvmon.runtime.past.within`, both readings at once."""
         if right != "0":
             yield "elif r:" if right != "2" else "else:"
             yield f"    w[{place}] = b[{place}] = None"
@@ -265,7 +265,7 @@ class NodeWriter:
         yield from self._wake(place, "e + 1", "        ")
 
     def _beyond(self, place: int, low: int, left: str, right: str) -> Iterator[str]:
-        """As `rvmon.codegen.runtime.past.beyond`, both readings at once."""
+        """As `rvmon.runtime.past.beyond`, both readings at once."""
         if left != "2":
             yield "elif not l:" if left != "0" else "else:"
             ended = {"0": "None", "2": "True"}.get(right, "True if r else None")

@@ -16,10 +16,10 @@ from rvmon.codegen.python_nodes import (
     value_before,
 )
 from rvmon.codegen.python_visit import VisitWriter, indented
-from rvmon.codegen.runtime.solo import only_location
 from rvmon.codegen.tables import tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State
+from rvmon.runtime.solo import only_location
 from rvmon.spec.checked import Compare, Mode, ProbeAtom, SignalAtom
 from rvmon.spec.printer import format_formula
 

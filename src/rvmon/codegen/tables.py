@@ -15,7 +15,7 @@ Edge = tuple[int, tuple[int, ...]]
 
 @dataclass(frozen=True, slots=True)
 class TableData:
-    """See `rvmon.codegen.runtime.table.Table`, whose arguments these are, in its order."""
+    """See `rvmon.runtime.table.Table`, whose arguments these are, in its order."""
 
     initial: int
     cuts: tuple[tuple[tuple[int, ...], ...], ...]

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from rvmon.automaton.machine import Token
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import Unit
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.outages import Outage
@@ -17,6 +15,8 @@ from rvmon.monitor.episode import Episode
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.unit import Unit
 
 
 class Standing(Flow):

@@ -15,11 +15,6 @@ from dataclasses import fields
 from enum import Enum
 from typing import Any
 
-from rvmon.codegen.runtime import past as generated
-from rvmon.codegen.runtime.bulk import Run
-from rvmon.codegen.runtime.nodes import MISSING
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow import since as flowing
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.hidden import Hidden
@@ -45,6 +40,11 @@ from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.retention import Kept
 from rvmon.monitor.trigger import Trigger
 from rvmon.readers.coalesce import Conflicts
+from rvmon.runtime import past as generated
+from rvmon.runtime.bulk import Run
+from rvmon.runtime.nodes import MISSING
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.unit import Unit
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt, Blame, Decision
 from rvmon.verdict.verdict import Verdict

@@ -8,9 +8,6 @@ from typing import Any
 
 from rvmon.automaton.machine import INFINITY
 from rvmon.codegen.python_unit import machine_of, unit_class
-from rvmon.codegen.runtime.nodes import BUSY, LIMIT
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.monitor.attempt_judge import AttemptJudge, Holder, Open, held_by
 from rvmon.monitor.codegen_support import can_feed, plan_requirements
@@ -21,6 +18,9 @@ from rvmon.monitor.lanes import Lanes, Shape
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.one_call import overlap
+from rvmon.runtime.nodes import BUSY, LIMIT
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.unit import Unit
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt

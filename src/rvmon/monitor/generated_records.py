@@ -7,14 +7,14 @@ from operator import itemgetter
 from typing import Any
 
 from rvmon.automaton.machine import Token
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import Unit
 from rvmon.codegen.unit_plan import Plan
 from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.witness import Stood, Witness
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.unit import Unit
 from rvmon.verdict.attempt import decided_attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -33,7 +33,7 @@ class GeneratedRecords(Witness):
         unit: judges it.
         ledger: takes the records.
         counts: of the attempts of all requirements.
-        noted: gives what a record keeps, see `rvmon.codegen.runtime.unit.Unit.NOTED`.
+        noted: gives what a record keeps, see `rvmon.runtime.unit.Unit.NOTED`.
     """
 
     def __init__(

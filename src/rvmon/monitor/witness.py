@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any
 
 from rvmon.automaton.machine import Machine
-from rvmon.codegen.runtime.bulk import FROM_TRIGGER, unpacked
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.outages import Outage
@@ -17,6 +16,7 @@ from rvmon.monitor.explain import explained, just_before
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.ledger import truths_shown
 from rvmon.monitor.reasons import Reasons
+from rvmon.runtime.bulk import FROM_TRIGGER, unpacked
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 

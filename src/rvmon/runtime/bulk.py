@@ -6,13 +6,13 @@ from array import array
 from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.table import NEVER, PASSED, UNKNOWN
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.table import NEVER, PASSED, UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rvmon.codegen.runtime.table import Token
+    from rvmon.runtime.table import Token
 
 
 NOWHERE = -1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.table import (
+from rvmon.runtime.table import (
     BARE,
     FAILED,
     FRESH,
@@ -19,7 +19,7 @@ from rvmon.codegen.runtime.table import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rvmon.codegen.runtime.table import Token
+    from rvmon.runtime.table import Token
 
     Drive = Callable[[Token, int], tuple[Token, int]]
 
@@ -285,7 +285,7 @@ class Rule:
         return self._both(attempt, lambda token, letter: self._step(token, letter, t))
 
     def _go(self, attempt: Any, move: Any, t: int) -> int | None:
-        """As `stepped`, by a move of `rvmon.codegen.runtime.table.moves_of`."""
+        """As `stepped`, by a move of `rvmon.runtime.table.moves_of`."""
         target, how, leads_on = move
         if target <= PASSED:
             self._decided(attempt, target == PASSED, t, attempt.token)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.nodes import LIMIT, Nodes
-from rvmon.codegen.runtime.table import NEVER
+from rvmon.runtime.nodes import LIMIT, Nodes
+from rvmon.runtime.table import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from rvmon.codegen.runtime.rule import Rule
+    from rvmon.runtime.rule import Rule
 
 
 class Unit(Nodes):
