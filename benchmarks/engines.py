@@ -31,21 +31,20 @@ _ATTEMPTS = tuple(
     )
 )
 _AUTOMATA = tuple(
-    f"automaton/{name}.py"
-    for name in ("construct", "end", "layout", "location", "reduce", "stretch", "table")
+    f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
-_PLANS = tuple(f"codegen/{name}.py" for name in ("planning", "tables"))
+_PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
 _RUNTIME = tuple(
     f"runtime/{name}.py" for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
 )
 _GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "hosted", "seat"))
 
 ENGINES: dict[str, tuple[str, ...]] = {
-    "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA),
+    "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA, "runtime/table.py"),
     "progression": (
         *_FORMULAS,
         "automaton/progression.py",
-        "automaton/stretch.py",
+        "runtime/table.py",
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from importlib.resources import files
 
+from rvmon.automaton.table import tables_of
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, outcomes
 from rvmon.codegen.comment import comment
 from rvmon.codegen.python_source import judges, unit_source
-from rvmon.codegen.tables import tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import RvmonError
 from rvmon.spec.checked import Type

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Machine, Token
-from rvmon.automaton.stretch import run
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.horizon import horizon
 from rvmon.formula.progress import after
@@ -17,6 +16,7 @@ from rvmon.monitor.judge import Judge
 from rvmon.monitor.obligation_words import settled_alone
 from rvmon.monitor.reasons import Reasons
 from rvmon.monitor.sentence import told
+from rvmon.runtime.table import run
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame

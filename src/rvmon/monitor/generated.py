@@ -6,8 +6,8 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from rvmon.automaton.machine import INFINITY
-from rvmon.codegen.python_unit import machine_of, unit_class
+from rvmon.automaton.machine import INFINITY, Machine
+from rvmon.codegen.python_unit import unit_class
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.monitor.attempt_judge import AttemptJudge, Holder, Open, held_by
 from rvmon.monitor.codegen_support import can_feed, plan_requirements
@@ -55,7 +55,10 @@ class Forms:
         self.others = [one for one in requirements if not can_feed(one)]
         self.plan = plan_requirements(compiled, self.requirements)
         self.unit = unit_class(self.plan, sources)
-        self.machines = [machine_of(self.plan, index) for index in range(len(self.requirements))]
+        self.machines: list[Machine | None] = [
+            None if rule.automaton is None else one.machine("auto")
+            for one, rule in zip(self.requirements, self.plan.rules, strict=True)
+        ]
         # What judges attempts in doubt is made when one comes up.
         self.machines += [None for _ in self.plan.hidden_of]
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import INFINITY, Machine, Token
-from rvmon.automaton.stretch import next_cut, run, settle
 from rvmon.dataflow.flow import Flow
 from rvmon.formula.progress import after, holds_at_end
 from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.runtime.table import next_cut, run, settle
 from rvmon.trace.sample import Scalar
 
 Drive = Callable[[Token, int], tuple[Token, int]]
@@ -111,7 +111,7 @@ class Judge(AttemptJudge):
             self._drive_all(lambda token, _: settle(self.machine, token, position, t))
         elif t > position:
             self._drive_all(
-                lambda token, letter: run(self.machine, token, letter, position + gap, t, gap)
+                lambda token, letter: run(self.machine, token, letter, position + gap, t, gap)[:2]
             )
             self.position += (t - position) // gap * gap
             self.restless = False
