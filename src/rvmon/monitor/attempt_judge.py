@@ -48,6 +48,8 @@ class Open:
         "void",
     )
 
+    STATE = __slots__
+
     def __init__(self, triggered: int, token: Token, seen: tuple[int, ...]) -> None:
         self.number = 0
         self.triggered = triggered
@@ -102,6 +104,8 @@ class AttemptJudge(ABC):
         position: the one visited last.
         episode: follows its attempts, one after the other, if they are episodes.
     """
+
+    STATE: tuple[str, ...] = ("attempts", "due", "restless", "position")
 
     def __init__(
         self,

@@ -29,6 +29,8 @@ class Episode:
     Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, After a failure).
     """
 
+    STATE = ("current", "failed_at")
+
     def __init__(
         self,
         judge: AttemptJudge,

@@ -66,6 +66,8 @@ class FedJudge(Rule):
 
     __slots__ = ("_compiled", "_episode", "_judge", "_ledger", "_plan", "_standing", "_unit")
 
+    STATE = ("_judge", "_episode", "due", "restless", "before", "running", "failed_at", "eyed")
+
     def __init__(
         self, index: int, compiled: CompiledRequirement, plan: Plan, unit: Unit, ledger: Ledger
     ) -> None:

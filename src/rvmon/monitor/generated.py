@@ -76,6 +76,8 @@ class GeneratedLanes(Lanes):
         other: takes the samples that need a closer look.
     """
 
+    STATE = ("outages", "unit", "_counts", *Lanes.STATE)
+
     def __init__(
         self,
         forms: Forms,
@@ -237,6 +239,8 @@ class GeneratedMonitor(Monitor):
         sources: the names that can arrive; `None`: all.
         keep: see `build_monitor`.
     """
+
+    STATE = (*Monitor.STATE, "_floor")
 
     def __init__(
         self,

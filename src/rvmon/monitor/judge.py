@@ -25,6 +25,8 @@ class Judge(AttemptJudge):
         letters: of the position read last, the unknown taken for the worse and for the better.
     """
 
+    STATE = (*AttemptJudge.STATE, "letters")
+
     def __init__(
         self,
         compiled: CompiledRequirement,

@@ -34,6 +34,8 @@ class Starter:
         since: nothing starts before this instant.
     """
 
+    STATE = ("trigger", "since")
+
     trigger: Trigger | None
     place: int
     start: Callable[[int, int], None]
@@ -60,6 +62,11 @@ class Lane:
         captured: the lanes of captured attempts that were triggered in this one.
         blurs: of such a lane, whether its values may turn out not to be known.
     """
+
+    STATE = (
+        *("flow", "judges", "starters", "episodes", "waiting", "_restless", "_repeating"),
+        *("_failed", "blurs", "_soonest", "_awaited"),
+    )
 
     def __init__(
         self, flow: Flow, made_for: tuple[CompiledRequirement, Mapping[str, Scalar]] | None = None

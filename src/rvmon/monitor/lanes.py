@@ -55,6 +55,8 @@ class Lanes:
         forgets: whether instances are let go of that are over.
     """
 
+    STATE: tuple[str, ...] = ("_history", "all")
+
     forgets = True
 
     def __init__(

@@ -34,6 +34,8 @@ class Ledger:
             file, the number of the attempt, the record.
     """
 
+    STATE = ("attempts", "_counts", "_doubts", "void")
+
     def __init__(self) -> None:
         self.attempts: list[Attempt] = []
         self._counts: dict[str, int] = {}

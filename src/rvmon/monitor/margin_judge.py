@@ -7,7 +7,6 @@ from typing import Protocol
 
 from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.inputs import NEVER
 from rvmon.dataflow.leaves import reads
 from rvmon.dataflow.margin_nodes import Rest
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
@@ -20,6 +19,7 @@ from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.robustness_values import Robustness
+from rvmon.runtime.table import NEVER
 from rvmon.spec.checked import CheckedSpec
 from rvmon.trace.sample import Scalar
 

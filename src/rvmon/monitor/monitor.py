@@ -46,6 +46,16 @@ class Monitor:
     methods that end in `_ns`.
     """
 
+    STATE: tuple[str, ...] = (
+        "_ledger",
+        "_kept",
+        "_lanes",
+        "_intake",
+        "_health",
+        "_last",
+        "_reached",
+    )
+
     def __init__(
         self,
         compiled: CompiledSpec,

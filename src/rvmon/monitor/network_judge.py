@@ -44,6 +44,11 @@ class NetworkJudge(AttemptJudge):
         now: the stamp that time has come to.
     """
 
+    STATE = (
+        *(*AttemptJudge.STATE, "worse", "better", "now", "_letters", "_held"),
+        *("_news", "_next_decision", "_changed", "_span"),
+    )
+
     def __init__(
         self,
         compiled: CompiledRequirement,

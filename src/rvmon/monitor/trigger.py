@@ -16,6 +16,8 @@ class Trigger:
 
     __slots__ = ("before", "episodic", "hidden", "pulse", "running")
 
+    STATE = ("before", "running")
+
     def __init__(self, pulse: bool, episodic: bool, hidden: bool = False) -> None:
         self.pulse = pulse
         self.episodic = episodic

@@ -34,6 +34,8 @@ class Run:
 
     __slots__ = ("head", "numbers", "seen", "triggers")
 
+    STATE = __slots__
+
     def __init__(self) -> None:
         self.head = 0
         self.triggers = array("q")

@@ -74,6 +74,13 @@ class Nodes:
         "wakes",
     )
 
+    STATE: tuple[str, ...] = (
+        *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
+        *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired"),
+        *("timers", "births"),
+    )
+    VARIED = ("w", "b")
+
     SIGNALS: tuple[str, ...] = ()
     EVENTS: tuple[str, ...] = ()
     GAP: int | None = 1

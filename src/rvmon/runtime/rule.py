@@ -85,6 +85,11 @@ class Rule:
         "values",
     )
 
+    STATE: tuple[str, ...] = (
+        *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
+        *("before", "running", "current", "failed_at", "clouded", "eyed"),
+    )
+
     def __init__(
         self,
         index: int,

@@ -60,6 +60,13 @@ class Unit(Nodes):
         "rules",
     )
 
+    STATE = (
+        *Nodes.STATE,
+        *("began", "rules", "position", "after", "news", "dirty", "fading", "restless"),
+        *("repeating", "awaited", "dues", "due_at", "active"),
+        *("asked", "eyed", "failing", "resume_at"),
+    )
+
     ABOVE: tuple[int, ...] = ()
     """Per node, a bit for it and each that depends on it; left out where nobody asks."""
     NOTED: tuple[Callable[..., tuple[Any, ...]], ...]
