@@ -8,17 +8,15 @@ PACKAGE = Path(__file__).resolve().parent.parent / "src" / "rvmon"
 
 _FORMULAS = ("formula/*.py",)
 _INPUTS = tuple(
-    f"dataflow/{name}.py"
-    for name in ("flow", "graph", "hidden", "inputs", "leaves", "numbers", "since")
+    f"dataflow/{name}.py" for name in ("flow", "graph", "inputs", "leaves", "numbers", "previous")
 )
 _ATTEMPTS = tuple(
     f"monitor/{name}.py"
     for name in (
-        "bench",
+        "attempt_judge",
         "build",
         "captive",
         "compiled",
-        "episode",
         "health",
         "instances",
         "judge",
@@ -26,7 +24,6 @@ _ATTEMPTS = tuple(
         "lanes",
         "ledger",
         "monitor",
-        "trigger",
         "validate",
     )
 )
@@ -34,17 +31,18 @@ _AUTOMATA = tuple(
     f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
 _PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
+_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "table"))
 _RUNTIME = tuple(
     f"runtime/{name}.py" for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
 )
-_GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "hosted", "seat"))
+_GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "generated_records"))
 
 ENGINES: dict[str, tuple[str, ...]] = {
-    "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA, "runtime/table.py"),
+    "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA, *_DRIVEN),
     "progression": (
         *_FORMULAS,
         "automaton/progression.py",
-        "runtime/table.py",
+        *_DRIVEN,
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),

@@ -120,9 +120,9 @@ def _lane(lane: Lane, end: int) -> Iterator[object]:
         for place in flow.graph.stateful
         for operand in flow.graph.operands[place]
     )
-    for starter in lane.starters:
-        if starter.trigger is not None:
-            yield (starter.trigger.before, starter.trigger.running)
+    for rule in lane.starters:
+        if rule.trigger >= 0:
+            yield (rule.before, rule.running)
 
 
 def _relative(machine: Machine, token: Token, end: int) -> object:

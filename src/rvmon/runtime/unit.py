@@ -261,7 +261,7 @@ class Unit(Nodes):
                 self.follow(rule)
             elif t <= failed_at:
                 self.await_next(failed_at)
-            elif rule.goes_on(t):
+            elif rule.goes_on:
                 self.begin(rule, t)
 
     def follow(self, rule: Rule) -> None:
@@ -274,7 +274,7 @@ class Unit(Nodes):
         self.failing |= bit
         self.asked |= bit << len(self.rules)
         # Where it fails at once, something has to change first.
-        if rule.goes_on(rule.failed_at):
+        if rule.goes_on:
             self.await_next(rule.failed_at)
 
     def await_next(self, t: int) -> None:
@@ -375,7 +375,7 @@ class Unit(Nodes):
     def note(self, rule: Rule) -> None:
         """Note when a requirement is due, and whether it has to be asked at the next position."""
         bit = 1 << rule.index
-        if rule.attempts or rule.runs:
+        if rule.attempts or rule.runs or rule.watches:
             self.active |= bit
         elif self.active & bit:
             self.active ^= bit
