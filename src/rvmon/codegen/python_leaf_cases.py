@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.codegen.python_leaves import known_test
-from rvmon.codegen.python_nodes import NodeWriter, Roles, bits
+from rvmon.codegen.python_nodes import BEFORE, NodeWriter, Roles, bits
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
 from rvmon.codegen.unit_plan import Plan, asks_knowledge
 from rvmon.spec.checked.formula import SignalAtom
-
-_BEFORE = re.compile(r"(?<![.\w])before\b")
 
 _DEEPEST = 8
 """So many blocks stand within each other at most."""
@@ -87,13 +84,14 @@ class ConeWriter:
         """
         leaves, places = self.plan.readers(name), self._cone_of(name)
         lines = list(kept)
+        # Few values come to where it is asked for.
+        self.nodes.before = self.visit.preceding()
         for test, value in self._values(leaves[0]):
             lines += [test, *indented(self._moved(leaves, places, value))]
         timed = self.joins or any(self.nodes.is_timed(place) for place in places)
         triggers = self.joins or any(self.roles.triggers[place] for place in places)
         lines += self.visit.followed(timed=timed, triggers=triggers)
-        # Few values come to where it is asked for.
-        lines = [_BEFORE.sub(self.visit.preceding(), line) for line in lines]
+        self.nodes.before = BEFORE
         if self.joins:
             yield "letters = triggers = 0"
             yield "if self.dirty:"

@@ -316,7 +316,7 @@ class VisitWriter:
         alone = len(self.plan.judged) == 1
         sign = "=" if alone else "|="
         if self.roles.letters[place]:
-            yield f"self.until[{3 * place} + v[{place}]] = before"
+            yield f"self.until[{3 * place} + v[{place}]] = {self.nodes.before}"
             yield f"self.since[{place}] = t"
             yield f"letters {sign} {self.roles.letters[place]}"
         if self.roles.triggers[place]:

@@ -8,12 +8,13 @@ from heapq import heappop, heappush
 from typing import assert_never
 
 from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.hidden import Hidden
-from rvmon.dataflow.inputs import NEVER, Inputs, Reported
+from rvmon.dataflow.inputs import Inputs, Reported
 from rvmon.dataflow.leaves import Evaluate, before_birth, evaluator
 from rvmon.dataflow.outages import Outage
-from rvmon.dataflow.since import Previous, Since
+from rvmon.dataflow.previous import Hidden, Previous
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, Leaf, State, StateOp
+from rvmon.runtime.past import Since
+from rvmon.runtime.table import NEVER
 from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.trace.sample import Scalar
 
@@ -41,6 +42,11 @@ class Flow:
         cut: the instant from which on it is not known which values were captured.
         begun: of a flow that was made by `twin`, the position from which on it saw what is its own.
     """
+
+    STATE = (
+        *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
+        *("_dirty", "_fading", "_wakes", "_left", "cut", "begun"),
+    )
 
     cut = NEVER
     begun: int | None = None
@@ -322,8 +328,8 @@ class Flow:
         values = self.values
 
         def since(t: int) -> int:
-            value = node.step(t, self._last, values[left], values[right])
-            self._set_wake(place, node.wake)
+            value, wake = node.step(t, self._last, values[left], values[right])
+            self._set_wake(place, wake)
             return value
 
         return since

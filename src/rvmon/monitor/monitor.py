@@ -45,6 +45,16 @@ class Monitor:
     methods that end in `_ns`.
     """
 
+    STATE: tuple[str, ...] = (
+        "_ledger",
+        "_kept",
+        "_lanes",
+        "_intake",
+        "_health",
+        "_last",
+        "_reached",
+    )
+
     def __init__(
         self,
         compiled: CompiledSpec,
@@ -401,7 +411,9 @@ class Monitor:
     def _open(self) -> Sequence[Attempt]:
         if self._reached is None:
             return []
-        now = 2 * self._reached + (self._reached == self._last)
+        known = self._reached == self._last
+        now = 2 * self._reached + known
+        self._lanes.take_along(self._reached - (not known))
         return [
             self._ledger.open_record(judge, attempt, now)
             for judge in self._lanes.judges

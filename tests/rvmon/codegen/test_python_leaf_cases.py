@@ -6,8 +6,8 @@ import pytest
 
 import rvmon
 from rvmon.codegen import python_leaf_cases
-from rvmon.codegen.runtime.unit import Unit, closures
 from rvmon.errors import TraceError
+from rvmon.runtime.unit import Unit, closures
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.show import show
 from rvmon.trace.time import TIME_LIMIT

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import namedtuple
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.nodes import BUSY, LIMIT
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.table import FAILED, PASSED, Table
-from rvmon.codegen.runtime.unit import Unit
+from rvmon.runtime.nodes import BUSY, LIMIT
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.table import FAILED, PASSED, Table
+from rvmon.runtime.unit import Unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -5,13 +5,13 @@ from __future__ import annotations
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.nodes import LIMIT, Nodes
-from rvmon.codegen.runtime.table import NEVER
+from rvmon.runtime.nodes import LIMIT, Nodes
+from rvmon.runtime.table import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from rvmon.codegen.runtime.rule import Rule
+    from rvmon.runtime.rule import Rule
 
 
 class Unit(Nodes):
@@ -58,6 +58,13 @@ class Unit(Nodes):
         "restless",
         "resume_at",
         "rules",
+    )
+
+    STATE = (
+        *Nodes.STATE,
+        *("began", "rules", "position", "after", "news", "dirty", "fading", "restless"),
+        *("repeating", "awaited", "dues", "due_at", "active"),
+        *("asked", "eyed", "failing", "resume_at"),
     )
 
     ABOVE: tuple[int, ...] = ()
@@ -254,7 +261,7 @@ class Unit(Nodes):
                 self.follow(rule)
             elif t <= failed_at:
                 self.await_next(failed_at)
-            elif rule.goes_on(t):
+            elif rule.goes_on:
                 self.begin(rule, t)
 
     def follow(self, rule: Rule) -> None:
@@ -267,7 +274,7 @@ class Unit(Nodes):
         self.failing |= bit
         self.asked |= bit << len(self.rules)
         # Where it fails at once, something has to change first.
-        if rule.goes_on(rule.failed_at):
+        if rule.goes_on:
             self.await_next(rule.failed_at)
 
     def await_next(self, t: int) -> None:
@@ -368,7 +375,7 @@ class Unit(Nodes):
     def note(self, rule: Rule) -> None:
         """Note when a requirement is due, and whether it has to be asked at the next position."""
         bit = 1 << rule.index
-        if rule.attempts or rule.runs:
+        if rule.attempts or rule.runs or rule.watches:
             self.active |= bit
         elif self.active & bit:
             self.active ^= bit

@@ -1,11 +1,11 @@
-"""The open attempts of one requirement in a generated monitor."""
+"""When the attempts of one requirement start, and how they are driven through time."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.table import (
+from rvmon.runtime.table import (
     BARE,
     FAILED,
     FRESH,
@@ -19,7 +19,7 @@ from rvmon.codegen.runtime.table import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rvmon.codegen.runtime.table import Token
+    from rvmon.runtime.table import Token
 
     Drive = Callable[[Token, int], tuple[Token, int]]
 
@@ -32,7 +32,8 @@ class Rule:
     Args:
         index: of the requirement.
         machine: judges its attempts; `None`: somebody else does.
-        letters: gives, from the values, the letters with the unknown taken for worse and better.
+        letters: gives, from the values, the letters with the unknown taken for worse and better;
+            `None` without a machine.
         trigger: the node of its trigger; −1: the end of the trace.
         pulse: whether it starts an attempt at every position where its trigger holds.
         episodic: whether one attempt runs at a time, until the trigger is false.
@@ -42,6 +43,8 @@ class Rule:
         gap: ticks between two positions; `None` if only samples are positions.
         values: the truth of the state formulas.
         clerk: makes attempts and hears of decisions.
+
+    The attributes that follow are read by whoever drives it.
 
     Attributes:
         attempts: the undecided ones, oldest first, but for those in runs.
@@ -53,6 +56,9 @@ class Rule:
         failed_at: the instant at which that failed, the episode running on.
         clouded: whether the trigger was unknown while it ran.
         eyed: whether it has to see the trigger before its attempts do.
+        watches: whether it has to see positions though no attempt is open.
+
+    Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, After a failure).
     """
 
     __slots__ = (
@@ -85,11 +91,16 @@ class Rule:
         "values",
     )
 
+    STATE: tuple[str, ...] = (
+        *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
+        *("before", "running", "current", "failed_at", "clouded", "eyed"),
+    )
+
     def __init__(
         self,
         index: int,
         machine: Any,
-        letters: Callable[[list[int]], tuple[int, int]],
+        letters: Any,
         trigger: int,
         pulse: bool,
         episodic: bool,
@@ -127,8 +138,13 @@ class Rule:
         self.clouded = False
         self.eyed = False
 
+    watches = False
+
     def starts(self, truth: int) -> bool:
-        """Whether an attempt starts at a position where the trigger has this truth."""
+        """Whether an attempt starts at a position where the trigger has this truth.
+
+        To be called at least where the truth changes, and at each position of a pulse that holds.
+        """
         before, self.before = self.before, truth
         if not self.episodic:
             return truth == TRUE and (self.pulse or before == FALSE)
@@ -145,20 +161,35 @@ class Rule:
     @property
     def repeats(self) -> bool:
         """Whether another attempt starts at the next position if the trigger stays."""
-        return self.pulse and not self.episodic and self.before == TRUE
+        if not self.episodic:
+            return self.pulse and self.before == TRUE
+        wanted = self.before == UNKNOWN if self.hidden else self.before != FALSE
+        return wanted and not self.running
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether an attempt that starts here has a trigger that is true."""
+        return not self.hidden and (not self.episodic or self.values[self.trigger] == TRUE)
+
+    @property
+    def is_unborn(self) -> bool:
+        """Whether something that is owed speaks of signals that have had no value."""
+        return self.unborn >= 0 and self.values[self.unborn] == TRUE
 
     @property
     def is_plain(self) -> bool:
         """Whether an attempt that starts here is sure, and no signal is to be waited for."""
-        if not self.episodic:
-            return True
-        values = self.values
-        born = self.unborn < 0 or values[self.unborn] != TRUE
-        return born and values[self.trigger] == TRUE and not self.hidden
+        return not self.episodic or (self.is_sure and not self.is_unborn)
+
+    @property
+    def running_attempt(self) -> Any:
+        """The attempt of an episode that runs, unless it stands in `runs`."""
+        return next((one for one in self.attempts if one.triggered == self.current), None)
 
     def enter(self, triggered: int) -> None:
         """Take it that an attempt runs from here on."""
         if self.episodic:
+            self.running = True
             self.current = triggered
             self.failed_at = None
             self.clouded = self.values[self.trigger] == UNKNOWN
@@ -166,14 +197,14 @@ class Rule:
 
     def look(self) -> None:
         """See the trigger before the attempts do: it may make one sure, or void."""
-        for attempt in self.attempts:
-            if attempt.triggered == self.current:
-                truth = self.values[self.trigger]
-                if truth == FALSE:
-                    attempt.void = self.unborn >= 0 and self.values[self.unborn] == TRUE
-                elif truth == TRUE and not attempt.sure:
-                    attempt.sure = True
-                    self.clerk.assured(self, attempt)
+        attempt = self.running_attempt
+        if attempt is None:
+            return
+        if self.values[self.trigger] == FALSE:
+            attempt.void = attempt.void or self.is_unborn
+        elif not attempt.sure and self.is_sure:
+            attempt.sure = True
+            self.clerk.assured(self, attempt)
 
     def fail(self, triggered: int, t: int) -> None:
         """Note that an attempt has failed at `t`."""
@@ -181,16 +212,17 @@ class Rule:
             self.current = None
             self.failed_at = t
 
-    def goes_on(self, _: int) -> bool:
-        """Whether what is owed has not failed at once at a position, at which the values are."""
+    @property
+    def goes_on(self) -> bool:
+        """Whether what is owed has not failed at once at the position that the values are of."""
         return bool(self.values[self.again] != FALSE)
 
     def settle_flags(self) -> None:
         """Come to the end: what runs may be over, or void; what is over is neither."""
-        for attempt in self.attempts:
-            if self.current is not None and attempt.triggered == self.current:
-                attempt.clouded = self.clouded
-                attempt.void = self.unborn >= 0 and self.values[self.unborn] == TRUE
+        attempt = self.running_attempt
+        if attempt is not None:
+            attempt.clouded = self.clouded
+            attempt.void = attempt.void or self.is_unborn
 
     def begin(self, t: int, triggered: int) -> None:
         """Start an attempt at the position `t`, at which the values are."""
@@ -201,8 +233,7 @@ class Rule:
     def begin_alone(self, t: int, triggered: int) -> None:
         """Start an attempt that is driven by itself, at the position visited last."""
         machine = self.machine
-        sure = not self.episodic or (not self.hidden and self.values[self.trigger] == TRUE)
-        attempt = self.clerk.opened(self, triggered, machine.start, sure)
+        attempt = self.clerk.opened(self, triggered, machine.start, self.is_sure)
         self.enter(triggered)
         if self.moves is None or self.letter != self.other:
             due = self.stepped(attempt, t)
@@ -285,7 +316,7 @@ class Rule:
         return self._both(attempt, lambda token, letter: self._step(token, letter, t))
 
     def _go(self, attempt: Any, move: Any, t: int) -> int | None:
-        """As `stepped`, by a move of `rvmon.codegen.runtime.table.moves_of`."""
+        """As `stepped`, by a move of `rvmon.runtime.table.moves_of`."""
         target, how, leads_on = move
         if target <= PASSED:
             self._decided(attempt, target == PASSED, t, attempt.token)

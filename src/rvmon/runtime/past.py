@@ -1,4 +1,4 @@
-"""Past operators and numbers of generated monitors."""
+"""Past operators and numbers."""
 
 from __future__ import annotations
 
@@ -16,6 +16,10 @@ FALSE, UNKNOWN, TRUE = 0, 1, 2
 class Since:
     """`left S[low, high] right` with Kleene's values: the merged stretches in which it holds.
 
+    Each position s with `right` true makes it true at s + low … s + high, until `left` is false.
+    These stretches are merged where they touch, so that their number is bounded by
+    low / (high − low) and not by the number of samples.
+
     As soon as an operand is unknown there are two readings: this one takes the unknown for false,
     the one beside it for true, until both agree again.
 
@@ -23,6 +27,8 @@ class Since:
     """
 
     __slots__ = ("better", "gap", "growing", "high", "left", "low", "right", "runs")
+
+    STATE = __slots__
 
     def __init__(self, low: int, high: int | None, gap: int) -> None:
         self.low = low
@@ -159,7 +165,7 @@ def beyond(
     return start, start <= t, start if start > t else NEVER
 
 
-def doubt(before: int, now: int, value: int, pulse: bool) -> int:
+def doubt(before: int, now: int, value: int, pulse: bool, every: bool = False) -> int:
     """Whether a trigger may have been hidden at a position.
 
     Args:
@@ -167,14 +173,20 @@ def doubt(before: int, now: int, value: int, pulse: bool) -> int:
         now: its truth.
         value: what this was at the position before.
         pulse: whether the trigger starts an attempt wherever it is true.
+        every: whether no trigger is sure.
+
+    Source: SEMANTICS, section 3 (Doubt).
 
     >>> doubt(FALSE, UNKNOWN, FALSE, False), doubt(UNKNOWN, FALSE, UNKNOWN, False)
     (1, 0)
     """
     if now == FALSE:
         return FALSE
-    starts = now == UNKNOWN and (pulse or before == FALSE)
-    hidden = starts or (before == UNKNOWN and not pulse)
+    if every:
+        hidden = pulse or before != TRUE
+    else:
+        starts = now == UNKNOWN and (pulse or before == FALSE)
+        hidden = starts or (before == UNKNOWN and not pulse)
     return UNKNOWN if hidden else TRUE if value else FALSE
 
 
@@ -182,6 +194,8 @@ class History:
     """The last two updates of a signal."""
 
     __slots__ = ("at", "before", "before_at", "last", "updates")
+
+    STATE: tuple[str, ...] = __slots__
 
     def __init__(self) -> None:
         self.updates = 0

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.table import PASSED
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.table import PASSED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rvmon.codegen.runtime.table import Table, Token
+    from rvmon.runtime.table import Table, Token
 
 
 def only_location(

@@ -128,7 +128,7 @@ def moves_of(table: Table) -> list[list[list[Move]]]:
     """
     return [
         [_moves(table, location, kind) for location in range(len(table.bases))]
-        for kind in range(1 + max(table.class_of))
+        for kind in range(len(table.rows[0]))
     ]
 
 

@@ -6,8 +6,8 @@ from heapq import heappop, heappush, heapreplace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.past import History, Since, beyond, doubt, within
-from rvmon.codegen.runtime.table import NEVER
+from rvmon.runtime.past import History, Since, beyond, doubt, within
+from rvmon.runtime.table import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -73,6 +73,13 @@ class Nodes:
         "wake",
         "wakes",
     )
+
+    STATE: tuple[str, ...] = (
+        *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
+        *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired"),
+        *("timers", "births"),
+    )
+    VARIED = ("w", "b")
 
     SIGNALS: tuple[str, ...] = ()
     EVENTS: tuple[str, ...] = ()

@@ -6,13 +6,13 @@ from array import array
 from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.table import NEVER, PASSED, UNKNOWN
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.table import NEVER, PASSED, UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rvmon.codegen.runtime.table import Token
+    from rvmon.runtime.table import Token
 
 
 NOWHERE = -1
@@ -33,6 +33,8 @@ class Run:
     """
 
     __slots__ = ("head", "numbers", "seen", "triggers")
+
+    STATE = __slots__
 
     def __init__(self) -> None:
         self.head = 0
