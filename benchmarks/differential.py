@@ -20,7 +20,7 @@ from typing import Any
 
 from rvmon.children import workers
 from rvmon.errors import RvmonError
-from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.spec.checked import TimeModel
 from rvmon.testing.differential import Campaign, Mix, campaign_of
 from rvmon.testing.features import Feature, possible

@@ -13,7 +13,7 @@ from rvmon.codegen.runtime.rule import Rule
 from rvmon.codegen.runtime.unit import Unit
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.monitor.attempt_judge import AttemptJudge, Holder, Open, held_by
-from rvmon.monitor.codegen_support import can_feed, plan_requirements
+from rvmon.monitor.codegen_support import plan_requirements
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.fed_judge import FedJudge
 from rvmon.monitor.generated_records import GeneratedRecords
@@ -51,8 +51,8 @@ class Forms:
         requirements: Sequence[CompiledRequirement],
         sources: frozenset[str] | None,
     ) -> None:
-        self.requirements = [one for one in requirements if can_feed(one)]
-        self.others = [one for one in requirements if not can_feed(one)]
+        self.requirements = [one for one in requirements if one.is_fed]
+        self.others = [one for one in requirements if not one.is_fed]
         self.plan = plan_requirements(compiled, self.requirements)
         self.unit = unit_class(self.plan, sources)
         self.machines = [machine_of(self.plan, index) for index in range(len(self.requirements))]

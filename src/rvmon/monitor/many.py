@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 from typing import Any
 
 from rvmon.children import workers
-from rvmon.monitor.compiled import CompiledSpec, compile_spec
+from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
 from rvmon.monitor.finished import evaluate_trace
 from rvmon.readers.reading import Reading
 from rvmon.verdict.report import Report

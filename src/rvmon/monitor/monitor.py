@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
 from rvmon.automaton.machine import INFINITY
@@ -44,7 +44,12 @@ class Monitor:
 
     Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
     methods that end in `_ns`.
+
+    Attributes:
+        judged_by: the engines that judge its requirements, as its report says them.
     """
+
+    judged_by = ""
 
     def __init__(
         self,
@@ -292,7 +297,7 @@ class Monitor:
             for sample in () if self._intake is None else self._intake.close():
                 self._judge(sample.t, sample.values)
             report, decided = self._conclude(t_ns)
-            self._report = report
+            self._report = report = replace(report, engine=self.judged_by)
         self._tell(decided)
         return report
 

@@ -24,11 +24,14 @@ _WIDEST = 8
 _EXACT = 1 << 53
 """Floats up to here are the whole numbers that they stand for."""
 
+_PIECE = 1 << 17
+"""Instants that are compared together."""
+
 
 def block_of_table(
     table: TableRecording, schema: Schema, fillable: Callable[[], frozenset[str]]
 ) -> Block:
-    """A table as one block, without copies if possible. Whether instants ascend is not looked at.
+    """A table as one block, without copies if possible.
 
     Args:
         table: its columns.
@@ -38,7 +41,7 @@ def block_of_table(
 
     Raises:
         NotPlainError: a column is something else, holds labels or payloads, or has gaps that may
-            matter; or stamps are dates.
+            matter; stamps are dates, or do not increase.
         TraceError: an instant is not finite or out of range.
     """
     layout, columns = table.layout, table.columns
@@ -49,12 +52,21 @@ def block_of_table(
     found = {}
     for column in layout.columns:
         if column.field is not None or column.kind is Kind.LABEL:
-            raise NotPlainError
+            raise NotPlainError(f"`{layout.header[column.index]}` holds no numbers or truth values")
         cells = columns[layout.header[column.index]]
         found[column.name] = _values(cells, column, schema, fillable)
     if any(len(column) != len(stamps) for column in found.values()):
         raise NotPlainError
-    return Block(ticks_of_column(stamps, layout.stamps), found)
+    times = ticks_of_column(stamps, layout.stamps)
+    if not _ascend(times):
+        raise NotPlainError("its instants do not increase")
+    return Block(times, found)
+
+
+def _ascend(times: NDArray[np.int64]) -> bool:
+    """Whether instants increase strictly; looked at in pieces that stay near the processor."""
+    pieces = (times[start : start + _PIECE + 1] for start in range(0, len(times), _PIECE))
+    return all(bool((piece[1:] > piece[:-1]).all()) for piece in pieces)
 
 
 def _values(
@@ -68,7 +80,7 @@ def _values(
     if given is None:
         return values
     if column.name not in fillable():
-        raise NotPlainError
+        raise NotPlainError(f"whether `{column.name}` is updated matters, and it has gaps")
     if column.name in schema.signals:
         return held_values(values, given, None)
     occurs = np.zeros(len(given), bool)

