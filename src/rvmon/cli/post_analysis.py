@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import islice, takewhile
 from typing import TYPE_CHECKING
 
+from rvmon.cli.reading import opened
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.recording import can_be_read_again
 from rvmon.readers.source import Source
@@ -177,15 +177,13 @@ def _misses(
 
 def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Changes | None:
     """What changes of these names; `None` if the file is not plain."""
-    from rvmon.readers.block_readers import reader_of
     from rvmon.readers.changes import Changes
 
     schema = spec.schema
     if spec.checked.max_delay is not None:
         return None
     try:
-        reader = reader_of(trace, schema, Counter())
-        blocks = reader(trace, schema, frozenset((*schema.signals, *schema.events)))
+        blocks = opened(spec, trace).blocks(lambda: frozenset((*schema.signals, *schema.events)))
         return Changes(blocks, names, schema.events.keys(), end)
     except NotPlainError:
         return None

@@ -118,12 +118,12 @@ class FileRecording:
         Raises:
             NotPlainError: it has to be read row by row; a block before may have been given out.
         """
-        from rvmon.readers.block_readers import reader_of
-
         if not can_be_read_again(self.path):
             raise NotPlainError("it is a stream")
+        if self._schema.gaps:
+            raise NotPlainError("values that stand for no update are looked for in rows")
         seen = Counter[str]()
-        for block in reader_of(self.path, self._schema, seen)(self.path, self._schema, fillable()):
+        for block in self._blocks(fillable(), seen):
             own = up_to(until, block)
             yield own
             if len(own.times) < len(block.times):
@@ -132,6 +132,20 @@ class FileRecording:
                 return
         for name, count in seen.items():
             self.ignored[name] = count
+
+    def _blocks(self, fillable: frozenset[str], seen: Counter[str]) -> Iterator[Block]:
+        """The blocks of its format; where each line has names of its own, undeclared ones count."""
+        if self._format == "csv":
+            from rvmon.readers.csv_blocks import csv_blocks
+
+            return csv_blocks(self.path, self._schema, fillable)
+        if self._format == "parquet":
+            from rvmon.readers.parquet import parquet_blocks
+
+            return parquet_blocks(self.path, self._schema, fillable)
+        from rvmon.readers.jsonl_blocks import jsonl_blocks
+
+        return jsonl_blocks(self.path, self._schema, fillable, ignored=seen)
 
     def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
         yield from self.rows.samples(rows)

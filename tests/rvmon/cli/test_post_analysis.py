@@ -139,8 +139,6 @@ def test_rows_that_repeat_are_left_out():
 
 def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
     """However many requirements failed or were silent, a file is read once again; each is told."""
-    from rvmon.readers import block_readers
-
     pairs = range(6)
     text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
     for n in range(30):
@@ -154,9 +152,9 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
     path = tmp_path / "a.csv"
     path.write_text("\n".join(rows) + "\n")
     opened = []
-    reader_of = block_readers.reader_of
+    blocks = FileRecording.blocks
     monkeypatch.setattr(
-        block_readers, "reader_of", lambda *given: opened.append(given) or reader_of(*given)
+        FileRecording, "blocks", lambda *given: opened.append(given) or blocks(*given)
     )
     report = judge(rvmon.loads(text), str(path), Options()).report
     assert len(opened) == 2  # to judge, and once again

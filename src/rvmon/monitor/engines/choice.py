@@ -48,14 +48,14 @@ def _choice(one: CompiledRequirement, count: int) -> Choice:
     )
 
 
-def online_engine(one: CompiledRequirement, count: int) -> str:
-    """What `auto` takes for a requirement in a stream.
+def judged_by(requirements: Sequence[CompiledRequirement]) -> str:
+    """The engines that `auto` takes in a stream, as reports say them.
 
     Args:
-        one: the requirement.
-        count: of all that are judged together.
+        requirements: that are judged together.
     """
-    return _online(one, count)[0]
+    found = {_online(one, len(requirements))[0] for one in requirements}
+    return ", ".join(sorted(found, key=("python", "automaton", "network").index))
 
 
 def _online(one: CompiledRequirement, count: int) -> tuple[str, dict[str, Refusal]]:

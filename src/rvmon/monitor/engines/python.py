@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.engines.choice import online_engine
+from rvmon.monitor.engines.choice import judged_by
 from rvmon.monitor.engines.refusal import MOST_GENERATED, Refusal, of_generated, too_many
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import judge_rows
@@ -50,17 +50,15 @@ def generated_or_tables(
         asked: what is wanted.
     """
     how = (asked.settle, asked.sources, asked.keep)
-    monitor: Monitor
     if len(chosen) > MOST_GENERATED or not any(one.is_fed for one in chosen):
         monitor = Monitor(compiled, chosen, engine, *how)
-    else:
-        key = (tuple(one.requirement.id for one in chosen), asked.sources)
-        forms = compiled.forms.get(key)
-        if not isinstance(forms, Forms):
-            forms = compiled.forms[key] = Forms(compiled, chosen, asked.sources)
-        monitor = GeneratedMonitor(forms, compiled, chosen, engine, *how)
-    monitor.judged_by = ", ".join(dict.fromkeys(online_engine(one, len(chosen)) for one in chosen))
-    return monitor
+        monitor.judged_by = judged_by(chosen)
+        return monitor
+    key = (tuple(one.requirement.id for one in chosen), asked.sources)
+    forms = compiled.forms.get(key)
+    if not isinstance(forms, Forms):
+        forms = compiled.forms[key] = Forms(compiled, chosen, asked.sources)
+    return GeneratedMonitor(forms, compiled, chosen, engine, *how)
 
 
 ENGINES = {"python": Python()}
