@@ -7,7 +7,7 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
@@ -16,7 +16,6 @@ from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
-    from rvmon.monitor.engines.choice import Choice
     from rvmon.spec.checked import CheckedSpec
 
 
@@ -64,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     constants = constants_of(arguments.const)
     findings: list[Diagnostic] = []
     remarks: list[str] = []
-    engines: dict[str, Mapping[str, Choice]] = {}
+    engines: dict[str, dict[str, Any]] = {}
     unreadable = broken = 0
     for name in arguments.specs:
         try:
@@ -77,8 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
         checked, found = _checked(text, name, constants)
         findings += found
         if arguments.engines and checked is not None:
-            engines[name] = _engines(checked)
-            remarks.append(_table(engines[name]))
+            engines[name], table = _engines(checked)
+            remarks.append(table)
         broken += checked is None
         if arguments.analyse and checked is not None:
             more, remark = _analysed(checked, arguments.seconds)
@@ -121,31 +120,24 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
     return analysis.findings, analysis_lines(analysis, checked)
 
 
-def _engines(checked: CheckedSpec) -> Mapping[str, Choice]:
-    """Which engine judges each requirement, and why no other."""
+def _engines(checked: CheckedSpec) -> tuple[dict[str, Any], str]:
+    """Which engine judges each requirement, and why no other: as data, and as a table."""
+    from rvmon.report.engines_text import engines_data, engines_text
     from rvmon.session import Spec
 
-    return Spec(checked).engines()
-
-
-def _table(engines: Mapping[str, Choice]) -> str:
-    from rvmon.report.engines_text import engines_text
-
-    return engines_text(engines).rstrip()
+    choices = Spec(checked).engines()
+    return engines_data(choices), engines_text(choices).rstrip()
 
 
 def _show(
-    form: str, findings: list[Diagnostic], engines: Mapping[str, Mapping[str, Choice]] | None
+    form: str, findings: list[Diagnostic], engines: Mapping[str, dict[str, Any]] | None
 ) -> None:
     from rvmon.diagnostics.colour import coloured, wants_colour
     from rvmon.diagnostics.render import render_concise, render_full, render_json
 
     match form:
         case "json" if engines is not None:
-            from rvmon.report.engines_text import engines_data
-
-            told = {name: engines_data(choices) for name, choices in engines.items()}
-            said = json.dumps(told, indent=1, ensure_ascii=False)
+            said = json.dumps(engines, indent=1, ensure_ascii=False)
             say_json(f'{{"findings": {render_json(findings)},\n"engines": {said}}}')
         case "json":
             say_json(render_json(findings))

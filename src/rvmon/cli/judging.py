@@ -145,14 +145,18 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             read=shown_while_reading if meter is None else meter.reading,
             is_alone=is_alone,
         )
-        report = spec.judge(source, engine=options.engine, only=options.only, decided=before.extend)
+        try:
+            report = spec.judge(
+                source, engine=options.engine, only=options.only, decided=before.extend
+            )
+        except TraceError:
+            before = before or _judged_before(spec, trace, options)
+            raise
         if meter is not None:
             report = meter.told(report)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
-        if not before and can_be_read_again(trace):
-            before = _judged_before(spec, trace, options)
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(_shown(trace), None, tuple(before), place + message)
@@ -163,8 +167,10 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
 
 
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
-    """What is decided up to the place where a recording breaks off."""
+    """What is decided up to the place where a recording breaks off that can be read again."""
     found: list[Attempt] = []
+    if not can_be_read_again(trace):
+        return found
     with suppress(TraceError):
         recording = opened(spec, trace)
         monitor = spec.monitor(only=options.only, sources=recording.names)

@@ -179,6 +179,15 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys, engine):
     assert "Traceback" not in told
 
 
+def test_a_recording_that_is_refused_has_nothing_judged_before(files, capsys):
+    """What lacks a name is not judged up to its end."""
+    (files / "lacks.csv").write_text("t,knock\n0,1\n5,1\n")
+    assert main(["run", "door.rv", "lacks.csv", "--format", "json"]) == 2
+    shown = capsys.readouterr()
+    assert "there is no column for what requirements read" in shown.err
+    assert json.loads(shown.out)["judged_before"] == {}
+
+
 def test_a_broken_recording_is_an_entry_in_json(files, capsys):
     """The error and what was judged before it stand where the verdicts of others do."""
     (files / "cut.csv").write_text(FAIL + "6,,\n9,maybe,\n")

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.readers.blocks import NotPlainError
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled import CompiledRequirement
     from rvmon.monitor.compiled_spec import CompiledSpec
     from rvmon.monitor.engines.refusal import Refusal
-    from rvmon.monitor.engines.registry import Asked
     from rvmon.monitor.monitor import Monitor
     from rvmon.readers.source import Source
     from rvmon.verdict.report import Report
@@ -32,8 +32,6 @@ class C:
         """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
         chosen = compiled.chosen(asked.only)
         if not chosen:  # nothing to compile
-            from rvmon.monitor.engines.registry import engine_named
-
             return engine_named("auto").online(compiled, asked)
         from rvmon.monitor.engines.refusal import no_dropping
         from rvmon.monitor.online_c import compiled_monitor
@@ -47,8 +45,6 @@ class C:
     def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
         """By a program for one recording alone, else by columns, else by samples laid as such."""
         if asked.only == ():
-            from rvmon.monitor.engines.registry import engine_named
-
             return engine_named("auto").judge(compiled, source, asked)
         if source.is_alone:
             from rvmon.monitor.engines.c_alone import judged_by_program
