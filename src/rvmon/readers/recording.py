@@ -105,6 +105,12 @@ class FileRecording:
                 self._stamps = stamps_of("t_ns")
             yield line
 
+    @property
+    def is_told_otherwise(self) -> bool:
+        """Whether somebody has said how columns are called, or what cells and stamps mean."""
+        schema = self._schema
+        return bool(schema.columns or schema.gaps or schema.stamps is not None)
+
     def blocks(
         self, fillable: Callable[[], frozenset[str]], until: int | None = None
     ) -> Iterator[Block]:

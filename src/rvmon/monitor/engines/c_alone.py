@@ -18,13 +18,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cache import cache_folder, files_told, is_whole, keep, read_kept
+from rvmon.monitor.missing import names_read
 from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.recording import FileRecording
 from rvmon.spec.plain_data import stored
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled_spec import CompiledSpec
     from rvmon.readers.source import Source
+    from rvmon.spec.checked import CheckedSpec
 
 _MOST_BYTES = 1 << 20
 """Of larger files the arrays cost less than to read what the program prints."""
@@ -45,8 +48,7 @@ def judged_by_program(compiled: CompiledSpec, source: Source, only: Sequence[str
         NotPlainError: the recording, or the place, is none for a program.
         RvmonError: there is no compiler, or a requirement is beyond generated code.
     """
-    path = getattr(source.recording, "path", "")
-    _expect_plain(source, path)
+    path = _plain_path(compiled.checked, source, only)
     folder = cache_folder()
     if folder is None:
         raise NotPlainError("there is no cache to keep a program in")
@@ -65,10 +67,16 @@ def judged_by_program(compiled: CompiledSpec, source: Source, only: Sequence[str
     return replace(Report.from_json(_printed(program, path)), trace="", health=())
 
 
-def _expect_plain(source: Source, path: str) -> None:
-    """Refuse at sight what the program would leave."""
+def _plain_path(checked: CheckedSpec, source: Source, only: Sequence[str] | None) -> str:
+    """The path of a recording that says all that is read, as the program reads it."""
+    recording = source.recording
+    if not isinstance(recording, FileRecording) or recording.is_told_otherwise:
+        raise NotPlainError("it is told otherwise than the program reads")
     if source.row_by_row or source.until is not None or not hasattr(os, "posix_spawn"):
         raise NotPlainError("it is read by this process")
+    if not names_read(checked, only).keys() <= (recording.names or frozenset()):
+        raise NotPlainError("it lacks names")
+    path = recording.path
     if not (path.endswith(".csv") and path.isascii() and path.isprintable()):
         raise NotPlainError("it is no CSV file")
     try:
@@ -77,6 +85,7 @@ def _expect_plain(source: Source, path: str) -> None:
         raise NotPlainError("it cannot be read") from None
     if not stat.S_ISREG(found.st_mode) or found.st_size > _MOST_BYTES:
         raise NotPlainError("it is no file, or a long one")
+    return path
 
 
 def _printed(program: Path, path: str) -> bytes:

@@ -118,12 +118,31 @@ def test_what_is_chosen_and_overridden_counts(folder, capfd, by_arrays):
     assert not by_arrays
 
 
-@pytest.mark.parametrize("more", [["--until", "3"], ["x.csv"], ["--robustness"]], ids=" ".join)
-def test_a_program_judges_one_whole_recording(folder, by_arrays, more):
-    """Several are judged by arrays, and so is what is cut."""
-    (folder / "x.csv").write_text(PLAIN)
+@pytest.mark.parametrize(
+    "more",
+    [
+        ["--until", "3"],
+        ["x.csv"],
+        ["--robustness"],
+        ["--map", "parts=other"],
+        ["--time", "t:ms"],
+        ["--nan", "no-update"],
+    ],
+    ids=" ".join,
+)
+def test_a_program_judges_one_whole_recording_as_it_is(folder, by_arrays, capfd, more):
+    """Several are judged by arrays, and so is what is cut, or to be read otherwise."""
+    (folder / "x.csv").write_text(PLAIN.replace("\n", ",1\n").replace(",1\n", ",other\n", 1))
     main([*COMMAND[:3], *more, *COMMAND[3:]])
     assert by_arrays
+
+
+def test_a_name_that_may_be_missing_is_left_to_arrays(folder, by_arrays, capfd):
+    """The program knows of no sources."""
+    (folder / "x.csv").write_text("t,closed,knock\n0,1,1\n9,1,0\n")
+    assert main([*COMMAND, "--allow-missing"]) == 1
+    assert by_arrays
+    assert json.loads(capfd.readouterr().out)["requirements"]["D2"]["verdict"] == "I"
 
 
 def test_a_damaged_program_is_made_anew(folder, monkeypatch, by_arrays):
