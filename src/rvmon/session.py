@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rvmon.codegen.unit_plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
-    from rvmon.monitor.engines.choice import Choice
+    from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness import RobustnessMonitor
     from rvmon.monitor.robustness_values import Margins
     from rvmon.readers.reading import Reading, ReadingArguments, Telling
@@ -104,7 +104,7 @@ class Spec:
 
         return CompiledSpec(self.checked)
 
-    def engines(self, *, only: Iterable[str] | None = None) -> Mapping[str, Choice]:
+    def engines(self, *, only: Iterable[str] | None = None) -> Mapping[str, EngineChoice]:
         r"""Which engine `auto` takes for each requirement, online and for recordings, and why.
 
         Args:

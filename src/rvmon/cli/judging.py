@@ -122,8 +122,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     """
     before: list[Attempt] = []
     try:
-        again = can_be_read_again(trace)
-        if not again and trace.endswith((".csv", ".parquet")):
+        if trace.endswith((".csv", ".parquet")) and not can_be_read_again(trace):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
         recording = opened(spec, trace)
         if options.strict_columns:

@@ -7,13 +7,13 @@ from dataclasses import asdict
 from typing import Any
 
 from rvmon.diagnostics.shown import shown_line
-from rvmon.monitor.engines.choice import Choice
+from rvmon.monitor.engines.choice import EngineChoice
 from rvmon.report.plain_table import plain_table
 
 _HEAD = ("", "online", "recording", "why not another")
 
 
-def engines_text(choices: Mapping[str, Choice]) -> str:
+def engines_text(choices: Mapping[str, EngineChoice]) -> str:
     """A line per requirement: what `auto` takes, and what faster engines and `c` refuse.
 
     Args:
@@ -26,7 +26,7 @@ def engines_text(choices: Mapping[str, Choice]) -> str:
     return plain_table([_HEAD, *rows])
 
 
-def _why(choice: Choice) -> str:
+def _why(choice: EngineChoice) -> str:
     """The engines by what they refuse."""
     by_reason: dict[str, list[str]] = {}
     for name, refusal in choice.refused.items():
@@ -35,7 +35,7 @@ def _why(choice: Choice) -> str:
     return shown_line("; ".join(told))
 
 
-def engines_data(choices: Mapping[str, Choice]) -> dict[str, Any]:
+def engines_data(choices: Mapping[str, EngineChoice]) -> dict[str, Any]:
     """The same as plain data.
 
     Args:

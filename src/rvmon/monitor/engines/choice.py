@@ -11,7 +11,7 @@ from rvmon.monitor.engines.refusal import Refusal
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class EngineChoice:
     """What `auto` takes for a requirement.
 
     Attributes:
@@ -25,7 +25,7 @@ class Choice:
     refused: Mapping[str, Refusal]
 
 
-def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, Choice]:
+def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineChoice]:
     """What `auto` takes, by id.
 
     Never `c`, which needs a compiler and gives no reasons: what refuses it is told for those who
@@ -37,11 +37,11 @@ def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, Choice]
     return {one.requirement.id: _choice(one, len(requirements)) for one in requirements}
 
 
-def _choice(one: CompiledRequirement, count: int) -> Choice:
+def _choice(one: CompiledRequirement, count: int) -> EngineChoice:
     online, refused = _online(one, count)
     of_columns, of_c = refusal.of_columns(one), refusal.of_c(one)
     told = {"columns": of_columns, **refused, "c": of_c}
-    return Choice(
+    return EngineChoice(
         online,
         "columns" if of_columns is None else online,
         {name: reason for name, reason in told.items() if reason is not None},
