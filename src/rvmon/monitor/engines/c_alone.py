@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rvmon.readers.source import Source
     from rvmon.spec.checked import CheckedSpec
 
-_MOST_BYTES = 1 << 20
+_MOST_BYTES = 1 << 17
 """Of larger files the arrays cost less than to read what the program prints."""
 
 _JUDGED = (0, 1)
