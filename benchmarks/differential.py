@@ -22,7 +22,7 @@ from tests.tools.features import Feature, possible
 
 from rvmon.errors import RvmonError
 from rvmon.execute.parallel import execute
-from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.forms import FORMS, INTERRUPT, NEXT, Compiler, Maker
 from rvmon.testing.generate_spec import Profile

@@ -49,15 +49,7 @@ def program() -> int:
     # NumPy's algebra, of which nothing is used, would start a thread per core.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(_MANY)
-    try:
-        from rvmon.cli.at_once import judged_at_once
-
-        with interrupted_by_sigterm():
-            code = judged_at_once(sys.argv[1:])
-    except KeyboardInterrupt:
-        return _interrupted()
-    if code is None:
-        code = main()
+    code = main()
     gc.freeze()  # what is left goes with the process: it is not searched once more
     return code
 

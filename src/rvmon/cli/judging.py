@@ -7,15 +7,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from rvmon.cli.post_analysis import can_be_read_again, post_analysis
+from rvmon.cli.post_analysis import post_analysis
 from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
-from rvmon.readers.recording import FileRecording
+from rvmon.monitor.missing import expect_names
+from rvmon.readers.recording import FileRecording, can_be_read_again
+from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
@@ -91,74 +92,51 @@ def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) ->
             yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
 
 
-@dataclass(frozen=True, slots=True)
-class _Cut:
-    """The samples of a recording up to an instant; it can be read once."""
-
-    samples: Iterator[Sample]
-    names: frozenset[str] | None
-    end: int | None
-
-    def __iter__(self) -> Iterator[Sample]:
-        return self.samples
-
-
 def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
     """Judge one recording; if it is broken, what was decided before the break stays decided.
 
     Args:
         spec: reads as the options say.
-        trace: a path.
+        trace: the path.
         options: how to judge.
-        is_alone: whether it is the only one, so that a bar shows how far it is read.
+        is_alone: whether this process judges nothing else.
     """
     before: list[Attempt] = []
     try:
-        again = can_be_read_again(trace)
-        if not again and trace.endswith((".csv", ".parquet")):
+        if trace.endswith((".csv", ".parquet")) and not can_be_read_again(trace):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
-        ordered = spec.checked.max_delay is None
         recording = opened(spec, trace)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
-        missing = spec.expect_names(
-            recording, only=options.only, allow_missing=options.allow_missing
+        missing = expect_names(
+            spec.checked,
+            recording,
+            spec.schema.columns,
+            only=options.only,
+            allowed=options.allow_missing,
         )
         end = None if options.until is None else ticks_of_seconds(options.until)
-        report = None
-        meter = None
-        if again and not options.robustness:
-            report = spec.evaluate_file(
-                trace,
-                engine=options.engine,
-                only=options.only,
-                until=options.until,
-                cut=True,
-                ignored=recording.ignored,
+        meter = _Meter(spec, options.only, recording.names, end) if options.robustness else None
+        source = Source(
+            recording,
+            end,
+            is_cut=True,
+            row_by_row="" if meter is None else "robustness is found sample by sample",
+            read=meter.reading if meter else shown_while_reading if is_alone else iter,
+            is_alone=is_alone,
+        )
+        try:
+            report = spec.judge(
+                source, engine=options.engine, only=options.only, decided=before.extend
             )
-        if report is None:
-            samples = shown_while_reading(recording) if is_alone else iter(recording)
-            samples = _up_to(end, samples, ordered=ordered)
-            if options.robustness:
-                meter = _Meter(spec, options.only, recording.names)
-                samples = meter.seeing(samples)
-            if options.engine == "c":
-                cut = _Cut(samples, recording.names, end)
-                report = spec.evaluate(cut, engine="c", only=options.only)
-            else:
-                monitor = spec.monitor(
-                    only=options.only, engine=options.engine, sources=recording.names
-                )
-                for sample in samples:
-                    before.extend(monitor.step_ns(sample.t, sample.values))
-                report = monitor.finish_ns(end)
+        except TraceError:
+            before = before or _judged_before(spec, trace, options)
+            raise
         if meter is not None:
-            report = meter.told(report, end)
+            report = meter.told(report)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
-        if options.engine == "c" and can_be_read_again(trace):
-            before = _judged_before(spec, trace, options)
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(_shown(trace), None, tuple(before), place + message)
@@ -169,8 +147,10 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
 
 
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
-    """What is decided up to the place where a recording breaks off."""
+    """What is decided up to the place where a recording breaks off that can be read again."""
     found: list[Attempt] = []
+    if not can_be_read_again(trace):
+        return found
     with suppress(TraceError):
         recording = opened(spec, trace)
         monitor = spec.monitor(only=options.only, sources=recording.names)
@@ -183,33 +163,30 @@ class _Meter:
     """Finds the robustness of attempts while their samples go by."""
 
     def __init__(
-        self, spec: Spec, only: tuple[str, ...] | None, names: frozenset[str] | None
+        self,
+        spec: Spec,
+        only: tuple[str, ...] | None,
+        names: frozenset[str] | None,
+        end: int | None,
     ) -> None:
+        self._end = end
         self._monitor = spec.robustness_monitor(only=only, sources=names)
         self._found: list[Measured] = []
 
-    def seeing(self, samples: Iterator[Sample]) -> Iterator[Sample]:
-        """The same samples, each measured once it was judged."""
-        for sample in samples:
+    def reading(self, recording: FileRecording) -> Iterator[Sample]:
+        """The samples, each measured once it was judged."""
+        for sample in shown_while_reading(recording):
             yield sample
-            self._found.extend(self._monitor.step_ns(sample.t, sample.values))
+            if self._end is None or sample.t <= self._end:
+                self._found.extend(self._monitor.step_ns(sample.t, sample.values))
 
-    def told(self, report: Report, end: int | None) -> Report:
+    def told(self, report: Report) -> Report:
         """The report with a figure for each attempt."""
-        self._found.extend(self._monitor.finish_ns(end))
+        self._found.extend(self._monitor.finish_ns(self._end))
         from rvmon.monitor.robustness_values import margins_from
 
         margins = margins_from(self._found)
         return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))
-
-
-def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iterator[Sample]:
-    """The samples up to an instant (ticks); what comes behind the first later one may be broken."""
-    if end is None:
-        return samples
-    if ordered:
-        return takewhile(lambda sample: sample.t <= end, samples)
-    return (sample for sample in samples if sample.t <= end)
 
 
 def _shown(trace: str) -> str:

@@ -20,6 +20,7 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.monitor.engines.registry import ENGINES
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
@@ -60,7 +61,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--engine",
         metavar="NAME",
         default="auto",
-        help="how to judge: auto (default), python, automaton, progression, network, or c: "
+        help=f"how to judge: auto (default), {', '.join(ENGINES[1:-1])}, or c: "
         "compiled by the C compiler that is installed, without reasons",
     )
     parser.add_argument(

@@ -10,8 +10,9 @@ from rvmon.automaton.machine import INFINITY, Machine
 from rvmon.codegen.python_unit import unit_class
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.monitor.attempt_judge import AttemptJudge, Open
-from rvmon.monitor.codegen_support import can_feed, plan_requirements
+from rvmon.monitor.codegen_support import plan_requirements
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.engines.choice import judged_by
 from rvmon.monitor.generated_records import GeneratedRecords, Hearing, UnitStanding
 from rvmon.monitor.lanes import Lanes, judge_of
 from rvmon.monitor.ledger import Ledger
@@ -40,6 +41,7 @@ class Forms:
         plan: of `requirements`.
         unit: the generated class.
         machines: per requirement, what judges its attempts; `None`: a judge.
+        judged_by: the engines that judge them.
 
     Args:
         compiled: the specification.
@@ -53,8 +55,9 @@ class Forms:
         requirements: Sequence[CompiledRequirement],
         sources: frozenset[str] | None,
     ) -> None:
-        self.requirements = [one for one in requirements if can_feed(one)]
-        self.others = [one for one in requirements if not can_feed(one)]
+        self.judged_by = judged_by(requirements)
+        self.requirements = [one for one in requirements if one.is_fed]
+        self.others = [one for one in requirements if not one.is_fed]
         self.plan = plan_requirements(compiled, self.requirements)
         self.unit = unit_class(self.plan, sources)
         self.machines: list[Machine | None] = [
@@ -247,6 +250,7 @@ class GeneratedMonitor(Monitor):
         names = {*compiled.checked.signals, *compiled.checked.events}
         absent = frozenset() if sources is None else frozenset(names - sources)
         self._forms = forms
+        self.judged_by = forms.judged_by
         self._unit = forms.unit(forms.machines, absent)
         super().__init__(compiled, requirements, engine, settle, sources, keep)
         self._by_unit = not forms.others and self._intake is None

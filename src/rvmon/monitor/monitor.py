@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
 from rvmon.automaton.machine import INFINITY
@@ -43,6 +43,9 @@ class Monitor:
 
     Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
     methods that end in `_ns`.
+
+    Attributes:
+        judged_by: the engines that judge its requirements, as its report says them.
     """
 
     STATE: tuple[str, ...] = (
@@ -54,6 +57,8 @@ class Monitor:
         "_last",
         "_reached",
     )
+
+    judged_by = ""
 
     def __init__(
         self,
@@ -301,7 +306,8 @@ class Monitor:
             t_ns = self._taken_time(t_ns)
         for sample in () if self._intake is None else self._intake.close():
             self._judge(sample.t, sample.values)
-        self._report, decided = self._conclude(t_ns)
+        report, decided = self._conclude(t_ns)
+        self._report = replace(report, engine=self.judged_by)
         return self._report, decided
 
     def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:

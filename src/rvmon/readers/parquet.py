@@ -125,7 +125,7 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
     layout = parquet_layout(path, schema)
     columns = layout.columns
     if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
-        raise NotPlainError
+        raise NotPlainError("a column holds no numbers or truth values")
     last = -TIME_LIMIT
     held: dict[str, Any] = {}
     for stamps, *batch in _batches(path, layout):

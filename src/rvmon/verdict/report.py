@@ -34,6 +34,8 @@ class Report:
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
         law: version of the law that judged; a report that was kept may be of an older one.
+        engine: the engines that judged, the fastest first; no part of what was judged, and so
+            neither compared nor written down.
         dropped: by requirement, how many of its attempts were not kept, by verdict; verdicts and
             counts speak of them as well.
     """
@@ -50,6 +52,7 @@ class Report:
     goals: Mapping[str, Verdict] = field(default_factory=dict)
     law: int = LAW
     dropped: Mapping[str, Mapping[Verdict, int]] = field(default_factory=dict)
+    engine: str = field(default="", compare=False)
     _kinds: dict[tuple[str, Verdict], list[Attempt]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )

@@ -9,9 +9,9 @@ import rvmon
 from rvmon.cli.judging import Options, judge
 from rvmon.cli.post_analysis import in_order
 from rvmon.explain.nearest_miss import nearest_miss, read_as_values
-from rvmon.monitor import batch_file
-from rvmon.readers.blocks import Block
+from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.changes import Changes
+from rvmon.readers.recording import FileRecording
 from rvmon.trace.sample import Sample
 
 HEAD = """
@@ -112,7 +112,11 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     )
     spec = rvmon.loads(text)
     by_columns = [judge(spec, trace, Options(until=until)).report for trace in traces]
-    monkeypatch.setattr(batch_file, "evaluate_file", lambda *_, **__: None)
+
+    def refuse(*_):
+        raise NotPlainError
+
+    monkeypatch.setattr(FileRecording, "blocks", refuse)
     by_samples = [judge(spec, trace, Options(until=until)).report for trace in traces]
     assert by_columns == by_samples
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
@@ -138,8 +142,6 @@ def test_rows_that_repeat_are_left_out():
 
 def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
     """However many requirements failed or were silent, a file is read once again; each is told."""
-    from rvmon.readers import block_readers
-
     pairs = range(6)
     text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
     for n in range(30):
@@ -153,12 +155,12 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
     path = tmp_path / "a.csv"
     path.write_text("\n".join(rows) + "\n")
     opened = []
-    reader_of = block_readers.reader_of
+    blocks = FileRecording.blocks
     monkeypatch.setattr(
-        block_readers, "reader_of", lambda *given: opened.append(given) or reader_of(*given)
+        FileRecording, "blocks", lambda *given: opened.append(given) or blocks(*given)
     )
     report = judge(rvmon.loads(text), str(path), Options()).report
-    assert len(opened) == 1
+    assert len(opened) == 2  # to judge, and once again
     assert {name: dict(found) for name, found in report.late.items()} == {
         f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
     }

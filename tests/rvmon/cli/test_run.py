@@ -11,7 +11,7 @@ import pytest
 
 from rvmon.cli import judging, main
 from rvmon.cli.judging import judge
-from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.engines.registry import ENGINES
 from rvmon.verdict.report import Report
 
 SPEC = """
@@ -105,7 +105,7 @@ def test_help_names_the_engines(capsys):
     """All that --engine takes."""
     assert main(["run", "--help"]) == 0
     shown = " ".join(capsys.readouterr().out.split())
-    assert f"how to judge: auto (default), {', '.join(ENGINES[1:])}, or c:" in shown
+    assert f"how to judge: auto (default), {', '.join(ENGINES[1:-1])}, or c:" in shown
 
 
 def test_many_recordings_are_counted(files, capsys):
@@ -175,6 +175,15 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys, engine):
     assert "cut.csv: line 6: column `closed`: `maybe`" in told
     assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
     assert "Traceback" not in told
+
+
+def test_a_recording_that_is_refused_has_nothing_judged_before(files, capsys):
+    """What lacks a name is not judged up to its end."""
+    (files / "lacks.csv").write_text("t,knock\n0,1\n5,1\n")
+    assert main(["run", "door.rv", "lacks.csv", "--format", "json"]) == 2
+    shown = capsys.readouterr()
+    assert "there is no column for what requirements read" in shown.err
+    assert json.loads(shown.out)["judged_before"] == {}
 
 
 def test_a_broken_recording_is_an_entry_in_json(files, capsys):

@@ -6,7 +6,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import RvmonError, TraceError
-from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.verdict.report import Report
 
 SPEC = """
