@@ -199,8 +199,17 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
     assert "Partial: interrupted" in (tmp_path / "report.html").read_text()
 
 
-_PROGRAM = "import sys; from handover.cli import main; print(flush=True); sys.exit(main())"
-"""Says when it begins: nobody answers for an interrupt while Python itself starts."""
+_PROGRAM = """
+import sys
+from handover import cli
+parser = cli._parser
+def said():
+    print(flush=True)
+    return parser()
+cli._parser = said
+sys.exit(cli.main())
+"""
+"""Says when it has begun: nobody answers for an interrupt while Python itself starts."""
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.3, 0.9])
