@@ -146,8 +146,7 @@ class ConeWriter:
             name: of the signal.
             quiet: the condition under which nothing but a new value can change anything.
         """
-        if self.plan.knowers(name) or len(self.plan.readers(name)) > 1:
-            quiet += f" and self.last{self.plan.signals.index(name)} is not MISSING"
+        quiet += f" and self.last{self.plan.signals.index(name)} is not MISSING"
         if not self.joins:
             return quiet
         cone = bits(tuple(self._cone_of(name)))
@@ -205,12 +204,14 @@ class ConeWriter:
         """Give a node its value; if that is another one, go on with those behind it."""
         place = node.place
         lines, value = written[place]
-        yield from lines
-        yield f"if v[{place}] != {value}:"
         onward = (f"moved{place} = True",) if place in asked else ()
-        yield from indented(self.visit.changed(place, value, onward))
+        lines = [*lines, f"if v[{place}] != {value}:"]
+        lines += indented(self.visit.changed(place, value, onward))
         for other in node.behind:
-            yield from indented(self._then(other, written, asked))
+            lines += indented(self._then(other, written, asked))
+        if pending := self.nodes.pending(place):
+            yield f"if {pending}:"
+        yield from indented(lines, bool(pending))
 
     def _above(self, place: int) -> list[int]:
         """A node and those whose value depends on it, in order."""

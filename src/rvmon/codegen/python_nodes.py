@@ -160,11 +160,11 @@ class NodeWriter:
                 assert_never(state.op)
 
     def pending(self, place: int) -> str:
-        """A further condition under which a node may change; empty if there is none."""
+        """The condition under which a node may change at all; empty if there is none."""
         graph = self.plan.graph
         state = graph.nodes[place]
         lasts = _is_latch(state) and graph.nodes[graph.operands[place][0]].leaf == Constant(True)
-        return f" and v[{place}] != 2" if lasts else ""
+        return f"v[{place}] != 2" if lasts else ""
 
     def value(self, place: int) -> str:
         """A node as an operand."""

@@ -126,8 +126,13 @@ class ValueWriter:
             yield f"if {variable} is None:"
             yield f"    self.clerk.lost({signal}, t, 'none')"
             yield from self._found(name)
-        known = variable if given else f"MISSING if {variable} is None else {variable}"
-        yield f"self.last{signal} = {known}"
+        last = variable if given else f"MISSING if {variable} is None else {variable}"
+        yield from self.replaced(variable, name, last)
+
+    def replaced(self, variable: str, name: str, last: str) -> Iterator[str]:
+        """Keep another value of a signal; if it was known before and is, nothing else is done."""
+        signal = self.plan.signals.index(name)
+        yield f"self.last{signal} = {last}"
         yield f"s[{signal}] = {variable}"
 
     def tells_birth(self, name: str) -> bool:
