@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Container, Iterable, Mapping
+from copy import copy
 from heapq import heappop, heappush
-from typing import assert_never
+from typing import Any, assert_never
 
 from rvmon.dataflow.graph import Graph
 from rvmon.dataflow.inputs import Inputs, Reported
@@ -341,13 +342,15 @@ class Flow:
             self._wakes.pop(place, None)
 
 
-def _copy_memory(source: object, target: object) -> None:
-    for name in type(target).__slots__:  # type: ignore[attr-defined]
+def _copy_memory(source: Any, target: Any) -> None:
+    for name in target.STATE:
         one = getattr(source, name)
-        if hasattr(type(one), "__slots__"):
-            _copy_memory(one, getattr(target, name))
-        else:
-            setattr(target, name, deque(map(list, one)) if isinstance(one, deque) else one)
+        if isinstance(one, deque):
+            one = deque(map(list, one))
+        elif hasattr(one, "STATE"):
+            one = copy(one)
+            _copy_memory(getattr(source, name), one)
+        setattr(target, name, one)
 
 
 def _remembered(node: object) -> tuple[object, ...]:
