@@ -31,9 +31,10 @@ _AUTOMATA = tuple(
     f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
 _PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
-_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "table"))
+_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "schedule", "table"))
 _RUNTIME = tuple(
-    f"runtime/{name}.py" for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
+    f"runtime/{name}.py"
+    for name in ("bulk", "nodes", "past", "rule", "schedule", "solo", "table", "unit")
 )
 _GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "generated_records"))
 

@@ -276,8 +276,7 @@ class Lanes:
                 self._seat(lane, compiled, captured, instance)
                 self.roster.opened(own, value, lane)
             else:
-                lane.since = NEVER
-                self._judge(compiled, lane, captured, instance)
+                self._judge(compiled, lane, captured, instance, captive=True)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
                 parent = next(parents, self.main)
                 if compared := self._compared(parent, compiled, captured, instance):
@@ -295,6 +294,8 @@ class Lanes:
         lane: Lane,
         captured: Captured,
         instance: Instance | None,
+        *,
+        captive: bool = False,
     ) -> AttemptJudge:
         judge = judge_of(
             compiled,
@@ -305,6 +306,7 @@ class Lanes:
             rank=0 if instance is None else instance.rank,
             hidden=compiled is not self._by_id[compiled.requirement.id],
             doubted=_is_doubted(instance),
+            captive=captive,
         )
         lane.add_judge(judge)
         return judge
@@ -389,18 +391,16 @@ class Lanes:
         graph = compiled.consequent_graph
         if _looks_back(compiled, parent.flow.graph):
             lane = Lane(self._flow(graph, own), (compiled, own))
-            lane.since = NEVER
             if lapses:
                 lane.flow.cut_at(t)
-            judge = self._judge(compiled, lane, own, instance)
+            judge = self._judge(compiled, lane, own, instance, captive=True)
             self._replay(lane, instance)
             lane.through(t)
         else:
             lane = Lane(parent.flow.fork(graph, own), (compiled, own))
-            lane.since = NEVER
             if lapses:
                 lane.flow.cut_at(t)
-            judge = self._judge(compiled, lane, own, instance)
+            judge = self._judge(compiled, lane, own, instance, captive=True)
         if compared is not None:
             compared.follow(lane)
         return lane, judge, compared
