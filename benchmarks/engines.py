@@ -31,10 +31,10 @@ _AUTOMATA = tuple(
     f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
 _PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
-_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "schedule", "table"))
+_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "schedule", "table", "values"))
 _RUNTIME = tuple(
     f"runtime/{name}.py"
-    for name in ("bulk", "nodes", "past", "rule", "schedule", "solo", "table", "unit")
+    for name in ("bulk", "nodes", "past", "rule", "schedule", "solo", "table", "unit", "values")
 )
 _GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "generated_records"))
 

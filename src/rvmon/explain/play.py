@@ -14,7 +14,8 @@ from rvmon.monitor.lane import Lane
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
-from rvmon.runtime.table import NEVER, next_cut
+from rvmon.runtime.table import next_cut
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Sample
 from rvmon.verdict.assemble import report_of
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from rvmon.runtime.values import FALSE as FALSE
+from rvmon.runtime.values import TRUE as TRUE
+from rvmon.runtime.values import UNKNOWN as UNKNOWN
 from rvmon.spec.checked import BoundAtom, Compare, Constant, EventAtom, ProbeAtom, SignalAtom
-
-FALSE, UNKNOWN, TRUE = 0, 1, 2
-"""Kleene's truth values: `and` is the minimum, `or` the maximum, `not` is 2 − x."""
 
 UNBORN = 3
 """In the place of the truth of an atom that is not born; no state formula has it."""

@@ -19,8 +19,8 @@ from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.one_call import overlap
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
-from rvmon.runtime.table import NEVER
 from rvmon.runtime.unit import Unit
+from rvmon.runtime.values import NEVER
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt

@@ -16,7 +16,7 @@ from rvmon.monitor.attempt_judge import AttemptJudge
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.schedule import Schedule
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TIME_LIMIT
 

@@ -20,7 +20,7 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.roster import Roster
 from rvmon.runtime.rule import Rule
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked import CheckedSpec, Mode, TimeModel
 from rvmon.trace.sample import Scalar, Value
 

@@ -15,7 +15,7 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.one_call import OneCall
 from rvmon.monitor.retention import Kept
 from rvmon.monitor.validate import Validator
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked import TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks

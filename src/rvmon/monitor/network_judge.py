@@ -22,7 +22,7 @@ from rvmon.formula.core import Constant, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
 
 WAITING = PASSED + 1

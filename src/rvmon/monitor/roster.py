@@ -9,7 +9,7 @@ from rvmon.errors import TraceError
 from rvmon.monitor.instances import Instance, seen_by
 from rvmon.monitor.keyed import MOST_OPEN, Keyed
 from rvmon.monitor.lane import Lane
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.time import format_ticks
 

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.table import (
     BARE,
-    FAILED,
     FRESH,
-    NEVER,
-    PASSED,
     next_cut,
     run,
     settle,
 )
+from rvmon.runtime.values import FAILED, FALSE, NEVER, PASSED, TRUE, UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,8 +20,6 @@ if TYPE_CHECKING:
     from rvmon.runtime.table import Token
 
     Drive = Callable[[Token, int], tuple[Token, int]]
-
-FALSE, UNKNOWN, TRUE = 0, 1, 2
 
 
 class Rule:

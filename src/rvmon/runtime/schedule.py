@@ -5,7 +5,7 @@ from __future__ import annotations
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING, Any
 
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

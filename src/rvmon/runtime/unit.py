@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.nodes import LIMIT, Nodes
 from rvmon.runtime.schedule import Schedule
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

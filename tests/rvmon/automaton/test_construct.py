@@ -13,7 +13,8 @@ from rvmon.automaton.table import TableMachine
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.runtime.table import NEVER, run
+from rvmon.runtime.table import run
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked import SignalAtom
 from rvmon.testing.build import always, eventually, no, p, q, r, requirement, two
 
