@@ -31,10 +31,23 @@ _AUTOMATA = tuple(
     f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
 _PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
-_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "schedule", "table", "values"))
+_DRIVEN = tuple(
+    f"runtime/{name}.py" for name in ("past", "rule", "schedule", "starts", "table", "values")
+)
 _RUNTIME = tuple(
     f"runtime/{name}.py"
-    for name in ("bulk", "nodes", "past", "rule", "schedule", "solo", "table", "unit", "values")
+    for name in (
+        "bulk",
+        "nodes",
+        "past",
+        "rule",
+        "schedule",
+        "solo",
+        "starts",
+        "table",
+        "unit",
+        "values",
+    )
 )
 _GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "generated_records"))
 

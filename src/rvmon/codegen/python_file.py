@@ -18,6 +18,7 @@ _RUNTIME = (
     "values",
     "past",
     "table",
+    "starts",
     "rule",
     "solo",
     "bulk",

@@ -13,7 +13,8 @@ from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.codegen_support import can_feed, plan_requirements
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.generated_records import GeneratedRecords, Hearing, UnitStanding
-from rvmon.monitor.lanes import Lanes, judge_of
+from rvmon.monitor.judges import judge_of
+from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.one_call import overlap
