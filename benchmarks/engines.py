@@ -31,9 +31,23 @@ _AUTOMATA = tuple(
     f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
 _PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
-_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "table"))
+_DRIVEN = tuple(
+    f"runtime/{name}.py" for name in ("past", "rule", "schedule", "starts", "table", "values")
+)
 _RUNTIME = tuple(
-    f"runtime/{name}.py" for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
+    f"runtime/{name}.py"
+    for name in (
+        "bulk",
+        "nodes",
+        "past",
+        "rule",
+        "schedule",
+        "solo",
+        "starts",
+        "table",
+        "unit",
+        "values",
+    )
 )
 _GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "generated_records"))
 

@@ -1,16 +1,13 @@
 """Mutations that change no behaviour, with the reason; `benchmarks.mutants` draws others."""
 
 EQUIVALENT = {
-    "stretch.py off by one: `position - 1` => `position`": (
-        "time passes up to the position before its letter is read, here or in the step itself"
-    ),
     "table.py off by one: `position - 1` => `position`": (
-        "the same in generated code, which has its own `run`"
+        "time passes up to the position before its letter is read, here or in the step itself"
     ),
     "python_source.py dropped operand: `name in uses and uses[name].history` => `name in uses`": (
         "what was before is kept of more signals, and nobody asks for it"
     ),
-    "judge.py constant: `self.restless = False` => `self.restless = (True)`": (
+    "rule.py constant: `self.restless = False` => `self.restless = (True)`": (
         "a restless judge is only visited more often"
     ),
     "residual.py and/or: `left == right or not right` => `left == right and (not right)`": (
@@ -47,22 +44,13 @@ EQUIVALENT = {
     "residual.py and/or: `left == right or right == HOLDS` => `left == right and right == HOLDS`": (
         "only a short cut to what the reduction finds"
     ),
-    "numbers.py dropped operand: `slot.updates == 2 and slot.value is not None` => "
-    "`slot.value is not None`": "after one update there is no value before it anyway",
-    "stretch.py dropped statement: `break` => `pass`": "the cuts behind it are later ones",
     "factory.py off by one: `self._count - 1` => `self._count`": "numbers only have to differ",
     "reduce.py negated condition: `cut < len(place.cuts[clock])` => "
     "`not cut < len(place.cuts[clock])`": "the automaton stays larger than need be",
-    "lane.py off by one: `self.flow.next_change + 1` => `self.flow.next_change`": (
-        "`next_due` may name an instant too early"
-    ),
-    "judge.py operator: `self.position + gap` => `self.position - gap`": (
-        "`next_due` may name an instant too early"
-    ),
-    "since.py operator: `start - self.gap` => `start + self.gap`": (
+    "past.py operator: `start - self.gap` => `start + self.gap`": (
         "stretches that touch are kept apart: more of them, for the same instants"
     ),
-    "inputs.py constant: `self.updates = 1 if first else 2` => "
+    "past.py constant: `self.updates = 1 if first else 2` => "
     "`self.updates = (2) if first else 2`": "after one update there is no value before it anyway",
     "construct.py off by one: `entered[clock] + 1` => `entered[clock]`": (
         "another age of the same region, or a row for one in which no step can happen"
@@ -76,12 +64,6 @@ EQUIVALENT = {
     ),
     "residual.py dropped operand: `left == right or not right` => `not right`": (
         "only a short cut to what the reduction finds"
-    ),
-    "lane.py off by one: `self._awaited + 1` => `self._awaited`": (
-        "`next_due` may name an instant too early"
-    ),
-    "judge.py off by one: `t + 1` => `t`": (
-        "time is let pass an instant earlier, too, and `next_due` may name an instant too early"
     ),
     "network_judge.py comparison: `span < self.plan.settles` => `span <= self.plan.settles`": (
         "what is not worked out ahead is worked out when time comes there"

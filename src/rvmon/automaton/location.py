@@ -6,13 +6,9 @@ from dataclasses import dataclass
 
 from rvmon.formula.core import Release, Until
 from rvmon.formula.residual import NO_CLOCK, Residual
-
-NOW = -1
-"""As the source of a clock: it is started at the position of the step."""
-
-FAILED = 0
-PASSED = 1
-"""The locations in which an attempt is decided; they stand first in every machine."""
+from rvmon.runtime.values import FAILED as FAILED
+from rvmon.runtime.values import NOW as NOW
+from rvmon.runtime.values import PASSED as PASSED
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,6 @@ from rvmon.formula.residual import Residual
 Token = tuple[int, tuple[int, ...]]
 """Where an attempt is: its location, and for each clock the instant at which it was started."""
 
-INFINITY = 1 << 63
-"""Later than any instant."""
-
 
 class Machine(Protocol):
     """A deterministic timed monitor; tokens are values, so a machine serves any number of attempts.

@@ -14,7 +14,19 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 
-_RUNTIME = ("past", "table", "rule", "solo", "bulk", "nodes", "unit", "standalone")
+_RUNTIME = (
+    "values",
+    "past",
+    "table",
+    "starts",
+    "rule",
+    "solo",
+    "bulk",
+    "nodes",
+    "schedule",
+    "unit",
+    "standalone",
+)
 
 _HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 and nothing else.
 

@@ -9,9 +9,8 @@ from typing import assert_never
 from rvmon.codegen.python_leaves import leaf_expression
 from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import Elapsed, State, StateOp
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.formula import Constant
-
-NEVER = 1 << 63
 
 BEFORE = "before"
 """What statements call the position before."""

@@ -14,8 +14,9 @@ from rvmon.runtime.nodes import BUSY, LIMIT, MISSING
 from rvmon.runtime.past import compared, finite, number
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.solo import SoloRule
-from rvmon.runtime.table import NEVER, letter_table
+from rvmon.runtime.table import letter_table
 from rvmon.runtime.unit import Unit, closures
+from rvmon.runtime.values import NEVER
 
 
 def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from rvmon.codegen.python_nodes import NEVER, NodeWriter, Roles, bits, keeps_stretches
+from rvmon.codegen.python_nodes import NodeWriter, Roles, bits, keeps_stretches
 from rvmon.codegen.unit_plan import Plan
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import Mode
 
 _ARRAYS = (

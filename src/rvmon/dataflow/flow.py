@@ -15,7 +15,7 @@ from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.previous import Hidden, Previous
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, Leaf, State, StateOp
 from rvmon.runtime.past import Since
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.trace.sample import Scalar
 

@@ -8,7 +8,7 @@ from typing import Any
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.runtime.past import History
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Payload, Scalar, Value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rvmon.formula.state import FALSE
 from rvmon.runtime.past import doubt
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 
 
 class Previous:

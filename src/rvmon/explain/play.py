@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.location import PASSED
-from rvmon.automaton.machine import INFINITY, Machine, Token
+from rvmon.automaton.machine import Machine, Token
 from rvmon.explain.example import Example
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.judge import Judge
@@ -15,6 +15,7 @@ from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.runtime.table import next_cut
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import report_of
 
@@ -61,7 +62,7 @@ def play(
     ledger.flush()
     decided = tuple(sorted({(a.requirement, a.verdict) for a in ledger.attempts}))
     situation = (decided, *_situation(lanes, end, remembered))
-    cut = min((*_cuts(lanes, end), INFINITY))
+    cut = min((*_cuts(lanes, end), NEVER))
     lanes.finish(end, end)
     ledger.flush()
     ids = [one.requirement.id for one in requirements]

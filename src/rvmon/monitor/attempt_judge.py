@@ -101,6 +101,7 @@ class AttemptJudge(Rule):
         rank: of its instance.
         hidden: whether these are the attempts in doubt.
         doubted: whether it is not known that there is such an instance.
+        captive: whether something else starts its attempts.
 
     Attributes:
         leaves: place and text of what is read of the input.
@@ -118,12 +119,14 @@ class AttemptJudge(Rule):
         rank: int = 0,
         hidden: bool = False,
         doubted: bool = False,
+        captive: bool = False,
     ) -> None:
         self.compiled = compiled
         self.flow = flow
         self.captured = captured
         self.rank = rank
         self.doubted = doubted
+        self.captive = captive
         obligation, requirement = compiled.obligation, compiled.requirement
         # With captured values, what is FALSE where an episode is over is more than its trigger.
         self._asked = self._place_of(obligation.trigger)
@@ -156,6 +159,10 @@ class AttemptJudge(Rule):
     def leaves(self) -> tuple[tuple[int, str], ...]:
         """See the class."""
         return leaves_in(self.flow.graph, self.compiled)
+
+    def starts(self, truth: int) -> bool:
+        """See `Rule`."""
+        return (self.running or not self.captive) and super().starts(truth)
 
     @property
     def is_sure(self) -> bool:

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from rvmon.automaton.machine import INFINITY, Machine
+from rvmon.automaton.machine import Machine
 from rvmon.codegen.python_unit import unit_class
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.monitor.attempt_judge import AttemptJudge, Open
@@ -14,13 +14,15 @@ from rvmon.monitor.codegen_support import plan_requirements
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.engines.choice import judged_by
 from rvmon.monitor.generated_records import GeneratedRecords, Hearing, UnitStanding
-from rvmon.monitor.lanes import Lanes, judge_of
+from rvmon.monitor.judges import judge_of
+from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.one_call import overlap
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.unit import Unit
+from rvmon.runtime.values import NEVER
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
@@ -328,6 +330,6 @@ class GeneratedMonitor(Monitor):
         own = min(self._unit.next_position(), self._unit.next_due())
         others = super()._next_due()
         found = own if others is None else min(own, others)
-        if found >= INFINITY or self._reached is None or self._report is not None:
+        if found >= NEVER or self._reached is None or self._report is not None:
             return None
         return max(found, self._reached + 1)

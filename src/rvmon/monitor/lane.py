@@ -6,7 +6,7 @@ attempt of a requirement with `let`, has a lane of its own, because its proposit
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Protocol
 
 from rvmon.dataflow.flow import Flow
@@ -15,7 +15,8 @@ from rvmon.formula.state import TRUE
 from rvmon.monitor.attempt_judge import AttemptJudge
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.runtime.rule import Rule
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.schedule import Schedule
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TIME_LIMIT
 
@@ -27,14 +28,14 @@ class Captive(Protocol):
         """Look at the position `t`: whether to look at the next as well."""
 
 
-class Lane:
+class Lane(Schedule):
     """One flow and the requirements that read it; a sample costs what it concerns.
 
     Attributes:
         flow: evaluates the propositions of its judges.
-        judges: of the requirements in it, in the order of the file.
-        starters: the same, those of which attempts start in it; where attempts have lanes of their
-            own, what makes them.
+        judges: of its rules, those that have attempts, in the order of the file.
+        starters: of its rules, those of which attempts start in it; where attempts have lanes of
+            their own, what makes them.
         since: nothing starts in it before this instant; `NEVER`: nothing does.
         waiting: samples whose position has not come yet.
         made_for: the requirement of an instance or of a captured attempt, with its values.
@@ -42,15 +43,16 @@ class Lane:
         blurs: of such a lane, whether its values may turn out not to be known.
     """
 
-    STATE = (
-        *("flow", "judges", "starters", "since", "waiting", "_restless", "_repeating", "_failed"),
-        *("blurs", "_soonest", "_awaited"),
-    )
+    STATE = ("flow", *Schedule.STATE, "since", "waiting", "blurs")
+
+    gathered = False
 
     def __init__(
         self, flow: Flow, made_for: tuple[CompiledRequirement, Mapping[str, Scalar]] | None = None
     ) -> None:
         self.flow = flow
+        self.GAP = flow.gap
+        self.position = flow.position
         self.made_for = made_for
         self.judges: list[AttemptJudge] = []
         self.starters: list[Rule] = []
@@ -58,40 +60,39 @@ class Lane:
         self.captured: list[Captive] = []
         self.blurs = True
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
-        nodes = flow.graph.nodes
-        self._judges_at: list[list[AttemptJudge]] = [[] for _ in nodes]
-        self._asking_at: list[list[Rule]] = [[] for _ in nodes]
-        self._going_on: list[list[AttemptJudge]] = [[] for _ in nodes]
-        self._resumes = False
-        """Whether a failure may be followed by another attempt."""
+        self._concern = [(0, 0, 0) for _ in flow.graph.nodes]
+        """Per node the rules whose letter it is part of, that it triggers, and that go on with it
+        after a failure."""
         self._expected: list[CompiledRequirement] = []
-        self._failed: dict[Rule, None] = {}
-        self._restless: dict[Rule, None] = {}
-        self._repeating: dict[Rule, None] = {}
-        self._soonest = NEVER
-        """No judge is due before."""
-        self._awaited = NEVER
-        """The next position at which samples that were taken will show."""
+        self.set_up(())
 
     def add_judge(self, judge: AttemptJudge) -> None:
         """Have a requirement's attempts driven."""
         self.judges.append(judge)
+        self._add(judge)
+        bit = 1 << judge.index
         for place in judge.places:
-            self._judges_at[place].append(judge)
+            self._note_concern(place, bit, 0, 0)
         if judge.again >= 0:
-            self._resumes = True
-            self._going_on[judge.again].append(judge)
-        self._note(judge)
-        self._have_asked(judge)
+            self._note_concern(judge.again, 0, 0, bit)
 
     def add_starter(self, rule: Rule) -> None:
         """Have a requirement's attempts started."""
         self.starters.append(rule)
-        self._have_asked(rule)
+        if rule not in self.judges:
+            self._add(rule)
 
-    def _have_asked(self, rule: Rule) -> None:
-        if rule.trigger >= 0 and rule not in self._asking_at[rule.trigger]:
-            self._asking_at[rule.trigger].append(rule)
+    def _add(self, rule: Rule) -> None:
+        rule.index = len(self.rules)
+        self.rules.append(rule)
+        self.due_at.append(NEVER)
+        if rule.trigger >= 0:
+            self._note_concern(rule.trigger, 0, 1 << rule.index, 0)
+        self.note(rule)
+
+    def _note_concern(self, place: int, letters: int, triggers: int, again: int) -> None:
+        old = self._concern[place]
+        self._concern[place] = (old[0] | letters, old[1] | triggers, old[2] | again)
 
     def expect(self, compiled: CompiledRequirement) -> None:
         """Have it seen whether the trigger of a requirement is ever true or false."""
@@ -118,8 +119,7 @@ class Lane:
         return not (
             self.waiting
             or self.captured
-            or self._failed
-            or self._repeating
+            or self.repeating
             or any(judge.attempts for judge in self.judges)
             or any(rule.running for rule in self.starters)
         )
@@ -127,7 +127,7 @@ class Lane:
     @property
     def alarm(self) -> int:
         """An instant before which nothing happens in it, no sample being taken."""
-        return min(self._awaited, self.flow.next_change, self._next_start, self._soonest)
+        return min(self.next_position(), self.next_due())
 
     def twin(self, flow: Flow, captured: Mapping[str, Scalar]) -> Lane:
         """A lane for the same requirement that waits for what this one does.
@@ -137,160 +137,55 @@ class Lane:
             captured: its values.
         """
         made = Lane(flow, self.made_for and (self.made_for[0], captured))
-        made.waiting, made._awaited = list(self.waiting), self._awaited
+        made.waiting, made.awaited = list(self.waiting), self.awaited
         return made
 
-    def through(self, limit: int) -> None:
-        """Let time pass up to `limit`, positions there included, without a further sample."""
-        while True:
-            position = min(self._awaited, self.flow.next_change, self._next_start)
-            until = min(position - 1, limit)
-            # What fails may be followed by another attempt at once.
-            stop = min(until, self._soonest) if self._resumes else until
-            self._pass_to(stop)
-            starts = self._next_start < position
-            if stop < until and self._soonest <= stop and not starts:
-                raise AssertionError("what has passed is due again: no run comes to stand so")
-            if stop < until or starts:
-                continue
-            if position > limit:
-                return
-            self._visit(position)
+    def next_change(self) -> int:
+        """See `Schedule`."""
+        return self.flow.next_change
 
-    @property
-    def _next_start(self) -> int:
-        """The next position at which an attempt may start though nothing changes."""
-        gap, found = self.flow.gap, NEVER
+    def next_position(self) -> int:
+        """See `Schedule`; where events are captured, they are others behind this position."""
+        gap = self.GAP
         if gap is None:
-            return found
+            return self.awaited
+        found = min(self.awaited, self.flow.next_change, self.resume_at)
         if self.captured and self.flow.inputs.occurrences:
-            found = self.flow.position + gap  # there, what was captured of them is another
-        if self._repeating:
-            found = min(found, max(self.flow.position + gap, -(-self.since // gap) * gap))
-        for rule in self._failed:
-            late = (rule.failed_at or 0) - self.flow.position
-            found = min(found, self.flow.position + max(late // gap + 1, 1) * gap)
+            found = min(found, self.position + gap)
+        if self.repeating:
+            found = min(found, max(self.position + gap, -(-self.since // gap) * gap))
         return found
-
-    def _pass_to(self, t: int) -> None:
-        if self._soonest > t:
-            return
-        for judge in self.judges:
-            if judge.due <= t:
-                judge.pass_to(t)
-        self._look_over()
-
-    def reach(self, t: int) -> None:
-        """Let time come to `t`, of which no position is known, from `t − 1`."""
-        if self._soonest > t:
-            return
-        for judge in self.judges:
-            if judge.due <= t:
-                judge.reach(t)
-        self._look_over()
-
-    def _look_over(self) -> None:
-        soonest = NEVER
-        for judge in self.judges:  # there may be thousands, most of which nothing happened to
-            if judge.due < soonest:
-                soonest = judge.due
-            if judge.restless:
-                self._restless[judge] = None
-        self._soonest = soonest
-
-    def _note(self, judge: Rule) -> None:
-        """Remember when a judge has to be seen to, after something was done to it."""
-        self._soonest = min(self._soonest, judge.due)
-        if judge.restless:
-            self._restless[judge] = None
-        # Where it fails at once, something has to change first.
-        if judge.failed_at is not None and judge.goes_on:
-            self._failed[judge] = None
 
     def sample(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take a sample; time has come to `t − 1` before."""
-        gap = self.flow.gap or 1
+        gap = self.GAP or 1
         self.flow.inputs.hear(t, values)
         self.waiting.append((t, values))
-        self._awaited = -(-t // gap) * gap
-        if self._awaited == t:
-            self._visit(t)
+        self.awaited = -(-t // gap) * gap
+        if self.awaited == t:
+            self.visit(t)
         else:
             self.reach(t)
 
-    def _visit(self, t: int) -> None:
-        first = self.flow.origin is None
-        self._awaited = NEVER
+    def visit(self, t: int) -> None:
+        """See `Schedule`."""
+        every = 0 if self.flow.origin is not None else (1 << len(self.rules)) - 1
         for taken, values in self.waiting:
             self.flow.apply(taken, values)
         self.waiting.clear()
         changed = self.flow.evaluate(t)
+        self.position = t
+        letters = triggers = every
+        again = 0
         for place in changed:
-            for rule in self._asking_at[place]:
-                if rule.eyed:
-                    rule.look()
-        for judge in self.judges if first else self._concerned(changed, t):
-            judge.visit(t)
-            self._note(judge)
-        asked = dict(self._repeating)
-        if first:
-            asked = dict.fromkeys(self.starters)
-        for place in changed:
-            asked.update(dict.fromkeys(self._asking_at[place]))
-        for rule in asked:
-            self._ask(rule, t)
-        failed, self._failed = self._failed, {}
-        for place in changed:
-            failed.update(dict.fromkeys(self._going_on[place]))
-        for rule in failed:
-            self._go_on(rule, t)
-        self.captured = [one for one in self.captured if one.keeps(t)]
-
-    def _go_on(self, rule: Rule, t: int) -> None:
-        """Follow a failure by another attempt at the position `t`, if it is time for that."""
-        if rule.failed_at is None:
-            return
-        if t <= rule.failed_at:
-            self._failed[rule] = None
-        elif rule.goes_on:
-            self.begin(rule, t, t)
-
-    def begin(self, rule: Rule, t: int, triggered: int) -> None:
-        """Start an attempt at the position `t`, which the flow is at.
-
-        Args:
-            rule: of this lane.
-            t: ticks.
-            triggered: the instant of the trigger, which is another at the end of a trace.
-        """
-        rule.begin(t, triggered)
-        self._note(rule)
-
-    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[Rule]:
-        """The judges that have to visit the position at `t`."""
-        concerned = self._restless
-        self._restless = {}
-        for place in changed:
-            for judge in self._judges_at[place]:
-                concerned[judge] = None
-        if self._soonest <= t:
-            concerned.update((judge, None) for judge in self.judges if judge.due <= t)
-        return concerned
-
-    def _ask(self, rule: Rule, t: int) -> None:
-        """Let a rule see its trigger at the position `t`."""
-        if rule.trigger < 0:
-            return
+            own = self._concern[place]
+            letters |= own[0]
+            triggers |= own[1]
+            again |= own[2]
         if self.since == NEVER:
-            if rule.running:
-                rule.starts(self.flow.values[rule.trigger])  # what was captured ends with that
-            return
-        if rule.starts(self.flow.values[rule.trigger]):
-            self.begin(rule, t, t)
-        if rule.repeats:
-            self._repeating[rule] = None
-        else:
-            self._repeating.pop(rule, None)
+            triggers = again = 0
+        self.conclude(t, letters, again << len(self.rules) | triggers)
+        self.captured = [one for one in self.captured if one.keeps(t)]
 
     def open(self, t: int) -> None:
         """Let attempts start from `t` on, as if none had run before."""
@@ -301,7 +196,7 @@ class Lane:
                     rule.before = self.flow.values[rule.trigger]
                 rule.running = False
                 if rule.repeats:
-                    self._repeating[rule] = None
+                    self.repeating |= 1 << rule.index
 
     def stand_at_last(self, end: int) -> int:
         """Go to the last position at or before `end`, up to which time has come; returns it."""
@@ -314,8 +209,8 @@ class Lane:
         return flow.position
 
     @property
-    def next_due(self) -> int:
+    def next_decision(self) -> int:
         """The next instant at which time alone can decide an attempt or start one."""
         due = min((judge.next_due for judge in self.judges), default=NEVER)
         # What changes at an instant is known when that instant has passed.
-        return min(due, self.flow.next_change + 1, self._awaited + 1, self._next_start + 1)
+        return min(due, self.next_position() + 1)

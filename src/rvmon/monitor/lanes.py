@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs
-from rvmon.dataflow.standing import Standing
-from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.instances import Instance, seen_by, values_in
-from rvmon.monitor.judge import Judge
+from rvmon.monitor.judges import CapturingRule, judge_of
 from rvmon.monitor.keyed import Keyed
 from rvmon.monitor.lane import Lane
 from rvmon.monitor.ledger import Ledger
-from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.roster import Roster
 from rvmon.runtime.rule import Rule
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec, Mode, TimeModel
 from rvmon.trace.sample import Scalar, Value
 
 Captured = Mapping[str, Scalar]
-
-Start = Callable[[int, int], None]
-"""Starts an attempt; takes the position and the instant of the trigger."""
 
 Shape = tuple[
     list[tuple[str, list[tuple[int, Scalar, int]]]],
@@ -36,64 +30,6 @@ Shape = tuple[
 """Per requirement its instances: rank, value, first instant; per lane its requirement,
 which of its judges it has, captured values, the value of its instance, and whether attempts start
 in it."""
-
-
-def judge_of(
-    compiled: CompiledRequirement,
-    engine: str,
-    standing: Standing,
-    clerk: Clerk,
-    captured: Captured,
-    **kind: Any,
-) -> AttemptJudge:
-    """What judges the attempts of a requirement, or those of it that are in doubt.
-
-    Args:
-        compiled: as for `AttemptJudge`; so are the others.
-        engine: judges them. For those in doubt no automaton is built while a monitor runs.
-        standing: gives the truth of the propositions.
-        clerk: makes attempts and hears of decisions.
-        captured: values of `let` and `for each`.
-        **kind: `rank`, `hidden` and so on.
-    """
-    if compiled.is_beside or compiled.engine(engine) == "network":
-        return NetworkJudge(compiled, standing, clerk, captured, **kind)
-    return Judge(compiled, compiled.machine(engine), standing, clerk, captured, **kind)
-
-
-class CapturingRule(Rule):
-    """Starts the attempts of a requirement with captured values, each in a lane of its own.
-
-    Args:
-        compiled: the requirement, or what judges its attempts in doubt.
-        flow: gives the truth of its trigger.
-        start: makes the lane, and starts the attempt.
-        hidden: whether these are the attempts in doubt.
-    """
-
-    def __init__(
-        self, compiled: CompiledRequirement, flow: Flow, start: Start, *, hidden: bool
-    ) -> None:
-        trigger = compiled.obligation.trigger
-        super().__init__(
-            0,
-            None,
-            None,
-            -1 if trigger is None else flow.graph.index[trigger],
-            compiled.requirement.pulse,
-            hidden or compiled.requirement.mode is Mode.WHENEVER,
-            hidden,
-            -1,
-            -1,
-            flow.gap,
-            flow.values,
-            None,
-        )
-        self._start = start
-
-    def begin(self, t: int, triggered: int) -> None:
-        """Start an attempt at the position `t`, at which the values are."""
-        self._start(t, triggered)
 
 
 class Lanes:
@@ -276,8 +212,7 @@ class Lanes:
                 self._seat(lane, compiled, captured, instance)
                 self.roster.opened(own, value, lane)
             else:
-                lane.since = NEVER
-                self._judge(compiled, lane, captured, instance)
+                self._judge(compiled, lane, captured, instance, captive=True)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
                 parent = next(parents, self.main)
                 if compared := self._compared(parent, compiled, captured, instance):
@@ -295,6 +230,8 @@ class Lanes:
         lane: Lane,
         captured: Captured,
         instance: Instance | None,
+        *,
+        captive: bool = False,
     ) -> AttemptJudge:
         judge = judge_of(
             compiled,
@@ -305,6 +242,7 @@ class Lanes:
             rank=0 if instance is None else instance.rank,
             hidden=compiled is not self._by_id[compiled.requirement.id],
             doubted=_is_doubted(instance),
+            captive=captive,
         )
         lane.add_judge(judge)
         return judge
@@ -389,18 +327,16 @@ class Lanes:
         graph = compiled.consequent_graph
         if _looks_back(compiled, parent.flow.graph):
             lane = Lane(self._flow(graph, own), (compiled, own))
-            lane.since = NEVER
             if lapses:
                 lane.flow.cut_at(t)
-            judge = self._judge(compiled, lane, own, instance)
+            judge = self._judge(compiled, lane, own, instance, captive=True)
             self._replay(lane, instance)
             lane.through(t)
         else:
             lane = Lane(parent.flow.fork(graph, own), (compiled, own))
-            lane.since = NEVER
             if lapses:
                 lane.flow.cut_at(t)
-            judge = self._judge(compiled, lane, own, instance)
+            judge = self._judge(compiled, lane, own, instance, captive=True)
         if compared is not None:
             compared.follow(lane)
         return lane, judge, compared

@@ -73,6 +73,7 @@ class MarginJudge(AttemptJudge):
     ) -> None:
         super().__init__(compiled, None, flow, clerk, captured)
         self.trigger = self.again = -1  # the other judge starts them
+        self.watches = True
         self.inputs = flow.inputs
         self.restless = True
         self.gauger = clerk

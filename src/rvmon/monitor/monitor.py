@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
-from rvmon.automaton.machine import INFINITY
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog
@@ -16,6 +15,7 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.one_call import OneCall
 from rvmon.monitor.retention import Kept
 from rvmon.monitor.validate import Validator
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
@@ -434,5 +434,5 @@ class Monitor:
     def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:
             return None
-        found = min(lane.next_due for lane in self._lanes.all)
-        return max(found, self._reached + 1) if found < INFINITY else None
+        found = min(lane.next_decision for lane in self._lanes.all)
+        return max(found, self._reached + 1) if found < NEVER else None

@@ -8,7 +8,7 @@ from itertools import chain
 from typing import Any
 
 from rvmon.automaton.location import FAILED, PASSED
-from rvmon.automaton.machine import INFINITY, Token
+from rvmon.automaton.machine import Token
 from rvmon.dataflow.at_end import held_at_end
 from rvmon.dataflow.evaluate import Range
 from rvmon.dataflow.network import FOREVER, Network
@@ -22,6 +22,7 @@ from rvmon.formula.core import Constant, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
 
 WAITING = PASSED + 1
@@ -65,7 +66,7 @@ class NetworkJudge(AttemptJudge):
         self._letters: tuple[list[bool], list[bool]] | None = None
         self._news = FOREVER
         """The stamp at which a value that is waited for is known next, if the letter stays."""
-        self._next_decision = INFINITY
+        self._next_decision = NEVER
         self._changed = self.position
         """When the letter changed last."""
         self._span = _PATIENCE * self.plan.settles
@@ -252,16 +253,16 @@ class NetworkJudge(AttemptJudge):
 
     def _foresee(self) -> None:
         """Set when what is waited for is known next, and when that decides something."""
-        self.due, self._next_decision, self._news = INFINITY, INFINITY, FOREVER
+        self.due, self._next_decision, self._news = NEVER, NEVER, FOREVER
         for network in self._networks if self.attempts else ():
             for value, at in self._coming(network):
                 self._news = min(self._news, at)
                 if self._decides(network, value):
                     self._next_decision = min(self._next_decision, at // 2)
         self.due = min(self.due, self._news // 2)
-        if self.due == INFINITY:
+        if self.due == NEVER:
             # As far as can be seen there is nothing: look again then.
-            self.due = min([INFINITY, *(network.ahead // 2 for network in self._networks)])
+            self.due = min([NEVER, *(network.ahead // 2 for network in self._networks)])
 
     def _coming(self, network: Network) -> Iterator[tuple[bool, int]]:
         """The values that attempts will have by a network, if the letter stays, and the stamps."""

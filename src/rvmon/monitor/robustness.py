@@ -172,8 +172,10 @@ class _MeasuringLanes(Lanes):
         lane: Lane,
         captured: Captured,
         instance: Instance | None,
+        *,
+        captive: bool = False,
     ) -> AttemptJudge:
-        judge = super()._judge(compiled, lane, captured, instance)
+        judge = super()._judge(compiled, lane, captured, instance, captive=captive)
         requirement = compiled.requirement
         if compiled not in self._plans:
             self._plans[compiled] = plan_of(expanded(compiled.obligation.owed), self.gap)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from heapq import heappop, heappush
 
-from rvmon.automaton.machine import INFINITY
 from rvmon.errors import TraceError
 from rvmon.monitor.instances import Instance, seen_by
 from rvmon.monitor.keyed import MOST_OPEN, Keyed
 from rvmon.monitor.lane import Lane
+from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.time import format_ticks
 
@@ -92,14 +92,14 @@ class Roster:
     def _set_alarm(self, keyed: Keyed, value: Scalar, lane: Lane, alarm: int) -> None:
         if self._alarm_of.get(lane) != alarm:
             self._alarm_of[lane] = alarm
-            if alarm < INFINITY:
+            if alarm < NEVER:
                 self._alarms_set += 1
                 heappush(self._alarms, (alarm, self._alarms_set, keyed, value))
 
     def opened(self, keyed: Keyed, value: Scalar, lane: Lane) -> None:
         """Take the lane of an instance, which is looked at next."""
         keyed.opened(value, lane)
-        self._set_alarm(keyed, value, lane, -INFINITY)
+        self._set_alarm(keyed, value, lane, -NEVER)
 
     def let_go(self) -> None:
         """Let go of all instances that are over, after attempts were taken away."""

@@ -7,7 +7,7 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.rule import Rule
-from rvmon.runtime.table import NEVER, PASSED, UNKNOWN
+from rvmon.runtime.values import NEVER, PASSED, UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,12 +7,11 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.past import History, Since, beyond, doubt, within
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import FALSE, NEVER, TRUE, UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-FALSE, UNKNOWN, TRUE = 0, 1, 2
 LIMIT = 1 << 62
 BUSY = LIMIT + 1
 """Stands for the instant after which samples are taken, while one is: none is after it."""

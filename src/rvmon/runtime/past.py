@@ -6,11 +6,10 @@ import math
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
+from rvmon.runtime.values import FALSE, NEVER, TRUE, UNKNOWN
+
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-NEVER = 1 << 63
-FALSE, UNKNOWN, TRUE = 0, 1, 2
 
 
 class Since:

@@ -1,20 +1,19 @@
-"""When the attempts of one requirement start, and how they are driven through time."""
+"""The open attempts of one requirement, and how they are driven through time."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
+from rvmon.runtime.starts import Starts
 from rvmon.runtime.table import (
     BARE,
-    FAILED,
     FRESH,
-    NEVER,
-    PASSED,
     next_cut,
     run,
     settle,
 )
+from rvmon.runtime.values import FAILED, NEVER, PASSED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,10 +22,8 @@ if TYPE_CHECKING:
 
     Drive = Callable[[Token, int], tuple[Token, int]]
 
-FALSE, UNKNOWN, TRUE = 0, 1, 2
 
-
-class Rule:
+class Rule(Starts):
     """Starts attempts and drives them.
 
     Args:
@@ -34,17 +31,15 @@ class Rule:
         machine: judges its attempts; `None`: somebody else does.
         letters: gives, from the values, the letters with the unknown taken for worse and better;
             `None` without a machine.
-        trigger: the node of its trigger; −1: the end of the trace.
-        pulse: whether it starts an attempt at every position where its trigger holds.
-        episodic: whether one attempt runs at a time, until the trigger is false.
-        hidden: whether an episode starts only where the trigger is unknown.
-        again: the node that is not false where an episode goes on after a failure; −1: none.
-        unborn: the node that is true while something that is owed had no value; −1: none.
+        trigger: as for `Starts`; so are the next five.
+        pulse: see there.
+        episodic: see there.
+        hidden: see there.
+        again: see there.
+        unborn: see there.
         gap: ticks between two positions; `None` if only samples are positions.
         values: the truth of the state formulas.
         clerk: makes attempts and hears of decisions.
-
-    The attributes that follow are read by whoever drives it.
 
     Attributes:
         attempts: the undecided ones, oldest first, but for those in runs.
@@ -52,28 +47,12 @@ class Rule:
         due: an instant before which, the letters staying, no attempt can be decided.
         restless: whether attempts may move at the next position though the letters stay.
         slides: whether a clock moves along while an attempt loops.
-        current: the instant of the trigger of the attempt that runs in an episode, or `None`.
-        failed_at: the instant at which that failed, the episode running on.
-        clouded: whether the trigger was unknown while it ran.
-        eyed: whether it has to see the trigger before its attempts do.
         watches: whether it has to see positions though no attempt is open.
-
-    Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, After a failure).
     """
 
     __slots__ = (
-        "again",
-        "attempts",
-        "before",
-        "clerk",
-        "clouded",
-        "current",
         "due",
-        "episodic",
-        "eyed",
-        "failed_at",
         "gap",
-        "hidden",
         "index",
         "letter",
         "letters",
@@ -81,19 +60,14 @@ class Rule:
         "moves",
         "other",
         "position",
-        "pulse",
         "restless",
-        "running",
         "runs",
         "slides",
-        "trigger",
-        "unborn",
-        "values",
     )
 
     STATE: tuple[str, ...] = (
-        *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
-        *("before", "running", "current", "failed_at", "clouded", "eyed"),
+        *Starts.STATE,
+        *("runs", "due", "restless", "slides", "position", "letter", "other"),
     )
 
     def __init__(
@@ -111,118 +85,20 @@ class Rule:
         values: list[int],
         clerk: Any,
     ) -> None:
+        super().__init__(trigger, pulse, episodic, hidden, again, unborn, values, clerk)
         self.index = index
         self.machine = machine
         self.moves: Any = None if machine is None else machine.moves
         self.letters = letters
-        self.trigger = trigger
-        self.pulse = pulse
-        self.episodic = episodic
-        self.hidden = hidden
-        self.again = again
-        self.unborn = unborn
         self.gap = gap
-        self.values = values
-        self.clerk = clerk
-        self.attempts: list[Any] = []
         self.runs: dict[int, Any] = {}
         self.due = NEVER
         self.restless = False
         self.slides = False
         self.position = -NEVER
         self.letter = self.other = 0
-        self.before = FALSE
-        self.running = False
-        self.current: int | None = None
-        self.failed_at: int | None = None
-        self.clouded = False
-        self.eyed = False
 
     watches = False
-
-    def starts(self, truth: int) -> bool:
-        """Whether an attempt starts at a position where the trigger has this truth.
-
-        To be called at least where the truth changes, and at each position of a pulse that holds.
-        """
-        before, self.before = self.before, truth
-        if not self.episodic:
-            return truth == TRUE and (self.pulse or before == FALSE)
-        if not self.running:
-            self.running = truth == UNKNOWN if self.hidden else truth != FALSE
-            return self.running
-        if truth == FALSE:
-            self.running = False
-            self.current = self.failed_at = None
-        elif truth == UNKNOWN:
-            self.clouded = True
-        return False
-
-    @property
-    def repeats(self) -> bool:
-        """Whether another attempt starts at the next position if the trigger stays."""
-        if not self.episodic:
-            return self.pulse and self.before == TRUE
-        wanted = self.before == UNKNOWN if self.hidden else self.before != FALSE
-        return wanted and not self.running
-
-    @property
-    def is_sure(self) -> bool:
-        """Whether an attempt that starts here has a trigger that is true."""
-        return not self.hidden and (not self.episodic or self.values[self.trigger] == TRUE)
-
-    @property
-    def is_unborn(self) -> bool:
-        """Whether something that is owed speaks of signals that have had no value."""
-        return self.unborn >= 0 and self.values[self.unborn] == TRUE
-
-    @property
-    def is_plain(self) -> bool:
-        """Whether an attempt that starts here is sure, and no signal is to be waited for."""
-        return not self.episodic or (self.is_sure and not self.is_unborn)
-
-    @property
-    def running_attempt(self) -> Any:
-        """The attempt of an episode that runs, unless it stands in `runs`."""
-        return next((one for one in self.attempts if one.triggered == self.current), None)
-
-    def enter(self, triggered: int) -> None:
-        """Take it that an attempt runs from here on."""
-        if self.episodic:
-            self.running = True
-            self.current = triggered
-            self.failed_at = None
-            self.clouded = self.values[self.trigger] == UNKNOWN
-            self.eyed = not self.hidden and not self.is_plain
-
-    def look(self) -> None:
-        """See the trigger before the attempts do: it may make one sure, or void."""
-        attempt = self.running_attempt
-        if attempt is None:
-            return
-        if self.values[self.trigger] == FALSE:
-            attempt.void = attempt.void or self.is_unborn
-        elif not attempt.sure and self.is_sure:
-            attempt.sure = True
-            self.clerk.assured(self, attempt)
-
-    def fail(self, triggered: int, t: int) -> None:
-        """Note that an attempt has failed at `t`."""
-        if triggered == self.current and self.again >= 0:
-            self.current = None
-            self.failed_at = t
-
-    @property
-    def goes_on(self) -> bool:
-        """Whether what is owed has not failed at once at the position that the values are of."""
-        return bool(self.values[self.again] != FALSE)
-
-    def settle_flags(self) -> None:
-        """Come to the end: what runs may be over, or void; what is over is neither."""
-        attempt = self.running_attempt
-        if attempt is not None:
-            attempt.clouded = self.clouded
-            attempt.void = attempt.void or self.is_unborn
 
     def begin(self, t: int, triggered: int) -> None:
         """Start an attempt at the position `t`, at which the values are."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.rule import Rule
-from rvmon.runtime.table import PASSED
+from rvmon.runtime.values import PASSED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
-from rvmon.runtime.table import FAILED, PASSED, Table
+from rvmon.runtime.table import Table
 from rvmon.runtime.unit import Unit
+from rvmon.runtime.values import FAILED, PASSED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -6,15 +6,12 @@ from bisect import bisect_right
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from rvmon.runtime.values import FAILED, NEVER, PASSED, UNKNOWN
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     Token = tuple[int, tuple[int, ...]]
-
-NEVER = 1 << 63
-FALSE, UNKNOWN, TRUE = 0, 1, 2
-FAILED, PASSED = 0, 1
-NOW = -1
 
 
 class Table:

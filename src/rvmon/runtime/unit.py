@@ -1,12 +1,12 @@
-"""The clockwork of generated monitors: positions, the time between them, whom they concern."""
+"""The clockwork of generated monitors: what is evaluated at a position, and whom it concerns."""
 
 from __future__ import annotations
 
-from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.nodes import LIMIT, Nodes
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.schedule import Schedule
+from rvmon.runtime.values import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rvmon.runtime.rule import Rule
 
 
-class Unit(Nodes):
+class Unit(Nodes, Schedule):
     """A generated monitor without its generated part.
 
     Args:
@@ -25,18 +25,8 @@ class Unit(Nodes):
         began: the instant of the first sample; `None` before it.
         after: samples have to be later than this instant.
         news: whether something was decided since it was last set to `False`.
-        position: that the values are of.
-        dirty: the nodes that may have changed since.
+        dirty: the nodes that may have changed since the position.
         fading: the nodes that speak of that position only.
-        restless: the requirements to be asked at the next position whatever changes.
-        repeating: the requirements that start an attempt at the next position if nothing changes.
-        asked: of what `triggers` may hold, what somebody asks for.
-        eyed: the requirements that have to see their triggers first.
-        failing: the requirements whose episode runs on after a failure.
-        resume_at: the next position at which one of them may go on though nothing changes.
-        awaited: the next position at which samples that were taken will show.
-        active: the requirements that have open attempts.
-        dues: when requirements are due; `due_at` says which entries still hold.
     """
 
     __slots__ = (
@@ -62,9 +52,8 @@ class Unit(Nodes):
 
     STATE = (
         *Nodes.STATE,
-        *("began", "rules", "position", "after", "news", "dirty", "fading", "restless"),
-        *("repeating", "awaited", "dues", "due_at", "active"),
-        *("asked", "eyed", "failing", "resume_at"),
+        *Schedule.STATE,
+        *("began", "after", "news", "dirty", "fading"),
     )
 
     ABOVE: tuple[int, ...] = ()
@@ -85,8 +74,6 @@ class Unit(Nodes):
     """Take one sample; returns what it decided."""
     take: Callable[[int, Mapping[str, Any]], None]
     """Take the updates of a valid sample; time has come to `t` − 1 before."""
-    visit: Callable[[int], None]
-    """Move to the position at `t`."""
 
     def __init__(self, machines: Sequence[Any], absent: frozenset[str] = frozenset()) -> None:
         super().__init__(absent)
@@ -102,22 +89,12 @@ class Unit(Nodes):
         self.clear()
         self.clerk = clerk
         self.began: int | None = None
-        self.rules = [self._rule(index, one) for index, one in enumerate(clerks)]
+        self.set_up([self._rule(index, one) for index, one in enumerate(clerks)])
         self.position = 0
         self.after = -LIMIT
         self.news = False
         self.dirty = 0
         self.fading = 0
-        self.restless = 0
-        self.repeating = 0
-        self.asked = (1 << len(self.rules)) - 1
-        self.eyed = 0
-        self.failing = 0
-        self.resume_at = NEVER
-        self.awaited = NEVER
-        self.dues: list[tuple[int, int]] = []
-        self.due_at = [NEVER] * len(self.rules)
-        self.active = 0
 
     def _rule(self, index: int, clerk: Any) -> Rule:
         class_, letters, *kind = self.RULES[index]
@@ -180,112 +157,6 @@ class Unit(Nodes):
                 return True
         return False
 
-    def conclude(self, t: int, letters: int, triggers: int) -> None:
-        """Have the position judged by those whom it concerns."""
-        self.awaited = NEVER
-        if triggers & self.eyed:
-            self.look(triggers & self.eyed)
-        letters = (letters | self.restless) & self.active
-        dues, due_at = self.dues, self.due_at
-        while dues and dues[0][0] <= t:
-            due, index = heappop(dues)
-            if due_at[index] == due:
-                due_at[index] = NEVER
-                letters |= 1 << index & self.active
-        rules = self.rules
-        while letters:
-            bit = letters & -letters
-            letters ^= bit
-            index = bit.bit_length() - 1
-            rule = rules[index]
-            rule.visit(t)
-            if (
-                rule.restless
-                or self.restless
-                or rule.due != due_at[index]
-                or not (rule.attempts or rule.runs)
-                or rule.failed_at is not None
-            ):
-                self.note(rule)
-        again = triggers >> len(rules)
-        triggers = triggers & (1 << len(rules)) - 1 | self.repeating
-        while triggers:
-            bit = triggers & -triggers
-            triggers ^= bit
-            index = bit.bit_length() - 1
-            rule = rules[index]
-            if rule.trigger < 0:
-                continue
-            if rule.starts(self.v[rule.trigger]):
-                self.begin(rule, t)
-            if rule.pulse:
-                self.repeating = self.repeating | bit if rule.repeats else self.repeating & ~bit
-        if again & self.failing or self.resume_at <= t:
-            self.go_on(t, again)
-        if self.gathered:
-            self.leave()
-
-    def begin(self, rule: Rule, t: int) -> None:
-        """Start an attempt at the position `t`."""
-        rule.begin(t, t)
-        self.note(rule)
-        if rule.episodic:
-            bit = 1 << rule.index
-            self.eyed = self.eyed | bit if rule.eyed else self.eyed & ~bit
-
-    def look(self, eyed: int) -> None:
-        """Have requirements see their triggers before their attempts do."""
-        while eyed:
-            bit = eyed & -eyed
-            eyed ^= bit
-            self.rules[bit.bit_length() - 1].look()
-
-    def go_on(self, t: int, again: int) -> None:
-        """Follow failures by other attempts at the position `t`, where it is time for that.
-
-        Args:
-            t: the position.
-            again: the requirements for which that may have changed.
-        """
-        asked = self.failing
-        if self.resume_at > t:
-            asked &= again
-        else:
-            self.resume_at = NEVER
-        while asked:
-            bit = asked & -asked
-            asked ^= bit
-            rule = self.rules[bit.bit_length() - 1]
-            failed_at = rule.failed_at
-            if failed_at is None:
-                self.follow(rule)
-            elif t <= failed_at:
-                self.await_next(failed_at)
-            elif rule.goes_on:
-                self.begin(rule, t)
-
-    def follow(self, rule: Rule) -> None:
-        """Note whether a requirement's episode runs on after a failure."""
-        bit = 1 << rule.index
-        if rule.failed_at is None:
-            self.failing &= ~bit
-            self.asked &= ~(bit << len(self.rules))
-            return
-        self.failing |= bit
-        self.asked |= bit << len(self.rules)
-        # Where it fails at once, something has to change first.
-        if rule.goes_on:
-            self.await_next(rule.failed_at)
-
-    def await_next(self, t: int) -> None:
-        """Have the first position behind `t` visited."""
-        gap = self.GAP
-        following = t + 1
-        if gap is not None:
-            late = max(t - self.position, 0)
-            following = self.position + (late // gap + 1) * gap
-        self.resume_at = min(self.resume_at, following)
-
     def conclude_calmly(self, t: int, letters: int, triggers: int) -> None:
         """As `conclude`, where all requirements are episodes that only letters decide."""
         rules = self.rules
@@ -308,7 +179,7 @@ class Unit(Nodes):
             triggers ^= bit
             rule = rules[bit.bit_length() - 1]
             if rule.starts(self.v[rule.trigger]):
-                self.begin(rule, t)
+                self.begin(rule, t, t)
         if again & self.failing or self.resume_at <= t:
             self.go_on(t, again)
         if self.gathered:
@@ -326,7 +197,7 @@ class Unit(Nodes):
             if rule.failed_at is not None:
                 self.follow(rule)
         if triggers & 1 and rule.starts(self.v[rule.trigger]):
-            self.begin(rule, t)
+            self.begin(rule, t, t)
         if triggers >> 1 & self.failing or self.resume_at <= t:
             self.go_on(t, triggers >> 1)
         if self.gathered:
@@ -356,61 +227,11 @@ class Unit(Nodes):
             return NEVER
         return self.position + -(-(found - self.position) // self.GAP) * self.GAP
 
-    def next_due(self) -> int:
-        """The next instant at which an attempt can be decided."""
-        dues = self.dues
-        while dues and self.due_at[dues[0][1]] != dues[0][0]:
-            heappop(dues)
-        return dues[0][0] if dues else NEVER
-
-    def next_position(self) -> int:
-        """The next position at which something can change without a further sample."""
-        found = min(self.awaited, self.next_change())
-        if self.GAP is not None:
-            found = min(found, self.resume_at)
-            if self.repeating:
-                found = min(found, self.position + self.GAP)
-        return found
-
-    def note(self, rule: Rule) -> None:
-        """Note when a requirement is due, and whether it has to be asked at the next position."""
-        bit = 1 << rule.index
-        if rule.attempts or rule.runs or rule.watches:
-            self.active |= bit
-        elif self.active & bit:
-            self.active ^= bit
-        if rule.restless:
-            self.restless |= bit
-        elif self.restless & bit:
-            self.restless ^= bit
-        if rule.failed_at is not None:
-            self.follow(rule)
-        due = rule.due
-        if due != self.due_at[rule.index]:
-            self.due_at[rule.index] = due
-            if due < NEVER:
-                heappush(self.dues, (due, rule.index))
-                if len(self.dues) > 64 + 8 * len(self.rules):
-                    self.dues = [(t, i) for i, t in enumerate(self.due_at) if t < NEVER]
-                    heapify(self.dues)
-
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`, positions there included, without a further sample."""
         if limit < self.wake or self.began is None:
             return
-        while True:
-            stop = min(self.next_position() - 1, limit)
-            while (due := self.next_due()) <= stop:
-                rule = self.rules[self.dues[0][1]]
-                # What fails may be followed by another attempt at once.
-                rule.pass_to(due if rule.episodic else stop)
-                self.note(rule)
-                if self.GAP is not None:
-                    stop = min(stop, self.resume_at - 1)
-            position = self.next_position()
-            if position > limit:
-                break
-            self.visit(position)
+        super().through(limit)
         self.set_alarm()
 
     def sampled(self, t: int) -> None:
@@ -424,17 +245,6 @@ class Unit(Nodes):
         else:
             self.reach(t)
         self.set_alarm()
-
-    def reach(self, t: int) -> None:
-        """Let time come to `t`, of which no position is known, from `t − 1`."""
-        due = []
-        while self.next_due() <= t:
-            _, index = heappop(self.dues)
-            self.due_at[index] = NEVER
-            due.append(self.rules[index])
-        for rule in due:
-            rule.reach(t)
-            self.note(rule)
 
     def advance(self, t: int) -> None:
         """Learn that no sample before `t` will come; `t` is later than all before."""

@@ -8,7 +8,6 @@ from tests.tools.build import always, eventually, no, p, q, r, requirement, two
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.automaton.location import PASSED
-from rvmon.automaton.machine import INFINITY
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
@@ -16,6 +15,7 @@ from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.runtime.table import run
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.formula import SignalAtom
 
 SECOND = 10**9
@@ -128,7 +128,7 @@ def test_a_stretch_is_due_when_a_kept_clock_crosses():
     owed, alphabet = core(always(p))
     machine = TableMachine(construct(owed, alphabet, Budget()))
     _, due, _ = run(machine, machine.start, 1, 10, 20, 1)
-    assert due == INFINITY
+    assert due == NEVER
 
 
 def test_letters_beyond_a_table_are_looked_up_in_a_diagram():

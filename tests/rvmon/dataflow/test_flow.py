@@ -29,7 +29,7 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.runtime.past import Since
-from rvmon.runtime.table import NEVER
+from rvmon.runtime.values import NEVER
 
 
 def flow_of(formula, gap=1, stale=None, names=None):
