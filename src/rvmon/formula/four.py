@@ -105,12 +105,19 @@ class Reader:
     def __init__(self, factory: Factory, period: int | None) -> None:
         self.factory = factory
         self.period = period
+        self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
         """A formula whose propositions, not the whole, are taken for `unborn` where they are not.
 
         A proposition is an atom or an operator of the past.
         """
+        key = id(formula), unborn
+        if key not in self._literals:  # what `<->` is told in has each operand twice
+            self._literals[key] = formula, self._literal(formula, unborn)
+        return self._literals[key][1]
+
+    def _literal(self, formula: Formula, unborn: int) -> State:
         factory = self.factory
         match formula:
             case Unary(op=UnaryOp.NOT, operand=operand):

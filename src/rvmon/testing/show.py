@@ -84,6 +84,7 @@ def _requirement(requirement: Requirement) -> Iterator[str]:
 def show(formula: Formula) -> str:
     """A formula as text, with every bracket.
 
+    >>> from rvmon.spec.checked.formula import UnaryOp
     >>> show(Unary(UnaryOp.EVENTUALLY, SignalAtom("p"), Interval(0, 3)))
     '(F[0 ns, 3 ns] p)'
     """

@@ -38,6 +38,7 @@ _OPPOSITE = {
 def facts_of(formula: Formula, truth: bool = True) -> dict[Hashable, bool]:
     """What has to be so where a formula of the present and past is true, or false.
 
+    >>> from rvmon.spec.checked.formula import BinaryOp
     >>> facts_of(Binary(BinaryOp.AND, EventAtom("e"), Unary(UnaryOp.NOT, SignalAtom("p"))))
     {'e': True, 'p': False}
     """

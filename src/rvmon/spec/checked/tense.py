@@ -82,6 +82,7 @@ def is_timeless(formula: Formula) -> bool:
 def is_pulse(formula: Formula) -> bool:
     """Whether the negation normal form of a trigger is a pulse.
 
+    >>> from rvmon.spec.checked.formula import BinaryOp, UnaryOp
     >>> is_pulse(Binary(BinaryOp.AND, EventAtom("sensed"), SignalAtom("ready")))
     True
     >>> is_pulse(Unary(UnaryOp.NOT, EventAtom("sensed")))
