@@ -30,7 +30,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.operators import Tense
+from rvmon.spec.checked.operators import Reading, Tense
 from rvmon.spec.checked.reading import read, rewritten
 
 
@@ -92,7 +92,7 @@ def _same(state: State) -> Callable[[int], State]:
     return lambda _: state
 
 
-class Reader:
+class Reader(Reading[Four]):
     """Makes formulas of the present and past into state formulas.
 
     Args:
@@ -183,10 +183,6 @@ class Reader:
     def both(self, left: Four, right: Four) -> Four:
         """Not born where no operand is."""
         return self._all([left, right])
-
-    def either(self, left: Four, right: Four) -> Four:
-        """The dual."""
-        return self.no(self._all([self.no(left), self.no(right)]))
 
     def next(self, _: Four) -> Four:
         """It does not occur."""

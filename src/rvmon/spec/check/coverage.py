@@ -23,7 +23,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
-from rvmon.spec.checked.operators import Tense
+from rvmon.spec.checked.operators import Connectives, Tense
 from rvmon.spec.checked.reading import read
 from rvmon.spec.checked.tense import end_part, future_part
 from rvmon.spec.rules import goals as rules
@@ -236,7 +236,7 @@ def _combinations(
     )
 
 
-class _Booleans:
+class _Booleans(Connectives[bool]):
     """Connectives of what is known."""
 
     def constant(self, value: bool) -> bool:
@@ -247,9 +247,6 @@ class _Booleans:
 
     def both(self, left: bool, right: bool) -> bool:
         return left and right
-
-    def either(self, left: bool, right: bool) -> bool:
-        return left or right
 
 
 def _about_bins(formula: Formula, bins: Mapping[str, Sequence[str]]) -> bool:

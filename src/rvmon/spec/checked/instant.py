@@ -19,6 +19,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Reading
 from rvmon.spec.checked.reading import read
 from rvmon.spec.checked.tense import fields_in
 
@@ -49,7 +50,7 @@ Both = tuple[dict[Hashable, bool], dict[Hashable, bool]]
 """What has to be so where a formula is true, and where it is false."""
 
 
-class _Facts:
+class _Facts(Reading[Both]):
     """The facts of operators; of what looks elsewhere there are none."""
 
     def constant(self, _: bool) -> Both:
@@ -61,9 +62,6 @@ class _Facts:
     def both(self, left: Both, right: Both) -> Both:
         shared = {key: truth for key, truth in left[1].items() if right[1].get(key) is truth}
         return {**left[0], **right[0]}, shared
-
-    def either(self, left: Both, right: Both) -> Both:
-        return self.no(self.both(self.no(left), self.no(right)))
 
     def next(self, _: Both) -> Both:
         return {}, {}
@@ -116,7 +114,7 @@ def truth_at(formula: Formula, facts: Facts) -> bool | None:
             return read(formula, lambda part: truth_at(part, facts), _Here(facts))
 
 
-class _Here:
+class _Here(Reading[bool | None]):
     """Operators by what their operands are now; what else they look at is not known."""
 
     def __init__(self, facts: Facts) -> None:
@@ -132,9 +130,6 @@ class _Here:
         if left is False or right is False:
             return False
         return True if left and right else None
-
-    def either(self, left: bool | None, right: bool | None) -> bool | None:
-        return self.no(self.both(self.no(left), self.no(right)))
 
     def next(self, _: bool | None) -> bool | None:
         return None

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, StrEnum, auto
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, Self, TypeVar
 
 T = TypeVar("T")
 
@@ -36,7 +36,8 @@ class Connectives(Protocol[T]):
         """`and`."""
 
     def either(self, left: T, right: T, /) -> T:
-        """`or`."""
+        """`or`: the dual of `both`."""
+        return self.no(self.both(self.no(left), self.no(right)))
 
 
 class Reading(Connectives[T], Protocol[T]):
@@ -83,8 +84,8 @@ class Operator:
     """What is to be known of an operator.
 
     Attributes:
+        sign: of it.
         word: as it is printed.
-        also: other ways to write it, beside its sign.
         tense: of it.
         window: the interval that it takes.
         level: how tightly it binds, from 0.
@@ -97,10 +98,11 @@ class Operator:
         dual: the sign of the operator that is `not φ` of the negations of its operands.
         chained: whether it is associative and written in chains without brackets.
         pulse: whether it is true at single instants only.
+        also: other ways to write it, beside its word and sign.
     """
 
+    sign: str
     word: str
-    also: tuple[str, ...]
     tense: Tense
     window: Window
     level: int
@@ -111,6 +113,7 @@ class Operator:
     dual: str = ""
     chained: bool = False
     pulse: bool = False
+    also: tuple[str, ...] = ()
 
     @property
     def called(self) -> bool:
@@ -123,20 +126,22 @@ class _Sign(StrEnum):
 
     entry: Operator
 
-    def __new__(cls, sign: str, entry: Operator) -> _Sign:
-        """A member: the text that it is written as, with its entry."""
-        made = str.__new__(cls, sign)
-        made._value_ = sign
+    def __new__(cls, entry: Operator) -> _Sign:
+        """A member: its sign, with its entry."""
+        made = str.__new__(cls, entry.sign)
+        made._value_ = entry.sign
         made.entry = entry
         return made
+
+    @classmethod
+    def of(cls, text: str) -> Self:
+        """The one that is written so."""
+        return next(one for one in cls if text in one.spellings)
 
     @property
     def spellings(self) -> tuple[str, ...]:
         """All ways to write it, the printed one first."""
         return tuple(dict.fromkeys((self.entry.word, self.value, *self.entry.also)))
-
-
-_ALL = Interval()
 
 
 def _eventually(reading: Reading[T], it: T, window: Interval) -> T:
@@ -173,104 +178,69 @@ class UnaryOp(_Sign):
     <UnaryOp.EVENTUALLY: 'F'>
     """
 
-    @classmethod
-    def of(cls, text: str) -> UnaryOp:
-        """The one that is written so."""
-        return next(one for one in cls if text in one.spellings)
-
-    NOT = (
-        "!",
-        Operator(
-            *("not", (), Tense.PRESENT, Window.NONE, PREFIXED),
-            lambda reading, it, _: reading.no(it),
-            *("", ""),
-            "φ does not hold",
-        ),
+    NOT = Operator(
+        *("!", "not", Tense.PRESENT, Window.NONE, PREFIXED),
+        lambda reading, it, _: reading.no(it),
+        *("", ""),
+        "φ does not hold",
     )
-    NEXT = (
-        "X",
-        Operator(
-            *("next", (), Tense.FUTURE, Window.NONE, PREFIXED),
-            lambda reading, it, _: reading.next(it),
-            *("at the next sample, {it}", "at the next sample, {no_it}"),
-            "φ at the position after; not in `time held`",
-            dual="X",
-        ),
+    NEXT = Operator(
+        *("X", "next", Tense.FUTURE, Window.NONE, PREFIXED),
+        lambda reading, it, _: reading.next(it),
+        *("at the next sample, {it}", "at the next sample, {no_it}"),
+        "φ at the position after; not in `time held`",
+        dual="X",
     )
-    EVENTUALLY = (
-        "F",
-        Operator(
-            *("eventually", (), Tense.FUTURE, Window.ANY, PREFIXED, _eventually),
-            *("{some}, {it}", "{all}, {no_it}"),
-            "φ at some instant from now on",
-            dual="G",
-        ),
+    EVENTUALLY = Operator(
+        *("F", "eventually", Tense.FUTURE, Window.ANY, PREFIXED, _eventually),
+        *("{some}, {it}", "{all}, {no_it}"),
+        "φ at some instant from now on",
+        dual="G",
     )
-    ALWAYS = (
-        "G",
-        Operator(
-            *("always", (), Tense.FUTURE, Window.ANY, PREFIXED),
-            lambda reading, it, window: reading.no(_eventually(reading, reading.no(it), window)),
-            *("{all}, {it}", "{some}, {no_it}"),
-            "φ at all instants from now on",
-            dual="F",
-        ),
+    ALWAYS = Operator(
+        *("G", "always", Tense.FUTURE, Window.ANY, PREFIXED),
+        lambda reading, it, window: reading.no(_eventually(reading, reading.no(it), window)),
+        *("{all}, {it}", "{some}, {no_it}"),
+        "φ at all instants from now on",
+        dual="F",
     )
-    PREVIOUS = (
-        "Y",
-        Operator(
-            *("previous", (), Tense.PAST, Window.NONE, PREFIXED),
-            lambda reading, it, _: reading.previous(it),
-            *("at the sample before, {it}", ""),
-            "φ at the position before, false at the first; not in `time held`",
-        ),
+    PREVIOUS = Operator(
+        *("Y", "previous", Tense.PAST, Window.NONE, PREFIXED),
+        lambda reading, it, _: reading.previous(it),
+        *("at the sample before, {it}", ""),
+        "φ at the position before, false at the first; not in `time held`",
     )
-    ONCE = (
-        "O",
-        Operator(
-            *("once", (), Tense.PAST, Window.ANY, PREFIXED, _once),
-            *("{some}, {it}", "{all}, {no_it}"),
-            "φ at some instant up to now",
-            dual="H",
-        ),
+    ONCE = Operator(
+        *("O", "once", Tense.PAST, Window.ANY, PREFIXED, _once),
+        *("{some}, {it}", "{all}, {no_it}"),
+        "φ at some instant up to now",
+        dual="H",
     )
-    HISTORICALLY = (
-        "H",
-        Operator(
-            *("historically", (), Tense.PAST, Window.ANY, PREFIXED, _historically),
-            *("{all}, {it}", "{some}, {no_it}"),
-            "φ at all instants up to now",
-            dual="O",
-        ),
+    HISTORICALLY = Operator(
+        *("H", "historically", Tense.PAST, Window.ANY, PREFIXED, _historically),
+        *("{all}, {it}", "{some}, {no_it}"),
+        "φ at all instants up to now",
+        dual="O",
     )
-    RISE = (
-        "rise",
-        Operator(
-            *("rise", (), Tense.PAST, Window.NONE, CALLED),
-            lambda reading, it, _: reading.both(it, reading.no(reading.previous(it))),
-            *("{begins}", "it is not the instant at which {begins}"),
-            "φ holds and did not right before",
-            pulse=True,
-        ),
+    RISE = Operator(
+        *("rise", "rise", Tense.PAST, Window.NONE, CALLED),
+        lambda reading, it, _: reading.both(it, reading.no(reading.previous(it))),
+        *("{begins}", "it is not the instant at which {begins}"),
+        "φ holds and did not right before",
+        pulse=True,
     )
-    FALL = (
-        "fall",
-        Operator(
-            *("fall", (), Tense.PAST, Window.NONE, CALLED),
-            lambda reading, it, _: reading.both(reading.no(it), reading.previous(it)),
-            *("{ends}", "it is not the instant at which {ends}"),
-            "φ does not hold and did right before",
-            pulse=True,
-        ),
+    FALL = Operator(
+        *("fall", "fall", Tense.PAST, Window.NONE, CALLED),
+        lambda reading, it, _: reading.both(reading.no(it), reading.previous(it)),
+        *("{ends}", "it is not the instant at which {ends}"),
+        "φ does not hold and did right before",
+        pulse=True,
     )
-    HELD = (
-        "held",
-        Operator(
-            *("held", (), Tense.PAST, Window.LENGTH, CALLED, _held),
-            "for the last {length} without a break, {it}",
-            "not for the last {length} without a break, {it}",
-            "φ has held for D, all within the run",
-        ),
+    HELD = Operator(
+        *("held", "held", Tense.PAST, Window.LENGTH, CALLED, _held),
+        "for the last {length} without a break, {it}",
+        "not for the last {length} without a break, {it}",
+        "φ has held for D, all within the run",
     )
 
 
@@ -281,111 +251,81 @@ class BinaryOp(_Sign):
     'unless'
     """
 
-    @classmethod
-    def of(cls, text: str) -> BinaryOp:
-        """The one that is written so."""
-        return next(one for one in cls if text in one.spellings)
-
-    AND = (
-        "and",
-        Operator(
-            *("and", ("&", "&&"), Tense.PRESENT, Window.NONE, 4),
-            lambda reading, left, right, _: reading.both(left, right),
-            *("", ""),
-            "both hold",
-            chained=True,
-        ),
+    AND = Operator(
+        *("and", "and", Tense.PRESENT, Window.NONE, 4),
+        lambda reading, left, right, _: reading.both(left, right),
+        *("", ""),
+        "both hold",
+        chained=True,
+        also=("&", "&&"),
     )
-    OR = (
-        "or",
-        Operator(
-            *("or", ("|", "||"), Tense.PRESENT, Window.NONE, 2),
-            lambda reading, left, right, _: reading.either(left, right),
-            *("", ""),
-            "one holds, or both",
-            chained=True,
-        ),
+    OR = Operator(
+        *("or", "or", Tense.PRESENT, Window.NONE, 2),
+        lambda reading, left, right, _: reading.either(left, right),
+        *("", ""),
+        "one holds, or both",
+        chained=True,
+        also=("|", "||"),
     )
-    IMPLIES = (
-        "->",
-        Operator(
-            *("->", ("implies",), Tense.PRESENT, Window.NONE, 1),
-            lambda reading, left, right, _: reading.either(reading.no(left), right),
-            *("if {left}, then {right}", "{left} but {no_right}"),
-            "ψ holds if φ does; groups to the right",
-        ),
+    IMPLIES = Operator(
+        *("->", "->", Tense.PRESENT, Window.NONE, 1),
+        lambda reading, left, right, _: reading.either(reading.no(left), right),
+        *("if {left}, then {right}", "{left} but {no_right}"),
+        "ψ holds if φ does; groups to the right",
+        also=("implies",),
     )
-    IFF = (
-        "<->",
-        Operator(
-            *("<->", ("iff",), Tense.PRESENT, Window.NONE, 0, _same),
-            *("{left} exactly if {right}", "either {left} or {right}, not both"),
-            "both hold, or none",
-            chained=True,
-        ),
+    IFF = Operator(
+        *("<->", "<->", Tense.PRESENT, Window.NONE, 0, _same),
+        *("{left} exactly if {right}", "either {left} or {right}, not both"),
+        "both hold, or none",
+        chained=True,
+        also=("iff",),
     )
-    XOR = (
-        "xor",
-        Operator(
-            *("xor", (), Tense.PRESENT, Window.NONE, 3),
-            lambda reading, left, right, window: _same(reading, left, reading.no(right), window),
-            *("either {left} or {right}, not both", "{left} exactly if {right}"),
-            "one holds and not the other",
-            chained=True,
-        ),
+    XOR = Operator(
+        *("xor", "xor", Tense.PRESENT, Window.NONE, 3),
+        lambda reading, left, right, window: _same(reading, left, reading.no(right), window),
+        *("either {left} or {right}, not both", "{left} exactly if {right}"),
+        "one holds and not the other",
+        chained=True,
     )
-    UNTIL = (
-        "U",
-        Operator(
-            *("until", (), Tense.FUTURE, Window.ANY, 5),
-            lambda reading, left, right, window: reading.until(left, right, window),
-            *("{some}, {right}; and until then {left}", ""),
-            "ψ at some instant from now on, φ at all before it",
-            dual="R",
-        ),
+    UNTIL = Operator(
+        *("U", "until", Tense.FUTURE, Window.ANY, 5),
+        lambda reading, left, right, window: reading.until(left, right, window),
+        *("{some}, {right}; and until then {left}", ""),
+        "ψ at some instant from now on, φ at all before it",
+        dual="R",
     )
-    RELEASE = (
-        "R",
-        Operator(
-            *("R", (), Tense.FUTURE, Window.ANY, 5, _release),
-            "{all}, {right}; up to and at the instant when {left}, if that comes earlier",
-            "",
-            "ψ at all instants up to and at one at which φ holds, if there is one",
-            dual="U",
-        ),
+    RELEASE = Operator(
+        *("R", "R", Tense.FUTURE, Window.ANY, 5, _release),
+        "{all}, {right}; up to and at the instant when {left}, if that comes earlier",
+        "",
+        "ψ at all instants up to and at one at which φ holds, if there is one",
+        dual="U",
     )
-    WEAK_UNTIL = (
-        "W",
-        Operator(
-            *("unless", ("weak until",), Tense.FUTURE, Window.FROM_NOW, 5),
-            lambda reading, left, right, window: _release(
-                reading, right, reading.either(left, right), window
-            ),
-            *("{all}, {left}; until {right}, if that comes earlier", ""),
-            "as `until`, but ψ need not come",
-            dual="M",
+    WEAK_UNTIL = Operator(
+        *("W", "unless", Tense.FUTURE, Window.FROM_NOW, 5),
+        lambda reading, left, right, window: _release(
+            reading, right, reading.either(left, right), window
         ),
+        *("{all}, {left}; until {right}, if that comes earlier", ""),
+        "as `until`, but ψ need not come",
+        dual="M",
+        also=("weak until",),
     )
-    STRONG_RELEASE = (
-        "M",
-        Operator(
-            *("M", (), Tense.FUTURE, Window.FROM_NOW, 5),
-            lambda reading, left, right, window: reading.until(
-                right, reading.both(left, right), window
-            ),
-            *("{some}, {left}; until then and at that instant {right}", ""),
-            "as `R`, but φ has to come",
-            dual="W",
+    STRONG_RELEASE = Operator(
+        *("M", "M", Tense.FUTURE, Window.FROM_NOW, 5),
+        lambda reading, left, right, window: reading.until(
+            right, reading.both(left, right), window
         ),
+        *("{some}, {left}; until then and at that instant {right}", ""),
+        "as `R`, but φ has to come",
+        dual="W",
     )
-    SINCE = (
-        "S",
-        Operator(
-            *("since", (), Tense.PAST, Window.ANY, 5),
-            lambda reading, left, right, window: reading.since(left, right, window),
-            *("{right} {ago}and since then {left}", ""),
-            "ψ at some instant up to now, φ at all after it",
-        ),
+    SINCE = Operator(
+        *("S", "since", Tense.PAST, Window.ANY, 5),
+        lambda reading, left, right, window: reading.since(left, right, window),
+        *("{right} {ago}and since then {left}", ""),
+        "ψ at some instant up to now, φ at all after it",
     )
 
 

@@ -22,7 +22,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     Unary,
 )
-from rvmon.spec.checked.operators import OPERATORS, Tense
+from rvmon.spec.checked.operators import OPERATORS, Connectives, Tense
 from rvmon.spec.checked.reading import read
 
 FUTURE = frozenset(op for op in OPERATORS if op.entry.tense is Tense.FUTURE)
@@ -95,7 +95,7 @@ Pulses = tuple[bool, bool]
 """Whether a formula is a pulse, and whether its negation is."""
 
 
-class _Pulsing:
+class _Pulsing(Connectives[Pulses]):
     """Of a conjunction either has to be a pulse, of a disjunction both."""
 
     def constant(self, value: bool) -> Pulses:
@@ -106,9 +106,6 @@ class _Pulsing:
 
     def both(self, left: Pulses, right: Pulses) -> Pulses:
         return left[0] or right[0], left[1] and right[1]
-
-    def either(self, left: Pulses, right: Pulses) -> Pulses:
-        return left[0] and right[0], left[1] or right[1]
 
 
 _PULSING = _Pulsing()
