@@ -16,20 +16,18 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from functools import partial
 from itertools import count
-from typing import TYPE_CHECKING
 
 from tests.tools.differential import campaign
 
 from benchmarks import columns
-from rvmon.children import interrupted_by_sigterm, workers
+from rvmon.execute.interrupt import interrupted_by_sigterm
+from rvmon.execute.parallel import execute
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
-
-if TYPE_CHECKING:
-    from concurrent.futures import ProcessPoolExecutor
 
 PART = 10
 """Specifications that a worker takes at a time."""
@@ -79,23 +77,26 @@ FORMS: dict[str, Callable[[int], Judge]] = {
 }
 
 
+def judge_of(form: str, each: int) -> Judge:
+    """What judges the cases of some seeds; runs in a worker."""
+    return FORMS[form](each)
+
+
 def parts(seed: int) -> Iterator[list[str]]:
     """Seeds for the workers, without end."""
     for number in count():
         yield [f"{seed}/{number}/{index}" for index in range(PART)]
 
 
-def judge_form(
-    judge: Judge, options: argparse.Namespace, pool: ProcessPoolExecutor
-) -> Counter[str]:
+def judge_form(form: str, options: argparse.Namespace) -> Counter[str]:
     """Have a form judge as many pairs as are asked for."""
     total: Counter[str] = Counter()
-    seeds = parts(options.seed)
-    waiting = [pool.submit(judge, next(seeds)) for _ in range(options.workers + 1)]
-    while waiting:
-        total += waiting.pop(0).result()
-        if total["pairs"] + total["disagreements"] < options.pairs:
-            waiting.append(pool.submit(judge, next(seeds)))
+    begin = partial(judge_of, form, options.each)
+    with closing(execute(parts(options.seed), begin, jobs=options.workers, what="part")) as judged:
+        for found in judged:
+            total += found
+            if total["pairs"] + total["disagreements"] >= options.pairs:
+                break
     return total
 
 
@@ -113,8 +114,7 @@ def main(argv: Sequence[str]) -> int:
         os.environ["XDG_CACHE_HOME"] = cache  # nobody runs these monitors again
         for form in options.form:
             began = time.perf_counter()
-            with workers(options.workers) as pool:
-                found = judge_form(FORMS[form](options.each), options, pool)
+            found = judge_form(form, options)
             figures = ", ".join(f"{name} {found[name]}" for name in FIGURES)
             print(f"{form:16} {figures}, {time.perf_counter() - began:.0f} s", flush=True)
             wrong += found["disagreements"]

@@ -114,7 +114,9 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--each", type=int, default=10, help="traces per specification")
     parser.add_argument("--samples", type=int, default=12, help="of a trace, at most")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--engine", choices=("auto", "rows", "c"), default="auto")
+    parser.add_argument(
+        "--engine", choices=("auto", "python", "automaton", "network", "c"), default="auto"
+    )
     parser.add_argument("--time", choices=tuple(MODELS), help="the time model; default: any")
     parser.add_argument("--depth", type=int, default=4, help="of the deepest consequent")
     return parser.parse_args(argv)

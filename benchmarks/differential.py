@@ -9,11 +9,10 @@ Prints how the attempts were decided and every disagreement, shrunk; exits 1 if 
 from __future__ import annotations
 
 import argparse
-import contextlib
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -21,9 +20,9 @@ from typing import Any
 from tests.tools.differential import Campaign, Mix, campaign_of
 from tests.tools.features import Feature, possible
 
-from rvmon.children import workers
 from rvmon.errors import RvmonError
-from rvmon.monitor.compiled import ENGINES
+from rvmon.execute.parallel import execute
+from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.forms import FORMS, INTERRUPT, NEXT, Compiler, Maker
 from rvmon.testing.generate_spec import Profile
@@ -36,13 +35,14 @@ again at random points), or both"""
 FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale", "ignoring")
 
 
-def run_part(
-    options: argparse.Namespace, profile: Profile, traces: TraceProfile, seeds: list[str]
-) -> Campaign:
-    """Judge the cases of some seeds; runs in a worker."""
+def judging(
+    options: argparse.Namespace, profile: Profile, traces: TraceProfile
+) -> Callable[[list[str]], Campaign]:
+    """What judges the cases of some seeds; runs in a worker."""
     compiler = Compiler()
-    return campaign_of(
-        {name: Maker(name, compiler) for name in options.engine},
+    makers = {name: Maker(name, compiler) for name in options.engine}
+    return lambda seeds: campaign_of(
+        makers,
         seeds,
         profile,
         traces,
@@ -98,18 +98,13 @@ def main(argv: list[str]) -> int:
     seeds = [f"{options.seed}/{number}" for number in range(options.pairs // options.traces)]
     size = 5 if options.fail_fast else 250
     parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]
-    work = partial(run_part, options, profile, traces)
+    begin = partial(judging, options, profile, traces)
     began = time.perf_counter()
     total = Campaign(Mix(), {})
-    with contextlib.ExitStack() as stack:
-        each: Iterable[Campaign] = map(work, parts)
-        if options.workers > 1:
-            pool = stack.enter_context(workers(options.workers))
-            each = pool.map(work, parts)
-        for part in each:
-            total.add(part)
-            if options.fail_fast and total.disagreements:
-                break
+    for part in execute(parts, begin, jobs=options.workers, what="part"):
+        total.add(part)
+        if options.fail_fast and total.disagreements:
+            break
     show(total, options, time.perf_counter() - began)
     return 1 if total.disagreements else 0
 

@@ -8,8 +8,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "src" / "rvmon"
 
 _FORMULAS = ("formula/*.py",)
 _INPUTS = tuple(
-    f"dataflow/{name}.py"
-    for name in ("flow", "graph", "hidden", "inputs", "leaves", "numbers", "since")
+    f"dataflow/{name}.py" for name in ("flow", "graph", "inputs", "leaves", "numbers", "previous")
 )
 _ATTEMPTS = tuple(
     f"monitor/{name}.py"
@@ -18,7 +17,6 @@ _ATTEMPTS = tuple(
         "build",
         "captive",
         "compiled",
-        "episode",
         "health",
         "instances",
         "judge",
@@ -26,35 +24,33 @@ _ATTEMPTS = tuple(
         "lanes",
         "ledger",
         "monitor",
-        "trigger",
         "validate",
     )
 )
 _AUTOMATA = tuple(
-    f"automaton/{name}.py"
-    for name in ("construct", "end", "layout", "location", "reduce", "stretch", "table")
+    f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
-_PLANS = tuple(f"codegen/{name}.py" for name in ("planning", "tables"))
+_PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
+_DRIVEN = tuple(f"runtime/{name}.py" for name in ("past", "rule", "table"))
 _RUNTIME = tuple(
-    f"codegen/runtime/{name}.py"
-    for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
+    f"runtime/{name}.py" for name in ("bulk", "nodes", "past", "rule", "solo", "table", "unit")
 )
-_GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "fed_judge", "generated_records"))
+_GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "generated_records"))
 
 COLUMNS = "columns"
 """Has a test of its own, of recordings."""
 
 ENGINES: dict[str, tuple[str, ...]] = {
     COLUMNS: ("monitor/columns/*.py",),
-    "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA),
+    "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA, *_DRIVEN),
     "progression": (
         *_FORMULAS,
         "automaton/progression.py",
-        "automaton/stretch.py",
+        *_DRIVEN,
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
-    "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "codegen/runtime/standalone.py"),
+    "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "runtime/standalone.py"),
     "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/online_c.py"),
     "network": (
         "dataflow/time_decisions.py",

@@ -23,6 +23,23 @@ from typing import NamedTuple
 SPEC = "spec s\nsignal p, q : bool\nsignal x : real\nrequirement R1\n  always x < 3\n"
 MOST_MEMORY = 6 << 30
 
+OPEN_ATTEMPTS = """
+import time, rvmon
+monitor = rvmon.loads('''spec s
+signal p : bool
+event e
+requirement R1
+  upon e
+  then within 100000 s p
+''').monitor()
+for t in range(1_000_000):
+    monitor.step_ns(t, {"p": False, "e": True})
+begun = time.process_time()
+decided = monitor.step_ns(1_000_000, {"p": True})
+print(f"{len(decided):,} attempts decided in {time.process_time() - begun:.2f} s")
+"""
+"""All that is open is decided by one step."""
+
 
 class Cost(NamedTuple):
     """What one process cost, and how it ended."""
@@ -69,7 +86,6 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
         subprocess.run(command, check=True, capture_output=True)
         return [program, trace]
 
-    row = "0,true,false,1\n1,true,false,2\n"
     yield (
         "10,000 requirements: check",
         lambda: [
@@ -77,9 +93,14 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
             written("s.rv", many_requirements(10_000)),
         ],
     )
+    for rows in (2, 1_000):
+        yield (
+            f"10,000 requirements: run, {rows:,} rows",
+            lambda rows=rows: run(many_requirements(10_000), written("r.csv", narrow_csv(rows))),
+        )
     yield (
-        "10,000 requirements: run",
-        lambda: run(many_requirements(10_000), written("r.csv", "t,p,q,x\n" + row)),
+        "1,000,000 open attempts: one step decides them",
+        lambda: [sys.executable, "-c", OPEN_ATTEMPTS],
     )
     for count in (20_000, 100_000):
         yield (
@@ -169,6 +190,12 @@ def many_requirements(count: int) -> str:
         f"requirement N{number}\n" + shapes[number % 3].format(number % 100 + 1)
         for number in range(count)
     )
+
+
+def narrow_csv(count: int) -> str:
+    """So many rows in which each value changes now and then."""
+    lines = (f"{t},{int(t % 7 < 3)},{int(t % 11 < 2)},{t % 97}\n" for t in range(count))
+    return "t,p,q,x\n" + "".join(lines)
 
 
 def wide_spec(count: int) -> str:

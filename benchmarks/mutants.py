@@ -34,8 +34,9 @@ from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
 
-from rvmon.children import interrupted_by_sigterm, run
-from rvmon.monitor.compiled import ENGINES as SWITCHABLE
+from rvmon.execute.command import run
+from rvmon.execute.interrupt import interrupted_by_sigterm
+from rvmon.monitor.engines.registry import EXPLAINING as SWITCHABLE
 from rvmon.testing.forms import INTERRUPT, NEXT
 
 ROOT = Path(__file__).resolve().parent.parent

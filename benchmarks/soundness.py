@@ -18,7 +18,7 @@ from functools import partial
 from tests.tools.differential import case_of
 from tests.tools.sound import is_spoken_of, overturned
 
-from rvmon.children import workers
+from rvmon.execute.parallel import execute
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.show import show_case
@@ -53,10 +53,10 @@ def main(argv: list[str]) -> int:
     parts = [seeds[start : start + 50] for start in range(0, len(seeds), 50)]
     verdicts: Counter[str] = Counter()
     found: list[str] = []
-    with workers(options.workers) as pool:
-        for counted, overturning in pool.map(partial(run_part, options), parts):
-            verdicts += counted
-            found += overturning
+    begin = partial(partial, run_part, options)
+    for counted, overturning in execute(parts, begin, jobs=options.workers, what="part"):
+        verdicts += counted
+        found += overturning
     shown = ", ".join(f"{name} {n}" for name, n in sorted(verdicts.items()))
     total = verdicts.total()
     print(f"runs {total} (of {options.runs}; the others ask what is known), {shown}")

@@ -3,11 +3,43 @@
 import os
 import shutil
 import sysconfig
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NoReturn
 
 import pytest
+
+from tests.budget import Budget
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have the seconds of each folder added up where the results arrive."""
+    if not hasattr(config, "workerinput"):
+        config.pluginmanager.register(Budget())
+
+
+_MARK_OF_FIXTURE = {
+    "chromium": "browser",
+    "directed_results": "campaign",
+    "extensions": "compiler",
+    "gcc": "compiler",
+    "program": "compiler",
+    "subject": "law",
+}
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark tests by the dear things that they ask for."""
+    for item in items:
+        for name in getattr(item, "fixturenames", ()):
+            if name in _MARK_OF_FIXTURE:
+                item.add_marker(_MARK_OF_FIXTURE[name])
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Do without tests that compile, where there is no compiler."""
+    if item.get_closest_marker("compiler") is not None:
+        _program("gcc")
 
 
 def _program(name: str) -> str:
@@ -47,6 +79,32 @@ def extensions() -> None:
     _program("gcc")
     if not Path(sysconfig.get_path("include"), "Python.h").is_file():
         _do_without("needs the headers of Python, `python3-dev`")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def scratch(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A cache of its own for each run of tests, shared by its processes, and a hasty compiler.
+
+    What is compiled in tests runs for milliseconds: to optimise it would take longer.
+    """
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if os.environ.get("PYTEST_XDIST_WORKER") else base) / "scratch"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    made = base / "cc"
+    made.write_text('#!/bin/sh\nexec gcc "$@" -O0\n')
+    made.chmod(0o755)
+    hasty = made.rename(folder / "cc")  # at once, whoever else does it
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        if shutil.which("gcc"):
+            patch.setenv("CC", str(hasty))
+        yield folder
+
+
+@pytest.fixture
+def optimised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """C is compiled as it is for users."""
+    monkeypatch.delenv("CC", raising=False)
 
 
 @pytest.fixture

@@ -22,11 +22,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: without the program's name; default `sys.argv[1:]`.
     """
-    try:
-        namespace = _parser().parse_args(arguments)
-    except SystemExit as stop:  # argparse has said what is wrong
-        return stop.code if isinstance(stop.code, int) else 2
-    return guarded(namespace)
+    return guarded(lambda: _parser().parse_args(arguments))
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -44,6 +44,9 @@ class DiagnosedError(RvmonError, ValueError):
         super().__init__(rendered)
         self.diagnostics = tuple(diagnostics)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.diagnostics, *self.args)
+
 
 class SpecError(DiagnosedError):
     """A specification cannot be used; `diagnostics` lists all its errors."""

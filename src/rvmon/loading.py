@@ -51,7 +51,7 @@ def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None 
 
 
 def _compile(text: str, name: str, const: Mapping[str, str] | None, directory: Path | None) -> Spec:
-    from rvmon.spec.compiled_cache import compile_kept
+    from rvmon.spec.compiled_cache import compile_cached
 
-    checked, warnings = compile_kept(text, name=name, constants=const, directory=directory)
+    checked, warnings = compile_cached(text, name=name, constants=const, directory=directory)
     return Spec(checked, warnings)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import copy
-from functools import cached_property
-from pathlib import Path
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rvmon.spec.checked.selection import requirements_asked, sources_asked
@@ -17,13 +15,14 @@ if TYPE_CHECKING:
     from rvmon.codegen.unit_plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
+    from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness import RobustnessMonitor
     from rvmon.monitor.robustness_values import Margins
-    from rvmon.readers.columns import TableRecording
     from rvmon.readers.reading import Reading, ReadingArguments, Telling
-    from rvmon.readers.recording import FileRecording
+    from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
+    from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
 
@@ -101,9 +100,30 @@ class Spec:
 
     @cached_property
     def _compiled(self) -> CompiledSpec:
-        from rvmon.monitor import compile_spec
+        from rvmon.monitor.compiled_spec import CompiledSpec
 
-        return compile_spec(self.checked)
+        return CompiledSpec(self.checked)
+
+    def engines(self, *, only: Iterable[str] | None = None) -> Mapping[str, EngineChoice]:
+        r"""Which engine `auto` takes for each requirement, online and for recordings, and why.
+
+        Args:
+            only: ids of the requirements, as they are judged together; default all.
+
+        Raises:
+            UnknownNameError: there is no such requirement.
+
+        >>> from rvmon import loads
+        >>> text = "signal a, b : bool\nrequirement R\n  upon a then within 2 s for 1 s b\n"
+        >>> choice = loads(text).engines()["R"]
+        >>> choice.online, choice.recording
+        ('python', 'python')
+        >>> print(choice.refused["columns"].reason)
+        has an automaton of more than one clock, or of too many locations
+        """
+        from rvmon.monitor.engines.choice import choices
+
+        return choices(self._compiled.chosen(requirements_asked(self.checked, only)))
 
     def plan(self, *, only: Iterable[str] | None = None) -> Plan:
         """What `rvmon.codegen` makes Python and C of that run without rvmon.
@@ -175,15 +195,10 @@ class Spec:
         self,
         trace: Any,
         *,
-        time: str | None = None,
-        columns: Mapping[str, str] | None = None,
-        nan: str | None = None,
-        no_update: Any = None,
-        sources: Iterable[str] | None = None,
-        allow_missing: bool | Iterable[str] = False,
         engine: str = "auto",
         only: Iterable[str] | None = None,
         until: float | None = None,
+        **reading: Unpack[ReadingArguments],
     ) -> Report:
         r"""Judge a finished trace; the same content gives the same records, whatever holds it.
 
@@ -191,19 +206,15 @@ class Spec:
             trace: a path (`.csv`, `.jsonl`, `.parquet`), a table (arrays or lists by name, an
                 Arrow table, a data frame), a `Recording`, or an iterable of `(t, values)` with t
                 in seconds.
-            time: the time column of a table or a file, no signal, and its unit; see `reading`.
-            columns: what columns are called that have other names than declared; see `reading`.
-            nan: what NaN says: `unknown`, or `no update`, as in a merge of topics; see `reading`.
-            no_update: a further value that stands for no update; see `reading`.
-            sources: the signals and events that can arrive, the others are unknown throughout;
-                default the columns that there are, of JSON lines and pairs all that is declared.
-            allow_missing: whether a trace in columns may lack names that the requirements read, or
-                the names that it may lack: what reads them is inconclusive. If the sources are
-                named, it may.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
+            **reading: `time`, `columns`, `nan`, `no_update`: see `reading`. `sources`: the signals
+                and events that can arrive, the others are unknown throughout; default the columns
+                that there are, of JSON lines and pairs all that is declared. `allow_missing`:
+                whether a trace in columns may lack names that the requirements read, or the names
+                that it may lack: what reads them is inconclusive. If the sources are named, it may.
 
         Raises:
             MissingNameError: a trace in columns has none for a name that a requirement reads.
@@ -222,18 +233,32 @@ class Spec:
         return evaluate_trace(
             self._compiled,
             trace,
-            self._reading(
-                time=time,
-                columns=columns,
-                nan=nan,
-                no_update=no_update,
-                sources=sources,
-                allow_missing=allow_missing,
-            ),
+            self._reading(**reading),
             only=requirements_asked(self.checked, only),
             engine=engine,
             until=None if until is None else ticks_of_seconds(until),
         )
+
+    def judge(
+        self,
+        source: Source,
+        *,
+        engine: str = "auto",
+        only: Iterable[str] | None = None,
+        decided: Callable[[Sequence[Attempt]], object] = len,
+    ) -> Report:
+        """Judge a recording that is open; `evaluate` opens it as well.
+
+        Args:
+            source: the recording.
+            engine: as for `evaluate`; so is the next, and so are the errors.
+            only: ids of the requirements.
+            decided: told the attempts as they are decided, where samples are judged one by one.
+        """
+        from rvmon.monitor.engines.registry import Asked, engine_named
+
+        asked = Asked(requirements_asked(self.checked, only), decided=decided)
+        return engine_named(engine).judge(self._compiled, source, asked)
 
     def _reading(
         self,
@@ -246,47 +271,6 @@ class Spec:
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
         return Reading(self.reading(**told).schema, sources_asked(self.checked, sources), allowed)
-
-    def names_read(self, *, only: Iterable[str] | None = None) -> tuple[str, ...]:
-        """The signals and events that requirements read.
-
-        Args:
-            only: ids of the requirements; default all.
-
-        Raises:
-            UnknownNameError: there is no such requirement.
-        """
-        from rvmon.monitor.missing import names_read
-
-        return tuple(names_read(self._compiled, requirements_asked(self.checked, only)))
-
-    def expect_names(
-        self,
-        recording: FileRecording | TableRecording,
-        *,
-        only: Iterable[str] | None = None,
-        allow_missing: bool | Iterable[str] = False,
-    ) -> tuple[str, ...]:
-        """Refuse a recording in columns that lacks a name which a requirement reads.
-
-        Args:
-            recording: a file, or a table in memory.
-            only: ids of the requirements; default all.
-            allow_missing: whether it may lack names, or the names that it may lack.
-
-        Returns:
-            The names that it lacks, and may.
-
-        Raises:
-            MissingNameError: it lacks others.
-            UnknownNameError: a name that it may lack is not declared.
-        """
-        from rvmon.monitor.missing import expect_names
-
-        chosen = None if only is None else tuple(only)
-        return expect_names(
-            self._compiled, recording, self.schema.columns, only=chosen, allowed=allow_missing
-        )
 
     def evaluate_many(
         self,
@@ -316,52 +300,18 @@ class Spec:
         >>> [report.verdicts["R1"].value for report in spec.evaluate_many(runs)]
         ['P', 'F']
         """
-        from rvmon.monitor.many import evaluate_traces
+        from rvmon.execute.parallel import execute
+        from rvmon.monitor.finished import evaluate_trace
 
-        return evaluate_traces(
+        begin = partial(
+            partial,
+            evaluate_trace,
             self._compiled,
-            traces,
-            self._reading(**reading),
+            reading=self._reading(**reading),
             only=requirements_asked(self.checked, only),
             engine=engine,
-            jobs=jobs,
         )
-
-    def evaluate_file(
-        self,
-        path: str | Path,
-        *,
-        engine: str = "auto",
-        only: Iterable[str] | None = None,
-        until: float | None = None,
-        cut: bool = False,
-        ignored: Counter[str] | None = None,
-    ) -> Report | None:
-        """Judge a file by its columns, a block at a time; see `evaluate`.
-
-        Args:
-            path: as `evaluate` takes it; so are the others.
-            engine: `auto` or the name of one.
-            only: ids of the requirements.
-            until: the end of the trace in seconds.
-            cut: whether rows behind that end are left out, too.
-            ignored: names of JSON lines that are not declared are counted here.
-
-        Returns:
-            `None` where rows have to be read and judged one by one.
-        """
-        from rvmon.monitor.batch_file import evaluate_file
-
-        return evaluate_file(
-            self._compiled,
-            self.schema,
-            path,
-            only=None if only is None else tuple(only),
-            engine=engine,
-            until=None if until is None else ticks_of_seconds(until),
-            cut=cut,
-            ignored=Counter() if ignored is None else ignored,
-        )
+        return execute(traces, begin, jobs=jobs, what="trace")
 
     def robustness(
         self,
@@ -398,7 +348,7 @@ class Spec:
         from rvmon.monitor.robustness import margins_of
 
         chosen = requirements_asked(self.checked, only)
-        recording = open_trace(self._compiled, trace, self._reading(**reading), only=chosen)
+        recording = open_trace(self.checked, trace, self._reading(**reading), only=chosen)
         return margins_of(
             self._compiled,
             recording,
@@ -448,4 +398,4 @@ class Spec:
         from rvmon.monitor.finished import open_trace
 
         reading.setdefault("allow_missing", True)
-        return open_trace(self._compiled, trace, self._reading(**reading), only=None)
+        return open_trace(self.checked, trace, self._reading(**reading), only=None)

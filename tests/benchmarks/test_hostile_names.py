@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-
 import pytest
 from benchmarks.hostile_names import WRITERS, Documents, main
 from tests.tools.hostile import FORGERIES
@@ -21,7 +19,7 @@ def test_what_is_written_reads_back_as_names(documents, writer):
     assert writer(documents)
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.compiler
 def test_every_command_shows_names_and_obeys_none(capsys):
     """Also in what it refuses, and in what the C program says."""
     assert main(["--names", "40", "--through-commands", "40"]) == 0

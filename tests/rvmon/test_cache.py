@@ -165,11 +165,9 @@ def test_a_full_disk_costs_only_what_would_be_kept(folder, tmp_path, monkeypatch
     assert any(one.name.startswith("spec-") for one in folder.iterdir())
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
+@pytest.mark.parametrize("engine", ["auto", pytest.param("c", marks=pytest.mark.compiler)])
 def test_two_processes_that_compile_the_same_at_once_keep_it_whole(folder, tmp_path, engine):
     """Both judge, nothing unfinished is left, and what is kept is read back."""
-    if engine == "c" and shutil.which("cc") is None:
-        pytest.skip("no C compiler")
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     words = [sys.executable, "-c", COMPILE, str(path), engine]

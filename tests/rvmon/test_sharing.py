@@ -15,6 +15,8 @@ import pytest
 
 import rvmon
 
+pytestmark = pytest.mark.process
+
 _SPEC = """spec s
 signal x : real
 event e

@@ -11,7 +11,7 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences, frame_differences
-from rvmon.testing.drive import Monitored, drive, is_asked
+from rvmon.testing.drive import Monitored, drive, is_online
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.generate_trace import TraceProfile, random_trace
 from rvmon.testing.health import health_differences
@@ -144,7 +144,7 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
             return None
         actual, _ = drive(monitor, case)
         found = differences(expected, actual)
-        if is_asked(monitor):
+        if is_online(monitor):
             provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += frame_differences(expected, actual)
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)

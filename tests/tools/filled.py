@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from rvmon.codegen.c_batch import BatchLibrary
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.batch import evaluate_blocks, evaluate_plain
-from rvmon.monitor.batch_c import evaluate_c_blocks
-from rvmon.monitor.codegen_support import can_stand_alone, plan_alone
+from rvmon.monitor.codegen_support import plan_alone
+from rvmon.monitor.engines.registry import Asked, engine_named
+from rvmon.readers.blocks import Block, up_to
+from rvmon.readers.source import Fillable, Source
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
@@ -52,7 +53,7 @@ def judge_columns(
     Args:
         compiled: the case's specification.
         case: from `filled`.
-        engine: `auto`, `c`, or `rows` for the way of `auto` where arrays alone do not do.
+        engine: the name of one.
         cuts: rows at which a new block of columns begins, in order.
 
     Returns:
@@ -73,23 +74,41 @@ def judge_columns(
     times = np.array([sample.t for sample in case.samples], np.int64)
     columns = {name: column(name) for name in names}
     blocks = [
-        (times[start:stop], {name: column[start:stop] for name, column in columns.items()})
+        Block(times[start:stop], {name: column[start:stop] for name, column in columns.items()})
         for start, stop in pairwise((0, *cuts, len(times)))
     ]
-    if engine == "c":
-        return evaluate_c_blocks(compiled, names, blocks, only=None, until=case.end)
-    if engine == "rows":
-        return evaluate_blocks(compiled, names, blocks, only=None, engine="auto", until=case.end)
-    return evaluate_plain(compiled, names, lambda: blocks, only=None, engine=engine, until=case.end)
+    source = Source(BlockRecording(blocks), case.end)
+    return engine_named(engine).judge(compiled, source, Asked())
+
+
+@dataclass(frozen=True, slots=True)
+class BlockRecording:
+    """Blocks in memory as a recording."""
+
+    held: Sequence[Block]
+    end: int | None = None
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The columns."""
+        return frozenset(self.held[0].columns)
+
+    def blocks(self, _: Fillable, until: int | None = None) -> Iterator[Block]:
+        """See `rvmon.readers.recording.FileRecording.blocks`."""
+        return (up_to(until, block) for block in self.held)
+
+    def __iter__(self) -> Iterator[Sample]:
+        """The rows."""
+        for block in self.held:
+            lists = {name: column.tolist() for name, column in block.columns.items()}
+            for place, t in enumerate(block.times.tolist()):
+                yield Sample(t, {name: cells[place] for name, cells in lists.items()})
 
 
 def _judges(compiled: CompiledSpec, engine: str) -> bool:
     if engine != "c":
         return compiled.checked.max_delay is None
-    requirements = compiled.requirements.values()
-    if compiled.checked.max_delay is not None or not all(
-        one.automaton is not None and can_stand_alone(one) for one in requirements
-    ):
+    if any(engine_named("c").refuses(one) for one in compiled.requirements.values()):
         return False
     key = ("c", None)
     if key not in compiled.forms:

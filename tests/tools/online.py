@@ -8,7 +8,7 @@ from typing import Any
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, Outcome, key_of
-from rvmon.testing.drive import Monitored, is_asked, tell
+from rvmon.testing.drive import Monitored, feed, is_online
 from rvmon.testing.held_back import HeldBack
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
@@ -40,10 +40,10 @@ def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
     forecast: dict[Key, Verdict] = {}
     came = moments(case, settle=settle)
     for count, (action, moment) in enumerate(zip(case.actions, came, strict=True), start=1):
-        attempts = tell(monitor, action)
+        attempts = feed(monitor, action)
         decided, waiting = ({}, {}) if moment is None else judgement.at(moment)
         found = [*_returned(decided, attempts, told)]
-        if is_asked(monitor):
+        if is_online(monitor):
             found += _early(attempts, due, action, settle) if count > 1 else ()
             open_ = monitor.open
             found += _open(waiting, open_)
@@ -68,7 +68,7 @@ def differences_after_end(case: Case, monitor: Monitored, report: Report) -> lis
     last = case.actions[-1] if case.actions else 0
     later = 1_000 + (last.t if isinstance(last, Sample) else last)
     lines = []
-    if is_asked(monitor) and monitor.next_due is not None:
+    if is_online(monitor) and monitor.next_due is not None:
         lines.append(f"due at {monitor.next_due}, though finished")
     calls: tuple[Callable[[], object], ...] = (
         lambda: monitor.step_ns(later, {}),

@@ -43,6 +43,8 @@ from tests.tools.law import judge, word
 from tests.tools.online import differences_after_end, online_differences
 from tests.tools.shrink import shrink
 
+pytestmark = pytest.mark.law
+
 
 class Echo:
     """The oracle as an online monitor: it judges the whole prefix anew at every call."""

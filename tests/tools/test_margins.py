@@ -6,7 +6,7 @@ from rvmon.monitor.robustness import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.compare import key_of
-from rvmon.testing.drive import tell
+from rvmon.testing.drive import feed
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
 from rvmon.testing.show import show_case
@@ -16,7 +16,9 @@ from tests.tools.differential import case_of
 from tests.tools.judgement import Judgement
 from tests.tools.margins import margins
 
-PAIRS = 90
+pytestmark = pytest.mark.law
+
+PAIRS = 40
 
 
 def measured(case):
@@ -27,7 +29,7 @@ def measured(case):
     monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
     found, bounds = {}, {}
     for action in case.actions:
-        for one in tell(monitor, action):
+        for one in feed(monitor, action):
             found[key_of(one)] = one.robustness
         for one in monitor.open:
             assert_within(one.robustness, bounds.get(key_of(one)), case)

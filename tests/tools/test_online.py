@@ -30,6 +30,8 @@ from tests.tools.law import judge
 from tests.tools.moments import Moment, moments
 from tests.tools.online import online_differences
 
+pytestmark = pytest.mark.law
+
 
 def test_what_is_owed_and_its_deadline_are_compared() -> None:
     """What is shown of an open attempt has to be undecided, and so has time to be, until then."""

@@ -10,17 +10,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from handover.campaign.documents import table_document, to_json
-from handover.campaign.execute import INTERRUPTED, WORKER_DIED, execute
+from handover.campaign.execute import INTERRUPTED, execute
 from handover.campaign.files import dated_files, left_over, write_tables, write_tests
 from handover.campaign.model_checking import check_model
-from handover.campaign.outcome import Results
-from handover.campaign.plan import Plan, plan
+from handover.campaign.plan import plan
 from handover.campaign.program import typed
 from handover.campaign.strategies import STRATEGIES
 from handover.campaign.summarise import summarise
 from handover.campaign.summary import CampaignSummary
 from handover.campaign.text import print_summary
 from handover.campaign.write_pages import REPORT, write_pages
+from rvmon.cli.progress import bar
 from rvmon.errors import UnknownNameError
 from rvmon.loading import load
 from rvmon.report.folder import made
@@ -57,7 +57,7 @@ def run_demo(arguments: argparse.Namespace) -> int:
 
 
 def _exit_code(summary: CampaignSummary) -> int:
-    return {"": 0, INTERRUPTED: 130, WORKER_DIED: 3}[summary.cut_short]
+    return {"": 0, INTERRUPTED: 130}.get(summary.cut_short, 3)
 
 
 def _campaign(
@@ -80,7 +80,8 @@ def _campaign(
         )
     # Wrong requirements are told before anything is played.
     specs = {robot: load(path) for robot, path in chosen.specs.items()} if chosen.monitors else {}
-    results = _execute(chosen, arguments.jobs, console)
+    with bar("tests", len(chosen.jobs())) as tell:
+        results = execute(chosen, jobs=arguments.jobs, progress=tell)
     texts = {robot: _texts(specs.get(robot)) for robot in chosen.specs}
     checked = {}
     if "model-based" in chosen.tests and chosen.monitors:
@@ -116,16 +117,6 @@ def _texts(spec: Spec | None) -> Mapping[str, str]:
     if spec is None:
         return {}
     return {name: requirement.text for name, requirement in spec.requirements.items()}
-
-
-def _execute(chosen: Plan, jobs: int | None, console: Console) -> Results:
-    from rich.progress import MofNCompleteColumn, Progress
-
-    columns = (*Progress.get_default_columns(), MofNCompleteColumn())
-    silent = not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=silent) as bar:
-        task = bar.add_task("tests", total=len(chosen.jobs()))
-        return execute(chosen, jobs=jobs, progress=lambda count: bar.advance(task, count))
 
 
 def _show(summary: CampaignSummary) -> None:

@@ -1,9 +1,9 @@
-"""Play jobs one after the other in one process, judged and measured."""
+"""Play tests one after the other in one process, judged and measured."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from handover.campaign.outcome import Outcome
@@ -15,46 +15,30 @@ from handover.driver.draws import draw
 from rvmon.loading import load
 
 
-@dataclass(frozen=True, slots=True)
-class Chunk:
-    """Jobs for one worker, all against one robot.
+def player(specs: Mapping[str, Path], *, repeat: bool) -> Callable[[Job], list[Outcome]]:
+    """What plays a job in this process.
 
-    Attributes:
-        start: position of the first job in the plan.
-        jobs: what to play.
-        spec: the file of the requirements; `None` judges nothing.
+    Args:
+        specs: by robot, the file of the requirements that judge it; none judges nothing.
+        repeat: whether a test whose signals got lost is played once more without that loss, as a
+            second outcome.
     """
-
-    start: int
-    jobs: tuple[Job, ...]
-    spec: Path | None
-
-
-@dataclass(frozen=True, slots=True)
-class Played:
-    """What came out of a chunk; fewer outcomes than jobs if it was interrupted."""
-
-    chunk: Chunk
-    outcomes: tuple[Outcome, ...]
-
-
-def play(chunk: Chunk) -> Played:
-    """Play a chunk; an interrupt ends it after the tests that are finished."""
-    checker = None if chunk.spec is None else Checker(load(chunk.spec))
+    checkers = {robot: Checker(load(path)) for robot, path in specs.items()}
     meter = StatementMeter()
-    outcomes: list[Outcome] = []
-    try:
-        for job in chunk.jobs:
-            outcomes.append(_play_one(job, checker, meter))  # noqa: PERF401  # keeps what is done
-    except KeyboardInterrupt:
-        pass
-    return Played(chunk, _with_lines(outcomes, meter))
+
+    def played(job: Job) -> list[Outcome]:
+        outcome = _play(job, checkers.get(job.robot), meter)
+        if outcome.connected or not repeat:
+            return [outcome]
+        return [outcome, _play(replace(job, startup_loss=False), checkers.get(job.robot), meter)]
+
+    return played
 
 
-def _play_one(job: Job, checker: Checker | None, meter: StatementMeter) -> Outcome:
+def _play(job: Job, checker: Checker | None, meter: StatementMeter) -> Outcome:
     if checker is not None:
         checker.begin()
-    meter.begin(_context(job))
+    meter.begin()
     run = run_test(
         job.test,
         robot=job.robot,
@@ -68,21 +52,9 @@ def _play_one(job: Job, checker: Checker | None, meter: StatementMeter) -> Outco
         job=job,
         verdicts={} if report is None else report.verdicts,
         states=tuple(state for _, state in run.states),
-        lines=frozenset(),
+        lines=meter.executed(),
         stepped_s=run.stepped_s,
         simulated_s=run.simulated_s,
         error=run.error,
         connected=draw(job.test.seed, startup_loss=loses).connected,
-    )
-
-
-def _context(job: Job) -> str:
-    return f"{job.test.strategy}/{job.test.name}"
-
-
-def _with_lines(outcomes: Sequence[Outcome], meter: StatementMeter) -> tuple[Outcome, ...]:
-    executed = meter.executed()
-    return tuple(
-        replace(outcome, lines=executed.get(_context(outcome.job), frozenset()))
-        for outcome in outcomes
     )

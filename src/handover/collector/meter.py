@@ -15,20 +15,22 @@ _BEFORE_THE_TEST = "__init__"
 
 
 class StatementMeter:
-    """One measurement for many tests, each with its own context.
+    """One measurement for many tests, one after the other, each with its own context.
 
     It is on only while the robot takes a step, so that the simulation around it pays nothing:
     give the meter itself as `around_robot_step=lambda: meter`.
     """
 
     def __init__(self) -> None:
-        self.statements = robot_statements()
+        self._path = code_blocks()[0].path
         self._coverage = _coverage()
+        self._tests = 0
 
-    def begin(self, test: str) -> None:
-        """From now on, what runs belongs to this test."""
+    def begin(self) -> None:
+        """From now on, what runs belongs to a new test."""
+        self._tests += 1
         self._coverage.start()
-        self._coverage.switch_context(test)
+        self._coverage.switch_context(str(self._tests))
         self._coverage.stop()
 
     def __enter__(self) -> None:
@@ -42,14 +44,11 @@ class StatementMeter:
     ) -> None:
         self._coverage.stop()
 
-    def executed(self) -> dict[str, frozenset[int]]:
-        """The lines that each test ran; tests that ran none are absent."""
-        contexts = self._coverage.get_data().contexts_by_lineno(self.statements.path)
-        lines: dict[str, set[int]] = {}
-        for line, tests in contexts.items():
-            for test in tests:
-                lines.setdefault(test, set()).add(line)
-        return {test: frozenset(seen) for test, seen in lines.items()}
+    def executed(self) -> frozenset[int]:
+        """The lines that this test ran."""
+        data = self._coverage.get_data()
+        data.set_query_context(str(self._tests))
+        return frozenset(data.lines(self._path) or ())
 
 
 def robot_statements() -> Statements:

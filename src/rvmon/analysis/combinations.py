@@ -18,7 +18,7 @@ from rvmon.analysis.choices import Silence, values_of
 from rvmon.analysis.solve import is_solved
 from rvmon.dataflow.inputs import Inputs
 from rvmon.dataflow.leaves import captured_names, evaluator, reads
-from rvmon.formula.state import TRUE, Lapsed, Leaf, Missing, State, StateOp, Unborn
+from rvmon.formula.state import TRUE, Lapsed, Leaf, State, StateOp, Unborn
 from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
@@ -251,7 +251,7 @@ def _is_free(node: State) -> bool:
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
     """Whether all truths of a leaf are seen by trying values."""
     match leaf:
-        case Constant() | SignalAtom() | EventAtom() | Unborn() | Missing() | Lapsed():
+        case Constant() | SignalAtom() | EventAtom() | Unborn() | Lapsed():
             return True
         case Compare():
             solved = is_solved(leaf) and not captured_names(leaf)

@@ -1,8 +1,8 @@
-"""What the runtime needs of an engine that judges attempts step by step."""
+"""What judges attempts step by step."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from rvmon.formula.residual import Residual
 
@@ -20,11 +20,18 @@ class Machine(Protocol):
     """
 
     @property
+    def moves(self) -> Any:
+        """What each edge does, worked out before; see `rvmon.runtime.table.moves_of`."""
+
+    @property
     def start(self) -> Token:
         """The token of an attempt before the position of its trigger."""
 
     def step(self, token: Token, t: int, letter: int) -> Token:
         """The token after a position at `t`, which is later than all before."""
+
+    def stays(self, token: Token, t: int, letter: int, /) -> bool:
+        """Whether a token that was stepped at `t` surely stays as it is under the same letter."""
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
         """For each clock of a location the ages, ascending, from which on it acts differently."""

@@ -49,6 +49,8 @@ class Progression:
             in more than `MOST_CLAUSES` ways.
     """
 
+    moves = None
+
     def __init__(self, owed: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
         self.alphabet = alphabet
         self._name = name
@@ -142,6 +144,10 @@ class Progression:
                 "window at 0, start it `upon` an event, or use `time sampled`"
             )
         return self._location(residual), sources
+
+    def stays(self, _: Token, __: int, ___: int) -> bool:
+        """See `Machine`; no edge is worked out before it is taken."""
+        return False
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
         """See `Machine`."""

@@ -1,52 +1,71 @@
-"""An automaton as a machine: steps are look-ups in its tables."""
+"""The tables of an automaton in the layout that monitors step through."""
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from array import array
+from dataclasses import dataclass
+from typing import Any
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.location import NOW
-from rvmon.automaton.machine import Token
+from rvmon.automaton.end import EndClause, end_clauses
+from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram
 from rvmon.formula.residual import Residual
+from rvmon.runtime.table import Table
+
+Edge = tuple[int, tuple[int, ...]]
+"""Target, and for each of its clocks the old clock it is, or −1 for one started now."""
 
 
-class TableMachine:
-    """Runs an automaton."""
+class TableMachine(Table):
+    """Steps an automaton through its tables, and knows what is owed."""
 
     def __init__(self, automaton: Automaton) -> None:
+        super().__init__(*_layout(automaton, automaton.class_of))
         self.automaton = automaton
-        self.start: Token = (automaton.initial, ())
-        self._cuts = tuple(location.cuts for location in automaton.locations)
-
-    def _row(self, token: Token, t: int) -> int:
-        location, anchors = token
-        row = self.automaton.bases[location]
-        if anchors:
-            strides = self.automaton.strides[location]
-            for anchor, cuts, stride in zip(anchors, self._cuts[location], strides, strict=True):
-                row += bisect_right(cuts, t - anchor) * stride
-        return row
-
-    def step(self, token: Token, t: int, letter: int) -> Token:
-        """See `Machine`."""
-        automaton = self.automaton
-        row = self._row(token, t)
-        edge = automaton.edges[row * automaton.classes + automaton.class_of[letter]]
-        sources = automaton.sources[edge]
-        if not sources:
-            return automaton.targets[edge], ()
-        anchors = token[1]
-        moved = tuple([t if source == NOW else anchors[source] for source in sources])
-        return automaton.targets[edge], moved
-
-    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
-        """See `Machine`."""
-        return self._cuts[location]
-
-    def time_value(self, token: Token, t: int) -> int:
-        """See `Machine`."""
-        return self.automaton.time_values[self._row(token, t)]
 
     def residual(self, location: int) -> Residual:
         """See `Machine`."""
         return self.automaton.locations[location].residual
+
+
+@dataclass(frozen=True, slots=True)
+class TableData:
+    """See `rvmon.runtime.table.Table`, whose arguments these are, in its order."""
+
+    initial: int
+    cuts: tuple[tuple[tuple[int, ...], ...], ...]
+    bases: tuple[int, ...]
+    strides: tuple[tuple[int, ...], ...]
+    class_of: tuple[int, ...]
+    rows: tuple[tuple[Edge | None, ...], ...]
+    time_values: tuple[int, ...]
+    end_clauses: tuple[tuple[EndClause, ...], ...]
+
+
+def tables_of(automaton: Automaton) -> TableData:
+    """Lay an automaton out; the classes of its letters have to stand in a table."""
+    return TableData(*_layout(automaton, tuple(_table(automaton.class_of))))
+
+
+def _layout(automaton: Automaton, class_of: Any) -> tuple[Any, ...]:
+    edges = [
+        None if number < 0 else (automaton.targets[number], automaton.sources[number])
+        for number in automaton.edges
+    ]
+    width = automaton.classes
+    return (
+        automaton.initial,
+        tuple(location.cuts for location in automaton.locations),
+        automaton.bases,
+        automaton.strides,
+        class_of,
+        tuple(tuple(edges[row : row + width]) for row in range(0, len(edges), width)),
+        tuple(automaton.time_values),
+        tuple(end_clauses(location.residual) for location in automaton.locations),
+    )
+
+
+def _table(class_of: LetterClasses) -> array[int]:
+    if isinstance(class_of, LetterDiagram):
+        raise TypeError("too many letters for a table: the plan should have refused them")
+    return class_of

@@ -11,16 +11,16 @@ import gc
 import io
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
-from rvmon.children import interrupted_by_sigterm
 from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
 from rvmon.cli.say import warn
 from rvmon.errors import RvmonError
+from rvmon.execute.interrupt import interrupted_by_sigterm
 
 if TYPE_CHECKING:
     import argparse
@@ -49,15 +49,7 @@ def program() -> int:
     # NumPy's algebra, of which nothing is used, would start a thread per core.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(_MANY)
-    try:
-        from rvmon.cli.at_once import judged_at_once
-
-        with interrupted_by_sigterm():
-            code = judged_at_once(sys.argv[1:])
-    except KeyboardInterrupt:
-        return _interrupted()
-    if code is None:
-        code = main()
+    code = main()
     gc.freeze()  # what is left goes with the process: it is not searched once more
     return code
 
@@ -77,19 +69,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - as long as the process
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a narrow encoding costs signs, not the answer
-    try:
-        namespace = _parser(words).parse_args(with_values(words))
-    except SystemExit as stop:  # argparse has said what is wrong
-        return stop.code if isinstance(stop.code, int) else 2
-    return guarded(namespace)
+    return guarded(lambda: _parser(words).parse_args(with_values(words)))
 
 
-def guarded(namespace: argparse.Namespace) -> int:
-    """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
+def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
+    """Run the chosen subcommand; errors become a message and an exit code, never a traceback.
+
+    Args:
+        parsed: gives the words of the command line.
+    """
     try:
-        with interrupted_by_sigterm(), at_most(getattr(namespace, "most_megabytes", None)):
-            code = namespace.run(namespace)
-            sys.stdout.flush()
+        with interrupted_by_sigterm():
+            try:
+                namespace = parsed()
+            except SystemExit as stop:  # argparse has said what is wrong
+                return stop.code if isinstance(stop.code, int) else 2
+            with at_most(getattr(namespace, "most_megabytes", None)):
+                code = namespace.run(namespace)
+                sys.stdout.flush()
     except RvmonError as error:
         text = str(error)
         rendered = text.startswith(("error", "warning"))  # diagnostics bring their own heading

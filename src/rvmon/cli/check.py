@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
@@ -47,7 +48,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--engines",
         action="store_true",
-        help="say which engine judges each requirement, why, and what it remembers",
+        help="say which engine judges each requirement, online and in recordings, and why no other",
     )
     parser.add_argument(
         "--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file"
@@ -62,6 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     constants = constants_of(arguments.const)
     findings: list[Diagnostic] = []
     remarks: list[str] = []
+    engines: dict[str, dict[str, Any]] = {}
     unreadable = broken = 0
     for name in arguments.specs:
         try:
@@ -74,14 +76,15 @@ def run(arguments: argparse.Namespace) -> int:
         checked, found = _checked(text, name, constants)
         findings += found
         if arguments.engines and checked is not None:
-            remarks += _engines(checked)
+            engines[name], table = _engines(checked)
+            remarks.append(table)
         broken += checked is None
         if arguments.analyse and checked is not None:
             more, remark = _analysed(checked, arguments.seconds)
             findings += more
             remarks += remark
     findings = list(dict.fromkeys(findings))  # a file may be imported by several
-    _show(arguments.format, findings)
+    _show(arguments.format, findings, engines if arguments.engines else None)
     if arguments.format == "text":
         if remarks:
             say("\n".join(["", *remarks] if findings else remarks))
@@ -117,23 +120,25 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
     return analysis.findings, analysis_lines(analysis, checked)
 
 
-def _engines(checked: CheckedSpec) -> list[str]:
-    """Which engine judges each requirement, and at what cost."""
-    from rvmon.explain.facts import facts_of
-    from rvmon.monitor import compile_spec
+def _engines(checked: CheckedSpec) -> tuple[dict[str, Any], str]:
+    """Which engine judges each requirement, and why no other: as data, and as a table."""
+    from rvmon.report.engines_text import engines_data, engines_text
+    from rvmon.session import Spec
 
-    lines = []
-    for name, compiled in compile_spec(checked).requirements.items():
-        facts = facts_of(compiled)
-        lines += [f"{name}: {facts['engine']}", f"    remembers {facts['memory']}"]
-    return lines
+    choices = Spec(checked).engines()
+    return engines_data(choices), engines_text(choices).rstrip()
 
 
-def _show(form: str, findings: list[Diagnostic]) -> None:
+def _show(
+    form: str, findings: list[Diagnostic], engines: Mapping[str, dict[str, Any]] | None
+) -> None:
     from rvmon.diagnostics.colour import coloured, wants_colour
     from rvmon.diagnostics.render import render_concise, render_full, render_json
 
     match form:
+        case "json" if engines is not None:
+            said = json.dumps(engines, indent=1, ensure_ascii=False)
+            say_json(f'{{"findings": {render_json(findings)},\n"engines": {said}}}')
         case "json":
             say_json(render_json(findings))
         case "concise" if findings:

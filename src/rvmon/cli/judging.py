@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
-from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from rvmon.children import workers
-from rvmon.cli.post_analysis import can_be_read_again, post_analysis
-from rvmon.cli.progress import shown_while_reading
+from rvmon.cli.post_analysis import post_analysis
+from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.errors import TraceError, WorkerLostError
-from rvmon.loading import load
-from rvmon.readers.reading import Telling
-from rvmon.readers.recording import FileRecording
+from rvmon.execute.parallel import execute
+from rvmon.monitor.missing import expect_names
+from rvmon.readers.recording import FileRecording, can_be_read_again
+from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
@@ -39,7 +38,6 @@ class Options:
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
         allow_missing: the names that recordings in columns may lack; `True`: all.
-        told: how recordings tell things, as `Spec.reading` takes it.
     """
 
     only: tuple[str, ...] | None = None
@@ -48,7 +46,6 @@ class Options:
     strict_columns: bool = False
     robustness: bool = False
     allow_missing: bool | tuple[str, ...] = False
-    told: Telling = field(default_factory=Telling)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,106 +67,76 @@ class Judged:
     missing: tuple[str, ...] = ()
 
 
-def judge_all(
-    spec: Spec,
-    path: str,
-    constants: Mapping[str, str],
-    traces: Sequence[str],
-    options: Options,
-    jobs: int,
-) -> Iterator[Judged]:
+def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) -> Iterator[Judged]:
     """Judge recordings, in their order.
 
     Args:
-        spec: for judging in this process; it reads as the options say.
-        path: of the same spec, for other processes to load.
-        constants: overridden in it.
+        spec: reads as the options say.
         traces: paths.
         options: how to judge.
         jobs: processes; 1 judges here. If one of several is lost, so are the verdicts on what
             comes behind the last that was judged in order, and each of these says so.
     """
-    if jobs > 1 and len(traces) > 1:
-        done = 0
-        try:
-            with workers(min(jobs, len(traces))) as pool:
-                for one in pool.map(partial(_load_and_judge, path, constants, options), traces):
-                    done += 1
-                    yield one
-        except WorkerLostError as error:
-            for trace in traces[done:]:
-                yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
-    else:
-        for trace in traces:
-            yield judge(spec, trace, options)
+    done = 0
+    is_alone = len(traces) == 1
+    begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
+    try:
+        with bar("recordings", len(traces)) as tell:
+            for one in execute(traces, begin, jobs=min(jobs, len(traces)), what="recording"):
+                done += 1
+                if not is_alone:  # that one shows how far it is read
+                    tell(done)
+                yield one
+    except WorkerLostError as error:
+        for trace in traces[done:]:
+            yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
 
 
-def _load_and_judge(
-    path: str, constants: Mapping[str, str], options: Options, trace: str
-) -> Judged:
-    return judge(load(path, const=constants).reading(**options.told), trace, options)
+def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
+    """Judge one recording; if it is broken, what was decided before the break stays decided.
 
-
-@dataclass(frozen=True, slots=True)
-class _Cut:
-    """The samples of a recording up to an instant; it can be read once."""
-
-    samples: Iterator[Sample]
-    names: frozenset[str] | None
-    end: int | None
-
-    def __iter__(self) -> Iterator[Sample]:
-        return self.samples
-
-
-def judge(spec: Spec, trace: str, options: Options) -> Judged:
-    """Judge one recording; if it is broken, what was decided before the break stays decided."""
+    Args:
+        spec: reads as the options say.
+        trace: the path.
+        options: how to judge.
+        is_alone: whether this process judges nothing else.
+    """
     before: list[Attempt] = []
     try:
-        again = can_be_read_again(trace)
-        if not again and trace.endswith((".csv", ".parquet")):
+        if trace.endswith((".csv", ".parquet")) and not can_be_read_again(trace):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
-        ordered = spec.checked.max_delay is None
         recording = opened(spec, trace)
         if options.strict_columns:
             _refuse_mismatch(recording, spec)
-        missing = spec.expect_names(
-            recording, only=options.only, allow_missing=options.allow_missing
+        missing = expect_names(
+            spec.checked,
+            recording,
+            spec.schema.columns,
+            only=options.only,
+            allowed=options.allow_missing,
         )
         end = None if options.until is None else ticks_of_seconds(options.until)
-        report = None
-        meter = None
-        if again and not options.robustness:
-            report = spec.evaluate_file(
-                trace,
-                engine=options.engine,
-                only=options.only,
-                until=options.until,
-                cut=True,
-                ignored=recording.ignored,
+        meter = _Meter(spec, options.only, recording.names, end) if options.robustness else None
+        source = Source(
+            recording,
+            end,
+            is_cut=True,
+            row_by_row="" if meter is None else "robustness is found sample by sample",
+            read=meter.reading if meter else shown_while_reading if is_alone else iter,
+            is_alone=is_alone,
+        )
+        try:
+            report = spec.judge(
+                source, engine=options.engine, only=options.only, decided=before.extend
             )
-        if report is None:
-            samples = _up_to(end, shown_while_reading(recording), ordered=ordered)
-            if options.robustness:
-                meter = _Meter(spec, options.only, recording.names)
-                samples = meter.seeing(samples)
-            if options.engine == "c":
-                cut = _Cut(samples, recording.names, end)
-                report = spec.evaluate(cut, engine="c", only=options.only)
-            else:
-                monitor = spec.monitor(
-                    only=options.only, engine=options.engine, sources=recording.names
-                )
-                for sample in samples:
-                    before.extend(monitor.step_ns(sample.t, sample.values))
-                report = monitor.finish_ns(end)
+        except TraceError:
+            before = before or _judged_before(spec, trace, options)
+            raise
         if meter is not None:
-            report = meter.told(report, end)
+            report = meter.told(report)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
-        if options.engine == "c" and can_be_read_again(trace):
-            before = _judged_before(spec, trace, options)
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(_shown(trace), None, tuple(before), place + message)
@@ -180,8 +147,10 @@ def judge(spec: Spec, trace: str, options: Options) -> Judged:
 
 
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
-    """What is decided up to the place where a recording breaks off."""
+    """What is decided up to the place where a recording breaks off that can be read again."""
     found: list[Attempt] = []
+    if not can_be_read_again(trace):
+        return found
     with suppress(TraceError):
         recording = opened(spec, trace)
         monitor = spec.monitor(only=options.only, sources=recording.names)
@@ -194,33 +163,30 @@ class _Meter:
     """Finds the robustness of attempts while their samples go by."""
 
     def __init__(
-        self, spec: Spec, only: tuple[str, ...] | None, names: frozenset[str] | None
+        self,
+        spec: Spec,
+        only: tuple[str, ...] | None,
+        names: frozenset[str] | None,
+        end: int | None,
     ) -> None:
+        self._end = end
         self._monitor = spec.robustness_monitor(only=only, sources=names)
         self._found: list[Measured] = []
 
-    def seeing(self, samples: Iterator[Sample]) -> Iterator[Sample]:
-        """The same samples, each measured once it was judged."""
-        for sample in samples:
+    def reading(self, recording: FileRecording) -> Iterator[Sample]:
+        """The samples, each measured once it was judged."""
+        for sample in shown_while_reading(recording):
             yield sample
-            self._found.extend(self._monitor.step_ns(sample.t, sample.values))
+            if self._end is None or sample.t <= self._end:
+                self._found.extend(self._monitor.step_ns(sample.t, sample.values))
 
-    def told(self, report: Report, end: int | None) -> Report:
+    def told(self, report: Report) -> Report:
         """The report with a figure for each attempt."""
-        self._found.extend(self._monitor.finish_ns(end))
+        self._found.extend(self._monitor.finish_ns(self._end))
         from rvmon.monitor.robustness_values import margins_from
 
         margins = margins_from(self._found)
         return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))
-
-
-def _up_to(end: int | None, samples: Iterator[Sample], *, ordered: bool) -> Iterator[Sample]:
-    """The samples up to an instant (ticks); what comes behind the first later one may be broken."""
-    if end is None:
-        return samples
-    if ordered:
-        return takewhile(lambda sample: sample.t <= end, samples)
-    return (sample for sample in samples if sample.t <= end)
 
 
 def _shown(trace: str) -> str:

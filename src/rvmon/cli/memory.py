@@ -12,7 +12,8 @@ from rvmon.errors import RvmonError
 if TYPE_CHECKING:
     import argparse
 
-_LEAST = 256
+_LEAST = 512
+"""With less, libraries in C end the process as they are loaded, each in its own words."""
 
 
 def add_max_memory(parser: argparse.ArgumentParser) -> None:

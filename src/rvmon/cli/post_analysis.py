@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from itertools import islice, takewhile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.reading import opened
 from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.recording import can_be_read_again
+from rvmon.readers.source import Source
 from rvmon.session import Spec
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Sample, Trace
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -37,11 +39,6 @@ def in_order(recording: Iterable[Sample]) -> list[Sample]:
         values = sample.values if known is None else {**known.values, **sample.values}
         merged[sample.t] = Sample(sample.t, values)
     return [merged[t] for t in sorted(merged)]
-
-
-def can_be_read_again(trace: str) -> bool:
-    """Whether a recording is a file, and not a stream that is gone when it was read."""
-    return trace != "-" and not Path(trace).is_fifo()
 
 
 def post_analysis(
@@ -78,7 +75,7 @@ def post_analysis(
     silent = _silent(spec, report)
     asked = [names for names, _ in late.values()] + list(silent.values())
     looked_at = frozenset[str]().union(*(names for names in asked if names is not None))
-    changes = _changes(spec, trace, looked_at, end) if asked else None
+    changes = _changes(spec, trace, looked_at, end, samples) if looked_at else None
 
     def read(names: frozenset[str] | None) -> Sequence[Sample]:
         return samples() if names is None or changes is None else changes.samples(names)
@@ -179,20 +176,23 @@ def _misses(
     return {name: miss for name, miss in found.items() if miss}
 
 
-def _changes(spec: Spec, trace: str, names: frozenset[str], end: int) -> Changes | None:
-    """What changes of these names; `None` if the file is not plain."""
-    from rvmon.readers.block_readers import reader_of
+def _changes(
+    spec: Spec,
+    trace: str,
+    names: frozenset[str],
+    end: int,
+    samples: Callable[[], Sequence[Sample]],
+) -> Changes:
+    """What changes of these names, read by columns if the file is plain."""
     from rvmon.readers.changes import Changes
 
     schema = spec.schema
-    reader = reader_of(trace, schema, Counter())
-    if reader is None or spec.checked.max_delay is not None:
-        return None
-    try:
-        blocks = reader(trace, schema, frozenset((*schema.signals, *schema.events)))
-        return Changes(blocks, names, schema.events.keys(), end)
-    except NotPlainError:
-        return None
+    if spec.checked.max_delay is None:
+        with suppress(NotPlainError):
+            source = opened(spec, trace)
+            blocks = source.blocks(lambda: frozenset((*schema.signals, *schema.events)))
+            return Changes(blocks, names, schema.events.keys(), end)
+    return Changes.in_samples(samples(), names, schema.events.keys())
 
 
 def _goals(
@@ -202,26 +202,11 @@ def _goals(
     names: frozenset[str] | None,
     samples: Callable[[], Sequence[Sample]],
 ) -> Mapping[str, Verdict]:
-    from rvmon.monitor.batch_file import evaluate_file
-    from rvmon.monitor.compiled import compile_spec
     from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
 
     goals = Spec(goals_as_requirements(spec.checked))
-    report = None
     if spec.checked.max_delay is None:
-        report = evaluate_file(
-            compile_spec(goals.checked),
-            spec.schema,
-            trace,
-            only=None,
-            engine="auto",
-            until=end,
-            cut=True,
-            ignored=Counter(),
-        )
-    if report is None:
-        monitor = goals.monitor(sources=names)
-        for sample in samples():
-            monitor.step_ns(sample.t, sample.values)
-        report = monitor.finish_ns(end)
-    return goal_verdicts(report)
+        source = Source(spec.recording(trace), end, is_cut=True)
+    else:
+        source = Source(Trace(tuple(samples()), names, end))
+    return goal_verdicts(goals.judge(source))

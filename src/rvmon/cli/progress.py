@@ -1,13 +1,17 @@
-"""A bar on standard error while a long recording is read."""
+"""A bar on standard error while long work is done."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rich.progress import Progress
+
     from rvmon.readers.recording import FileRecording
     from rvmon.trace.sample import Sample
 
@@ -18,29 +22,48 @@ SAMPLES_PER_LOOK = 4096
 """Samples between two looks at the clock."""
 
 
-def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:
-    """The recording's samples; after a second of reading, a bar shows how far it is.
+@contextmanager
+def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
+    """Show how far work is, once it has taken a second; only a terminal sees it.
 
-    Only a terminal sees the bar.
+    Args:
+        what: is being done.
+        total: of the units in which it is counted.
+
+    Yields:
+        What is to be called with the units done so far.
     """
-    samples = iter(recording)
     if not sys.stderr.isatty():
-        yield from samples
+        yield lambda _: None
         return
     started = time.monotonic()
-    for count, sample in enumerate(samples, 1):
-        yield sample
-        if count % SAMPLES_PER_LOOK == 0 and time.monotonic() - started > PATIENCE_S:
-            break
-    else:
-        return
-    from rich.progress import Progress
+    progress: Progress | None = None
 
-    from rvmon.report.terminal import Terminal
+    def tell(done: float) -> None:
+        nonlocal progress
+        if progress is None and time.monotonic() - started >= PATIENCE_S:
+            from rich.progress import Progress
 
-    with Progress(console=Terminal(stderr=True), transient=True) as progress:
-        task = progress.add_task(recording.path, total=1.0)
-        for count, sample in enumerate(samples):
+            from rvmon.report.terminal import Terminal
+
+            progress = Progress(console=Terminal(stderr=True), transient=True)
+            progress.add_task(what, total=total)
+            progress.start()
+        if progress is not None:
+            progress.update(progress.task_ids[0], completed=done)
+
+    try:
+        yield tell
+    finally:
+        if progress is not None:
+            progress.stop()
+
+
+def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:
+    """The recording's samples, and how far it is read."""
+    samples = iter(recording)
+    with bar(recording.path, 1.0) as tell:
+        for sample in samples:
             yield sample
-            if count % SAMPLES_PER_LOOK == 0:
-                progress.update(task, completed=recording.fraction_read)
+            yield from islice(samples, SAMPLES_PER_LOOK)
+            tell(recording.fraction_read)

@@ -15,12 +15,12 @@ from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
     allowed_names,
-    reading_arguments,
     reading_spec,
     reading_words,
 )
 from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.monitor.engines.registry import ENGINES
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
@@ -61,7 +61,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--engine",
         metavar="NAME",
         default="auto",
-        help="how to judge: auto (default), python, automaton, progression, network, or c: "
+        help=f"how to judge: auto (default), {', '.join(ENGINES[1:-1])}, or c: "
         "compiled by the C compiler that is installed, without reasons",
     )
     parser.add_argument(
@@ -102,8 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.cli.judging import Options, judge_all
     from rvmon.loading import load
 
-    constants = constants_of(arguments.const)
-    spec = reading_spec(load(arguments.spec, const=constants), arguments)
+    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     _show_warnings(spec)
     _refuse_places(arguments, spec)
     options = Options(
@@ -113,12 +112,9 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.strict_columns,
         arguments.robustness,
         allowed_names(arguments.allow_missing),
-        reading_arguments(arguments),
     )
     must_trigger = _ids(arguments.require_triggered or None, spec)
-    judged = list(
-        judge_all(spec, arguments.spec, constants, arguments.traces, options, arguments.jobs)
-    )
+    judged = list(judge_all(spec, arguments.traces, options, arguments.jobs))
     _show(arguments.format, spec, judged)
     reports = [one.report for one in judged if one.report is not None]
     _write_files(arguments, spec, judged)

@@ -61,6 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.explain.dissect import dissect
     from rvmon.explain.nearest_miss import nearest_miss
     from rvmon.loading import load
+    from rvmon.monitor.missing import expect_names
     from rvmon.trace.time import ticks_of_seconds
 
     if arguments.trace == "-":
@@ -69,7 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
     name, exact = _named(arguments.attempt, spec)
     recording = opened(spec, arguments.trace)
     allowed = allowed_names(arguments.allow_missing)
-    spec.expect_names(recording, only=[name], allow_missing=allowed)
+    mapped = spec.schema.columns
+    expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
     until = None if arguments.until is None else ticks_of_seconds(arguments.until)
     samples = [one for one in in_order(recording) if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rvmon.cache import is_ours, is_whole, keep, keep_binary, made_folder, read_kept
-from rvmon.children import run
 from rvmon.errors import RvmonError
+from rvmon.execute.command import run
 from rvmon.writing import PREFIX, SUFFIX
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from typing import assert_never
 from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import TraceError
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import Missing
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Arithmetic,
@@ -64,10 +63,9 @@ def several_payloads(event: str, count: int, t: int) -> TraceError:
 
 def _compared(plan: Plan) -> Iterator[Numeric]:
     for state in plan.graph.nodes:
-        atom = state.leaf.atom if isinstance(state.leaf, Missing) else state.leaf
-        if isinstance(atom, Compare):
-            yield atom.left
-            yield atom.right
+        if isinstance(state.leaf, Compare):
+            yield state.leaf.left
+            yield state.leaf.right
 
 
 def _input(part: Numeric) -> str | None:

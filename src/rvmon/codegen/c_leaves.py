@@ -19,7 +19,6 @@ from rvmon.formula.state import (
     Lapsed,
     Leaf,
     Lost,
-    Missing,
     State,
     StateOp,
     Unborn,
@@ -133,9 +132,6 @@ def leaf_value(names: Names, leaf: Leaf, unborn: int = UNKNOWN) -> str:
             return TRUTHS[UNKNOWN]
         case Unborn(signals=signals):
             return f"truth_of(true, {_is_unborn(names, signals)})"
-        case Missing(atom=atom):
-            seen = _is_unborn(names, signals_of(atom).items())
-            return f"missing({leaf_value(names, atom)}, {seen})"
         case Elapsed():
             raise ValueError("elapsed time is looked up by place")
         case BoundAtom():

@@ -96,6 +96,9 @@ class Core(Protocol):
     def times(self) -> tuple[bool, int, int, int]:
         """Whether there was a sample; when the first one was, the last, and the present."""
 
+    def hold(self, held: bool, /) -> None:
+        """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly."""
+
     def next_due(self) -> int:
         """The next instant at which time alone can decide something, or `NEVER`."""
 

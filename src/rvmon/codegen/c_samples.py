@@ -12,8 +12,8 @@ from rvmon.codegen.comment import comment
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import signals_of
-from rvmon.formula.state import UNKNOWN, Leaf, Missing, State, Unborn
-from rvmon.spec.checked.formula import Arithmetic, Compare, SignalAtom
+from rvmon.formula.state import UNKNOWN, Leaf, State, Unborn
+from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
 
@@ -117,29 +117,14 @@ def _born_with(state: State) -> Iterable[tuple[str, bool]]:
     match state.leaf:
         case Unborn(signals=signals):
             return signals
-        case Missing(atom=atom):
-            return signals_of(atom).items()
         case SignalAtom() | Compare() if state.unborn != UNKNOWN:
             return signals_of(state.leaf).items()
         case _:
             return ()
 
 
-def _is_of_knowledge(leaf: Leaf | None) -> bool:
-    """Whether a leaf depends on which of its signals are known, and on no value."""
-    match leaf:
-        case Unborn() | Missing(atom=SignalAtom()):
-            return True
-        case Missing(atom=Compare(left=left, right=right)):
-            return not isinstance(left, Arithmetic) and not isinstance(right, Arithmetic)
-        case _:
-            return False
-
-
 def is_instant(plan: Plan, name: str, leaf: Leaf | None) -> bool:
     """Whether a leaf depends on the present value of this signal and nothing else."""
-    if isinstance(leaf, Missing):
-        return is_instant(plan, name, leaf.atom)
     if isinstance(leaf, SignalAtom):
         return True
     return (
@@ -199,7 +184,7 @@ def _change(plan: Plan, names: Names, name: str) -> Iterator[str]:
     yield from (f"    {line}" for line in _value(plan, name, number))
     for place in plan.graph.by_name.get(name, ()):
         state = plan.graph.nodes[place]
-        if _is_of_knowledge(state.leaf):
+        if isinstance(state.leaf, Unborn):
             knowledge.append(place)
         elif state.leaf is not None and is_instant(plan, name, state.leaf):
             value = leaf_value(names, state.leaf, state.unborn)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.codegen.tables import TableData, tables_of
+from rvmon.automaton.table import TableData, tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.spec.checked.specification import EndPolicy, Mode
 from rvmon.verdict.attempt import Decision

@@ -19,7 +19,6 @@ from rvmon.formula.state import (
     UNKNOWN,
     Leaf,
     Lost,
-    Missing,
     State,
     StateOp,
     Unborn,
@@ -64,8 +63,6 @@ def _leaf_in_words(plan: Plan, leaf: Leaf, place: int) -> bool:
     match leaf:
         case Constant() | SignalAtom() | Lost() | Unborn():
             return True
-        case Missing(atom=atom):
-            return _leaf_in_words(plan, atom, place)
         case ProbeAtom(probe=probe, name=name):
             return probe is Probe.KNOWN and name in plan.signals
         case Compare():
@@ -91,7 +88,7 @@ def _watched(plan: Plan, words: list[int]) -> list[int]:
 def _leaf(plan: Plan, names: Names, place: int, leaf: Leaf) -> Iterator[str]:
     """A leaf over the columns that it reads."""
     columns = sorted(map(names.signal, plan.graph.reads[place].names))
-    absent = {ProbeAtom: FALSE, Missing: TRUE, Unborn: TRUE}
+    absent = {ProbeAtom: FALSE, Unborn: TRUE}
     without = absent.get(type(leaf), plan.graph.nodes[place].unborn)
     given = " && ".join(f"(in->value[{number}] != NULL)" for number in columns)
     yield ""
@@ -99,17 +96,12 @@ def _leaf(plan: Plan, names: Names, place: int, leaf: Leaf) -> Iterator[str]:
     yield "{"
     yield f"    words made = all_rows({TRUTHS[without]});"
     yield f"    if ({given}) {{"
-    atom = leaf.atom if isinstance(leaf, Missing) else leaf
-    if isinstance(atom, SignalAtom | Compare | ProbeAtom):
+    if isinstance(leaf, SignalAtom | Compare | ProbeAtom):
         for number in columns:
             kind = value_type(plan, plan.signals[number])
             yield f"        const {kind} *x{number} = (const {kind} *)in->value[{number}] + first;"
     if isinstance(leaf, Unborn):
         yield "        made = all_rows(IS_FALSE); /* else all rows are taken */"
-    elif isinstance(leaf, Missing):
-        yield from (f"        {line}" for line in _rows(columns, leaf_value(names, leaf.atom)))
-        yield "        made.may &= ~made.is;"
-        yield "        made.is = 0U;"
     elif isinstance(leaf, SignalAtom):
         yield f"        made.is = above(x{columns[0]}, n, 0);"
         yield "        made.may = made.is;"

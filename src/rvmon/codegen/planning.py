@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rvmon.codegen.unit_plan import Plan, PlannedRule, Uses
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import Leaf, Missing, Unborn
+from rvmon.formula.state import Leaf, Unborn
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
@@ -36,16 +36,10 @@ def _uses(graph: Graph, name: str) -> Uses:
 
 
 def _asks_history(leaf: Leaf, name: str) -> bool:
-    if isinstance(leaf, Missing):
-        return _asks_history(leaf.atom, name)
-    if isinstance(leaf, Unborn):
-        return (name, True) in leaf.signals
     if isinstance(leaf, ProbeAtom):
         return leaf.probe is Probe.CHANGED
     if isinstance(leaf, Unborn):
         return dict(leaf.signals).get(name, False)
-    if isinstance(leaf, Missing):
-        return _asks_history(leaf.atom, name)
     return isinstance(leaf, Compare) and any(
         isinstance(part, UpdateValue) and part.name == name
         for side in (leaf.left, leaf.right)

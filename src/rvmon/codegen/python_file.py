@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from importlib.resources import files
 
+from rvmon.automaton.table import tables_of
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, outcomes
 from rvmon.codegen.comment import comment
 from rvmon.codegen.python_source import judges, unit_source
-from rvmon.codegen.tables import tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import Type
@@ -69,7 +69,7 @@ def python_file(plan: Plan) -> str:
 
 def _body(name: str) -> str:
     """A module of the runtime without its docstring and imports."""
-    text = files("rvmon.codegen").joinpath("runtime", f"{name}.py").read_text(encoding="utf-8")
+    text = files("rvmon.runtime").joinpath(f"{name}.py").read_text(encoding="utf-8")
     text = text.split('"""', 2)[2]
     text = re.sub(r"^if TYPE_CHECKING:\n(?:    .*\n|\n)+?(?=\S)", "", text, flags=re.MULTILINE)
     text = re.sub(r"^(?:from|import) (?:.*\(\n(?: .*\n)*\)|.*)\n", "", text, flags=re.MULTILINE)

@@ -202,7 +202,7 @@ class IntakeWriter:
         lines = []
         if name in self.plan.signals and self.cones.can_follow(name, self.values.instant):
             lines.append(f"elif {self.cones.apart(name, self._quiet())}:")
-            kept = self.values.kept("x", name, given=True)
+            kept = self.values.replaced("x", name, "x")
             lines += indented([*alone(self.cones.followed(name, kept)), *self.visit.told()])
         general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
         general += indented(self.values.new("x", name))

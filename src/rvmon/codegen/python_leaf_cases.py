@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.codegen.python_leaves import known_test
-from rvmon.codegen.python_nodes import NodeWriter, Roles, bits
+from rvmon.codegen.python_nodes import BEFORE, NodeWriter, Roles, bits
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
 from rvmon.codegen.unit_plan import Plan, asks_knowledge
 from rvmon.spec.checked.formula import SignalAtom
-
-_BEFORE = re.compile(r"(?<![.\w])before\b")
 
 _DEEPEST = 8
 """So many blocks stand within each other at most."""
@@ -87,13 +84,14 @@ class ConeWriter:
         """
         leaves, places = self.plan.readers(name), self._cone_of(name)
         lines = list(kept)
+        # Few values come to where it is asked for.
+        self.nodes.before = self.visit.preceding()
         for test, value in self._values(leaves[0]):
             lines += [test, *indented(self._moved(leaves, places, value))]
         timed = self.joins or any(self.nodes.is_timed(place) for place in places)
         triggers = self.joins or any(self.roles.triggers[place] for place in places)
         lines += self.visit.followed(timed=timed, triggers=triggers)
-        # Few values come to where it is asked for.
-        lines = [_BEFORE.sub(self.visit.preceding(), line) for line in lines]
+        self.nodes.before = BEFORE
         if self.joins:
             yield "letters = triggers = 0"
             yield "if self.dirty:"
@@ -148,8 +146,7 @@ class ConeWriter:
             name: of the signal.
             quiet: the condition under which nothing but a new value can change anything.
         """
-        if self.plan.knowers(name) or len(self.plan.readers(name)) > 1:
-            quiet += f" and self.last{self.plan.signals.index(name)} is not MISSING"
+        quiet += f" and self.last{self.plan.signals.index(name)} is not MISSING"
         if not self.joins:
             return quiet
         cone = bits(tuple(self._cone_of(name)))
@@ -207,12 +204,14 @@ class ConeWriter:
         """Give a node its value; if that is another one, go on with those behind it."""
         place = node.place
         lines, value = written[place]
-        yield from lines
-        yield f"if v[{place}] != {value}:"
         onward = (f"moved{place} = True",) if place in asked else ()
-        yield from indented(self.visit.changed(place, value, onward))
+        lines = [*lines, f"if v[{place}] != {value}:"]
+        lines += indented(self.visit.changed(place, value, onward))
         for other in node.behind:
-            yield from indented(self._then(other, written, asked))
+            lines += indented(self._then(other, written, asked))
+        if pending := self.nodes.pending(place):
+            yield f"if {pending}:"
+        yield from indented(lines, bool(pending))
 
     def _above(self, place: int) -> list[int]:
         """A node and those whose value depends on it, in order."""

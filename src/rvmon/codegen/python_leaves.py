@@ -9,7 +9,7 @@ from typing import assert_never
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import events_of
 from rvmon.formula.numeric import signals_of
-from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Missing, Unborn
+from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Unborn
 from rvmon.spec.checked.formula import (
     Arithmetic,
     BoundAtom,
@@ -50,8 +50,6 @@ def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
             return "1"
         case Unborn(signals=signals):
             return f"2 if {_unborn(plan, signals)} else 0"
-        case Missing(atom=atom):
-            return f"self.missing_({_before_birth(plan, atom, '3')})"
         case Constant(value=value):
             return "2" if value else "0"
         case Elapsed(duration=duration):

@@ -13,6 +13,9 @@ from rvmon.spec.checked.formula import Constant
 
 NEVER = 1 << 63
 
+BEFORE = "before"
+"""What statements call the position before."""
+
 _WATCHED = 4
 """So few nodes that change by time alone are looked at one by one; more stand in a queue."""
 
@@ -124,6 +127,8 @@ class NodeWriter:
         """The nodes that change by time alone, if each is looked at; `None`: they are queued."""
         self.settled: dict[int, str] = {}
         """The values that are known as something is written."""
+        self.before = BEFORE
+        """The position before, as an expression."""
 
     def statements(self, place: int) -> Iterator[str]:
         """Put the value of a node at `t` into `n`; the other names are those of `ARRAYS`."""
@@ -155,11 +160,11 @@ class NodeWriter:
                 assert_never(state.op)
 
     def pending(self, place: int) -> str:
-        """A further condition under which a node may change; empty if there is none."""
+        """The condition under which a node may change at all; empty if there is none."""
         graph = self.plan.graph
         state = graph.nodes[place]
         lasts = _is_latch(state) and graph.nodes[graph.operands[place][0]].leaf == Constant(True)
-        return f" and v[{place}] != 2" if lasts else ""
+        return f"v[{place}] != 2" if lasts else ""
 
     def value(self, place: int) -> str:
         """A node as an operand."""
@@ -213,7 +218,7 @@ class NodeWriter:
                 yield f"{name} = {own}"
         operands_now = ", ".join(given)
         if keeps_stretches(state):
-            yield f"n, e = marked[{place}].step(t, before, {operands_now})"
+            yield f"n, e = marked[{place}].step(t, {self.before}, {operands_now})"
             yield from self._wake(place, "e", "")
             return
         yield f"e = w[{place}]"
@@ -222,7 +227,7 @@ class NodeWriter:
         yield f"if {' or '.join([*unknown, f'b[{place}] is not e'])}:"
         slow = "beyond_" if high is None else "within_"
         bound = low if high is None else high
-        yield f"    n = self.{slow}({place}, t, before, {operands_now}, {bound})"
+        yield f"    n = self.{slow}({place}, t, {self.before}, {operands_now}, {bound})"
         if high is None:
             yield from self._beyond(place, low, left, right)
         else:
@@ -241,7 +246,7 @@ class NodeWriter:
                 yield "    n = m"
 
     def _within(self, place: int, high: int, left: str, right: str) -> Iterator[str]:
-        """As `rvmon.codegen.runtime.past.within`, both readings at once."""
+        """As `rvmon.runtime.past.within`, both readings at once."""
         if right != "0":
             yield "elif r:" if right != "2" else "else:"
             yield f"    w[{place}] = b[{place}] = None"
@@ -258,14 +263,14 @@ class NodeWriter:
             return
         yield "else:"
         yield "    if e is None:"
-        yield f"        e = w[{place}] = b[{place}] = before + {high}"
+        yield f"        e = w[{place}] = b[{place}] = {self.before} + {high}"
         yield "    n = 0"
         yield "    if e >= t:"
         yield "        n = 2"
         yield from self._wake(place, "e + 1", "        ")
 
     def _beyond(self, place: int, low: int, left: str, right: str) -> Iterator[str]:
-        """As `rvmon.codegen.runtime.past.beyond`, both readings at once."""
+        """As `rvmon.runtime.past.beyond`, both readings at once."""
         if left != "2":
             yield "elif not l:" if left != "0" else "else:"
             ended = {"0": "None", "2": "True"}.get(right, "True if r else None")
@@ -277,7 +282,7 @@ class NodeWriter:
         yield "else:"
         yield "    n = 0"
         yield "    if e is True:"
-        yield f"        e = w[{place}] = b[{place}] = before + {low}"
+        yield f"        e = w[{place}] = b[{place}] = {self.before} + {low}"
         yield "        if e <= t:"
         yield "            n = 2"
         yield "        else:"

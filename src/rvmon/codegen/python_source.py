@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from rvmon.automaton.table import tables_of
 from rvmon.codegen.comment import comment
 from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_leaf_cases import ConeWriter
@@ -16,10 +17,9 @@ from rvmon.codegen.python_nodes import (
     value_before,
 )
 from rvmon.codegen.python_visit import VisitWriter, indented
-from rvmon.codegen.runtime.solo import only_location
-from rvmon.codegen.tables import tables_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State
+from rvmon.runtime.solo import only_location
 from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.spec.checked.specification import Mode
 from rvmon.spec.print.printer import format_formula

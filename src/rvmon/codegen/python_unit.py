@@ -8,15 +8,14 @@ import operator
 from typing import Any
 
 from rvmon.codegen.python_source import unit_source
-from rvmon.codegen.runtime.bulk import BulkRule
-from rvmon.codegen.runtime.nodes import BUSY, LIMIT, MISSING
-from rvmon.codegen.runtime.past import compared, finite, number
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.solo import SoloRule
-from rvmon.codegen.runtime.table import NEVER, Table, letter_table
-from rvmon.codegen.runtime.unit import Unit, closures
-from rvmon.codegen.tables import tables_of
 from rvmon.codegen.unit_plan import Plan
+from rvmon.runtime.bulk import BulkRule
+from rvmon.runtime.nodes import BUSY, LIMIT, MISSING
+from rvmon.runtime.past import compared, finite, number
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.solo import SoloRule
+from rvmon.runtime.table import NEVER, letter_table
+from rvmon.runtime.unit import Unit, closures
 
 
 def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]:
@@ -44,21 +43,3 @@ def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]
     exec(compile(source, "<generated monitor>", "exec"), namespace)  # noqa: S102
     made: type[Unit] = namespace["Generated"]
     return made
-
-
-def machine_of(plan: Plan, index: int) -> Table | None:
-    """What judges a requirement of a plan; `None` if it has no automaton."""
-    automaton = plan.rules[index].automaton
-    if automaton is None:
-        return None
-    data = tables_of(automaton)
-    return Table(
-        data.initial,
-        data.cuts,
-        data.bases,
-        data.strides,
-        data.class_of,
-        data.rows,
-        data.time_values,
-        data.end_clauses,
-    )

@@ -9,7 +9,7 @@ from rvmon.codegen.python_nodes import bits
 from rvmon.codegen.python_visit import indented
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import inputs_of
-from rvmon.formula.state import UNKNOWN, Leaf, Missing, Unborn
+from rvmon.formula.state import UNKNOWN, Leaf, Unborn
 from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
@@ -126,8 +126,13 @@ class ValueWriter:
             yield f"if {variable} is None:"
             yield f"    self.clerk.lost({signal}, t, 'none')"
             yield from self._found(name)
-        known = variable if given else f"MISSING if {variable} is None else {variable}"
-        yield f"self.last{signal} = {known}"
+        last = variable if given else f"MISSING if {variable} is None else {variable}"
+        yield from self.replaced(variable, name, last)
+
+    def replaced(self, variable: str, name: str, last: str) -> Iterator[str]:
+        """Keep another value of a signal; if it was known before and is, nothing else is done."""
+        signal = self.plan.signals.index(name)
+        yield f"self.last{signal} = {last}"
         yield f"s[{signal}] = {variable}"
 
     def tells_birth(self, name: str) -> bool:
@@ -135,9 +140,7 @@ class ValueWriter:
         nodes = self.plan.graph.nodes
         places = self.plan.graph.by_name.get(name, ())
         leaves = [nodes[place] for place in places]
-        return any(
-            isinstance(state.leaf, Unborn | Missing) or state.unborn != UNKNOWN for state in leaves
-        )
+        return any(isinstance(state.leaf, Unborn) or state.unborn != UNKNOWN for state in leaves)
 
     def _found(self, name: str) -> Iterator[str]:
         """What depends on whether the value of a signal is known."""

@@ -293,7 +293,8 @@ class VisitWriter:
             parents = self.roles.parents[place]
             dirty = bits(tuple(other for other in self.kept if parents >> other & 1))
             onward = (f"dirty |= {dirty}",) if dirty else ()
-            yield f"if dirty & {1 << place}{self.nodes.pending(place)}:"
+            tests = [f"dirty & {1 << place}", self.nodes.pending(place)]
+            yield f"if {' and '.join(filter(None, tests))}:"
             yield from indented(self.nodes.statements(place))
             yield from indented(self.momentary_lines(place))
             yield f"    if n != v[{place}]:"
@@ -316,7 +317,7 @@ class VisitWriter:
         alone = len(self.plan.judged) == 1
         sign = "=" if alone else "|="
         if self.roles.letters[place]:
-            yield f"self.until[{3 * place} + v[{place}]] = before"
+            yield f"self.until[{3 * place} + v[{place}]] = {self.nodes.before}"
             yield f"self.since[{place}] = t"
             yield f"letters {sign} {self.roles.letters[place]}"
         if self.roles.triggers[place]:

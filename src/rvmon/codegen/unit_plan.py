@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from rvmon.automaton.automaton import Automaton
 from rvmon.dataflow.graph import Graph
 from rvmon.formula.alphabet import Alphabet
-from rvmon.formula.state import Leaf, Missing, State, Unborn
-from rvmon.spec.checked.formula import Literal, SignalAtom, SignalValue
+from rvmon.formula.state import Leaf, State, Unborn
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 
 
@@ -129,9 +128,4 @@ class Plan:
 
 def asks_knowledge(leaf: Leaf | None) -> bool:
     """Whether a leaf depends on what is known of signals, and not on their values."""
-    if isinstance(leaf, Missing):
-        atom = leaf.atom
-        return isinstance(atom, SignalAtom) or (
-            isinstance(atom.left, SignalValue) and isinstance(atom.right, Literal)
-        )
     return isinstance(leaf, Unborn)

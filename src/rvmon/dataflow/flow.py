@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Container, Iterable, Mapping
-from copy import deepcopy
 from heapq import heappop, heappush
 from typing import assert_never
 
 from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.hidden import Hidden
-from rvmon.dataflow.inputs import NEVER, Inputs, Reported
+from rvmon.dataflow.inputs import Inputs, Reported
 from rvmon.dataflow.leaves import Evaluate, before_birth, evaluator
 from rvmon.dataflow.outages import Outage
-from rvmon.dataflow.since import Previous, Since
+from rvmon.dataflow.previous import Hidden, Previous
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, Leaf, State, StateOp
+from rvmon.runtime.past import Since
+from rvmon.runtime.table import NEVER
 from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.trace.sample import Scalar
 
@@ -41,6 +42,11 @@ class Flow:
         cut: the instant from which on it is not known which values were captured.
         begun: of a flow that was made by `twin`, the position from which on it saw what is its own.
     """
+
+    STATE = (
+        *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
+        *("_dirty", "_fading", "_wakes", "_left", "cut", "begun"),
+    )
 
     cut = NEVER
     begun: int | None = None
@@ -322,8 +328,8 @@ class Flow:
         values = self.values
 
         def since(t: int) -> int:
-            value = node.step(t, self._last, values[left], values[right])
-            self._set_wake(place, node.wake)
+            value, wake = node.step(t, self._last, values[left], values[right])
+            self._set_wake(place, wake)
             return value
 
         return since
@@ -335,9 +341,13 @@ class Flow:
             self._wakes.pop(place, None)
 
 
-def _copy_memory(source: Memory, target: Memory) -> None:
-    for name in type(target).__slots__:
-        setattr(target, name, deepcopy(getattr(source, name)))
+def _copy_memory(source: object, target: object) -> None:
+    for name in type(target).__slots__:  # type: ignore[attr-defined]
+        one = getattr(source, name)
+        if hasattr(type(one), "__slots__"):
+            _copy_memory(one, getattr(target, name))
+        else:
+            setattr(target, name, deque(map(list, one)) if isinstance(one, deque) else one)
 
 
 def _remembered(node: object) -> tuple[object, ...]:

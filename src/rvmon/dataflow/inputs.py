@@ -7,62 +7,43 @@ from typing import Any
 
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.runtime.past import History
+from rvmon.runtime.table import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Payload, Scalar, Value
-
-NEVER = 1 << 63
 
 Reported = Value | tuple[Payload | None, ...]
 """What is taken for a name; a `None` among payloads is an unknown occurrence."""
 
 
-class Slot:
+class Slot(History):
     """One signal.
 
     Attributes:
         value: as seen now; `None` if unknown, also because it is stale.
         births: 0 before the first known value, 1 from then on, 2 from the update after that on.
-        updates: how often it was updated, counted to two.
         first_at: the instant of the first update, which may belong to a position still to come;
             `None` before it.
-        last: the value of the last update; `None` if that was unknown.
-        at: the instant of the last update.
-        before: the value of the update before; `None` if it was unknown or there was none.
-        before_at: its instant.
         stale_after: as declared.
         stale_at: the instant from which on it is stale; `NEVER` if it cannot become so.
     """
 
-    __slots__ = (
-        "at",
-        "before",
-        "before_at",
-        "births",
-        "first_at",
-        "last",
-        "stale_after",
-        "stale_at",
-        "updates",
-        "value",
-    )
+    __slots__ = ("births", "first_at", "stale_after", "stale_at", "value")
+    STATE = (*History.STATE, "births", "first_at", "stale_at", "value")
 
     def __init__(self, stale_after: int | None) -> None:
+        super().__init__()
         self.value: Scalar = None
         self.births = 0
-        self.updates = 0
         self.first_at: int | None = None
-        self.last: Scalar = None
-        self.at = 0
-        self.before: Scalar = None
-        self.before_at = 0
         self.stale_after = stale_after
         self.stale_at = NEVER
 
     def copy(self) -> Slot:
         """The same, independent from now on."""
         made = Slot(self.stale_after)
-        for name in Slot.__slots__:
+        for name in Slot.STATE:
             setattr(made, name, getattr(self, name))
         return made
 
@@ -72,17 +53,10 @@ class Slot:
             value = None
         if self.births < 2 and (self.births or value is not None):
             self.births += 1
-        first = not self.updates
-        self.before, self.before_at = self.last, self.at
-        self.last, self.at, self.value = value, t, value
-        self.updates = 1 if first else 2
+        self.value = value
         if self.stale_after is not None:
             self.stale_at = t + self.stale_after + 1
-        if first:
-            return FALSE
-        if value is None or self.before is None:
-            return UNKNOWN
-        return TRUE if value != self.before else FALSE
+        return super().update(t, value)
 
 
 class Inputs:
@@ -100,6 +74,8 @@ class Inputs:
         outages: by name what is not known, and since when.
         expired: by signal how often it became stale, and the first instant of that.
     """
+
+    STATE = ("slots", "occurrences", "updated", "expired", "changed", "outages")
 
     def __init__(self, spec: CheckedSpec, sources: frozenset[str] | None) -> None:
         self.slots = {name: Slot(signal.stale_after) for name, signal in spec.signals.items()}
@@ -190,11 +166,8 @@ class Inputs:
 
 def occurrence_truth(value: Reported) -> int:
     """What a sample says of the occurrence of an event."""
-    if isinstance(value, tuple):
-        return max((UNKNOWN if payload is None else TRUE for payload in value), default=FALSE)
-    if value is None:
-        return UNKNOWN
-    return FALSE if value is False else TRUE
+    truths = [UNKNOWN if payload is None else TRUE for payload in payloads_of(value)]
+    return max(truths, default=FALSE)
 
 
 def payloads_of(value: Reported) -> tuple[Payload | None, ...]:

@@ -13,13 +13,11 @@ from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import (
     FALSE,
     TRUE,
-    UNBORN,
     UNKNOWN,
     Elapsed,
     Lapsed,
     Leaf,
     Lost,
-    Missing,
     Unborn,
 )
 from rvmon.spec.checked.formula import (
@@ -59,8 +57,6 @@ def reads(leaf: Leaf) -> Reads:
             return Reads()
         case Unborn(signals=signals):
             return Reads(frozenset(name for name, _ in signals))
-        case Missing(atom=atom):
-            return reads(atom)
         case BoundAtom():
             return Reads(momentary=True)
         case SignalAtom(name=name):
@@ -103,8 +99,6 @@ def evaluator(
             return lambda _: FALSE
         case Unborn(signals=signals):
             return lambda _: TRUE if is_unborn(inputs, signals) else FALSE
-        case Missing(atom=atom):
-            return _missing(atom, inputs, captured, origin)
         case Elapsed(duration=duration):
             return lambda t: TRUE if t - (origin() or 0) >= duration else FALSE
         case BoundAtom():
@@ -151,17 +145,6 @@ def _is_uncertain(inputs: Inputs, event: str) -> bool:
     return event in inputs.absent or any(
         payload is None for value in reports for payload in payloads_of(value)
     )
-
-
-def _missing(
-    atom: SignalAtom | Compare,
-    inputs: Inputs,
-    captured: Mapping[str, Scalar],
-    origin: Callable[[], int | None],
-) -> Evaluate:
-    read = before_birth(atom, evaluator(atom, inputs, captured, origin), inputs, UNBORN)
-    kinds = {FALSE: FALSE, UNKNOWN: UNKNOWN, TRUE: FALSE, UNBORN: TRUE}
-    return lambda t: kinds[read(t)]
 
 
 def _probe(probe: Probe, name: str, inputs: Inputs) -> Evaluate:

@@ -35,6 +35,11 @@ class Network(Knowledge):
         gap: ticks between two positions; `None` if only samples are positions.
     """
 
+    STATE = (
+        *("plan", "positions", "known", "grown", "ahead", "pending", "swept", "carried"),
+        *("_letter", "_tidy", "_visits"),
+    )
+
     def visit(self, t: int, letter: Sequence[bool], wanted: int | None, ahead: int) -> None:
         """Come to a position with a letter, which stays until the next visit.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import operator
 from collections.abc import Callable, Mapping
 from typing import Any, assert_never
 
-from rvmon.dataflow.inputs import Inputs, Slot
+from rvmon.dataflow.inputs import Inputs
 from rvmon.formula.numeric import operands
+from rvmon.runtime.past import finite, number
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
@@ -21,7 +21,6 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.trace.sample import Payload, Scalar
-from rvmon.trace.time import TICKS_PER_SECOND
 
 Payloads = Mapping[str, Payload]
 """By event, the payload that its fields are read from."""
@@ -47,66 +46,26 @@ def reader(expression: Numeric, inputs: Inputs, captured: Mapping[str, Scalar]) 
             slot = inputs.slots[name]
             return lambda _: slot.value
         case FieldValue(event=event, field=field):
-            return lambda payloads: _number(payloads[event].get(field))
+            return lambda payloads: number(payloads[event].get(field))
         case Captured(name=name):
             known = captured[name]
             return lambda _: known
         case UpdateValue(function=function, name=name):
-            return _update_reader(function, inputs.slots[name])
+            slot = inputs.slots[name]
+            asked = {
+                UpdateFunction.PREV: slot.prev,
+                UpdateFunction.DELTA: slot.delta,
+                UpdateFunction.RATE: slot.rate,
+            }[function]
+            return lambda _: asked(slot.value)
         case Arithmetic(op=op, args=args):
             return _arithmetic(op.entry.apply, [reader(arg, inputs, captured) for arg in args])
         case _:
             assert_never(expression)
 
 
-def _number(value: Scalar) -> Scalar:
-    return None if value != value else value
-
-
-def _update_reader(function: UpdateFunction, slot: Slot) -> Read:
-    def prev(_: Payloads) -> Scalar:
-        return slot.before if slot.updates == 2 and slot.value is not None else None
-
-    def delta(payloads: Payloads) -> float | None:
-        before, now = prev(payloads), slot.value
-        if before is None or isinstance(before, str) or now is None or isinstance(now, str):
-            return None
-        return _finite(operator.sub, [now, before])
-
-    def rate(payloads: Payloads) -> float | None:
-        difference = delta(payloads)
-        if difference is None:
-            return None
-        return _finite(lambda: difference * TICKS_PER_SECOND / (slot.at - slot.before_at), [])
-
-    match function:
-        case UpdateFunction.PREV:
-            return prev
-        case UpdateFunction.DELTA:
-            return delta
-        case UpdateFunction.RATE:
-            return rate
-        case _:
-            assert_never(function)
-
-
 def _arithmetic(operation: Callable[..., float], args: list[Read]) -> Read:
-    def read(payloads: Payloads) -> float | None:
-        values = [arg(payloads) for arg in args]
-        if any(value is None or isinstance(value, str) for value in values):
-            return None
-        return _finite(operation, values)
-
-    return read
-
-
-def _finite(operation: Callable[..., float], values: list[Scalar]) -> float | None:
-    """The result, unless it is no finite number."""
-    try:
-        result = operation(*values)
-        return result if math.isfinite(result) else None
-    except (ValueError, OverflowError, ZeroDivisionError):
-        return None
+    return lambda payloads: finite(operation, *[arg(payloads) for arg in args])
 
 
 def inputs_of(*expressions: Numeric) -> frozenset[str]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import INFINITY, Machine, Token
-from rvmon.automaton.stretch import next_cut
 from rvmon.explain.example import Example
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.judge import Judge
@@ -15,6 +14,7 @@ from rvmon.monitor.lane import Lane
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
+from rvmon.runtime.table import next_cut
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import report_of
 
@@ -120,9 +120,9 @@ def _lane(lane: Lane, end: int) -> Iterator[object]:
         for place in flow.graph.stateful
         for operand in flow.graph.operands[place]
     )
-    for starter in lane.starters:
-        if starter.trigger is not None:
-            yield (starter.trigger.before, starter.trigger.running)
+    for rule in lane.starters:
+        if rule.trigger >= 0:
+            yield (rule.before, rule.running)
 
 
 def _relative(machine: Machine, token: Token, end: int) -> object:

@@ -71,9 +71,11 @@ def state_truths(
     graph = graph_of(roots)
     flow = _Log(graph, Inputs(_read_by(graph, spec), names), gap, captured)
     lane, ignoring = Lane(flow), spec.ignoring
+    read = graph.by_name.keys()
     for sample in samples:
+        values = {name: sample.values[name] for name in read & sample.values.keys()}
         lane.through(sample.t - 1)
-        lane.sample(sample.t, seen_by(instance, updates_in(sample.values, ignoring)))
+        lane.sample(sample.t, seen_by(instance, updates_in(values, ignoring)))
     lane.through(end)
     found = {}
     for root in roots:

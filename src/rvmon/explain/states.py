@@ -9,7 +9,7 @@ from rvmon.dataflow.graph import graph_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Missing, State, Unborn
+from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, State, Unborn
 from rvmon.spec.checked.formula import (
     BoundAtom,
     Compare,
@@ -59,7 +59,5 @@ def _is_of_values(leaf: Leaf) -> bool:
             return True
         case Elapsed() | Unborn() | Lost() | Lapsed():
             return True
-        case Missing(atom=atom):
-            return _is_of_values(atom)
         case _:
             assert_never(leaf)

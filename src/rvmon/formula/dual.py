@@ -19,7 +19,7 @@ from rvmon.formula.core import (
 )
 from rvmon.formula.factory import Factory
 from rvmon.formula.residual import FAILS, HOLDS, Atom, Residual, both, either
-from rvmon.formula.state import Lapsed, Missing, State, StateOp, Unborn
+from rvmon.formula.state import Lapsed, State, StateOp, Unborn
 
 
 class Duals:
@@ -102,7 +102,7 @@ class Duals:
                 return join(self._state(arg, positive) for arg in state.args)
             case StateOp.SURE:  # nothing is unknown
                 return self._state(state.args[0], positive)
-            case StateOp.LEAF if isinstance(state.leaf, Unborn | Missing | Lapsed):
+            case StateOp.LEAF if isinstance(state.leaf, Unborn | Lapsed):
                 return self._factory.constant(not positive)
             case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT:
                 return self._factory.literal(state, Sense.TRUE if positive else Sense.FALSE)

@@ -14,7 +14,7 @@ from typing import assert_never
 
 from rvmon.formula.factory import Factory
 from rvmon.formula.numeric import reads_fields, signals_of
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Missing, Shown, State
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Shown, State, Unborn
 from rvmon.spec.checked.formula import (
     Atom,
     Binary,
@@ -40,10 +40,13 @@ class Four:
     Args:
         read: gives the state formula with three that is FALSE, UNKNOWN or TRUE where this one is
             not born.
-        missing: TRUE where it is not born, UNKNOWN where it is unknown, else FALSE; default as
-            `read` tells it.
         mortal: whether there is a time before its birth.
         fades: whether it is born for good as soon as it is.
+        unborn: two-valued, that it is not born; default as `read` tells it.
+        parts: of a conjunction, its operands; of anything else, it alone.
+
+    Attributes:
+        negated: what it is the negation of.
     """
 
     def __init__(
@@ -51,41 +54,36 @@ class Four:
         factory: Factory,
         read: Callable[[int], State],
         *,
-        missing: State | None = None,
         mortal: bool = True,
         fades: bool = False,
+        unborn: State | None = None,
+        parts: Sequence[Four] = (),
     ) -> None:
         self._factory = factory
         self.read = cache(read) if mortal else _same(read(UNKNOWN))
         self.mortal = mortal
         self.fades = fades
-        self._missing = missing
+        self.parts = tuple(parts) or (self,)
+        self.negated: Four | None = None
+        self._unborn = unborn
 
     @property
     def unborn(self) -> State:
         """Two-valued: it is not born."""
         if not self.mortal:
             return self._factory.state_false
-        if self._missing is not None:
-            return self._factory.sure(self._missing)
+        if self._unborn is not None:
+            return self._unborn
         sure, negation = self._factory.sure, self._factory.negation
         return self._factory.state_all([sure(self.read(TRUE)), sure(negation(self.read(FALSE)))])
 
     @property
     def missing(self) -> State:
         """TRUE where it is not born, UNKNOWN where it is unknown, else FALSE."""
-        if self._missing is not None:
-            return self._missing
         factory = self._factory
         born = self.read(TRUE)
         lost = factory.state_all([born, factory.negation(born)])
-        return factory.state_any([self.unborn, lost]) if self.mortal else lost
-
-    @property
-    def lost(self) -> State:
-        """Two-valued: it is unknown."""
-        sure, negation, missing = self._factory.sure, self._factory.negation, self.missing
-        return self._factory.state_all([negation(sure(missing)), negation(sure(negation(missing)))])
+        return factory.state_any([self.unborn, lost])
 
 
 def _same(state: State) -> Callable[[int], State]:
@@ -154,12 +152,14 @@ class Reader(Reading[Four]):
         leaf = without_span(atom)
         if not isinstance(leaf, SignalAtom | Compare) or not signals_of(leaf):
             return Four(factory, lambda _: factory.leaf(leaf), mortal=False)
-        missing = None if reads_fields(leaf) else factory.leaf(Missing(leaf))
+        unborn = None
+        if not reads_fields(leaf):
+            unborn = factory.leaf(Unborn(tuple(sorted(signals_of(leaf).items()))))
         return Four(
             factory,
-            lambda unborn: factory.leaf(leaf, unborn),
-            missing=missing,
-            fades=missing is not None,
+            lambda reading: factory.leaf(leaf, reading),
+            fades=unborn is not None,
+            unborn=unborn,
         )
 
     # The operators that all others are made of.
@@ -171,14 +171,18 @@ class Reader(Reading[Four]):
 
     def no(self, arg: Four) -> Four:
         """Not born where its operand is not."""
+        if arg.negated is not None:
+            return arg.negated
         negation = self.factory.negation
-        return Four(
+        made = Four(
             self.factory,
             lambda unborn: negation(arg.read(TRUE - unborn)),
-            missing=arg._missing,
             mortal=arg.mortal,
             fades=arg.fades,
+            unborn=arg._unborn,
         )
+        made.negated = arg
+        return made
 
     def both(self, left: Four, right: Four) -> Four:
         """Not born where no operand is."""
@@ -194,19 +198,33 @@ class Reader(Reading[Four]):
 
     def _all(self, args: Sequence[Four]) -> Four:
         factory = self.factory
+        args = [part for arg in args for part in arg.parts]
 
-        def read(unborn: int) -> State:
-            if unborn != FALSE:
-                return factory.state_all([arg.read(unborn) for arg in args])
-            if all(not arg.mortal or len(args) == 1 for arg in args):
-                return factory.state_all([arg.read(FALSE) for arg in args])
-            # What was lost is not excused by what is not there: with it, the whole is unknown.
-            born = factory.state_all([factory.negation(arg.unborn) for arg in args])
-            lost = factory.state_any([arg.lost for arg in args])
-            known = factory.state_all([arg.read(UNKNOWN) for arg in args])
-            return factory.state_all([known, factory.state_any([born, lost])])
+        # What was lost is not excused by what is not there: with it, the whole is unknown.
+        unborn = self._some_unborn(args)
 
-        return Four(factory, read, mortal=any(arg.mortal for arg in args))
+        def read(reading: int) -> State:
+            joined = factory.state_all([arg.read(reading or TRUE) for arg in args])
+            if reading != FALSE or unborn is factory.state_false:
+                return joined
+            born_or_not_true = [factory.negation(unborn), factory.negation(joined)]
+            return factory.state_all([joined, factory.state_any(born_or_not_true)])
+
+        return Four(factory, read, mortal=any(arg.mortal for arg in args), parts=args)
+
+    def _some_unborn(self, args: Sequence[Four]) -> State:
+        """Two-valued: one of them is not born; what is read off the input is one leaf."""
+        factory = self.factory
+        states, signals = [], dict[str, bool]()
+        for state in (arg.unborn for arg in args):
+            if isinstance(state.leaf, Unborn):
+                for name, moved in state.leaf.signals:
+                    signals[name] = signals.get(name, False) or moved
+            else:
+                states.append(state)
+        if signals:
+            states.append(factory.leaf(Unborn(tuple(sorted(signals.items())))))
+        return factory.state_any(states)
 
     def since(self, left: Four, right: Four, interval: Interval) -> Four:
         """Positions at which an operand is not born are passed over."""
@@ -235,7 +253,7 @@ class Reader(Reading[Four]):
             there = unborn if reading == TRUE else factory.state_all([unborn, factory.unknown])
             return factory.state_any([value, there])
 
-        return Four(factory, read)
+        return Four(factory, read, unborn=unborn)
 
     def previous(self, arg: Four) -> Four:
         """Not born where its operand was not."""

@@ -11,7 +11,7 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.four import Four
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.obligation import Obligation, UnmonitorableError
-from rvmon.formula.state import FALSE, Elapsed, Lapsed, State, StateOp, Unborn
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, State, StateOp, Unborn
 from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,
@@ -89,9 +89,10 @@ def _running(trigger: State, requirement: Requirement, factory: Factory) -> Stat
 
 def _told(trigger: Four, factory: Factory) -> State | None:
     """TRUE as soon as a trigger was TRUE or FALSE; `None` if it is from the first position on."""
-    if not _may_be_unknown(trigger.missing):
+    if not _may_be_unknown(trigger.read(UNKNOWN)):
         return None
-    known = factory.sure(factory.negation(trigger.missing))
+    is_false = factory.sure(factory.negation(trigger.read(TRUE)))
+    known = factory.state_any([factory.sure(trigger.read(FALSE)), is_false])
     return factory.since(factory.state_true, known, 0, None)
 
 

@@ -17,9 +17,6 @@ from rvmon.spec.checked.formula import (
 FALSE, UNKNOWN, TRUE = 0, 1, 2
 """Kleene's truth values: `and` is the minimum, `or` the maximum, `not` is 2 − x."""
 
-UNBORN = 3
-"""In the place of the truth of an atom that is not born; no state formula has it."""
-
 
 @dataclass(frozen=True, slots=True)
 class Elapsed:
@@ -40,13 +37,6 @@ class Unborn:
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
-    """An atom over signals is not born (TRUE), or what it reads was lost (UNKNOWN)."""
-
-    atom: SignalAtom | Compare
-
-
-@dataclass(frozen=True, slots=True)
 class Lost:
     """Unknown, whatever the input."""
 
@@ -56,7 +46,7 @@ class Lapsed:
     """It is not known any more which values an attempt has captured; two-valued."""
 
 
-Knowledge = Lost | Unborn | Missing | Lapsed
+Knowledge = Lost | Unborn | Lapsed
 """What speaks of what is known, not of what is there."""
 
 Shown = SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom

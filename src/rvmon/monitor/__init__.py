@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rvmon.monitor.build import build_monitor
-    from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec, compile_spec
+    from rvmon.monitor.compiled import CompiledRequirement
+    from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
     from rvmon.monitor.monitor import Monitor
 
 __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "compile_spec"]
@@ -15,10 +16,10 @@ __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "c
 # Recordings in columns are judged without a monitor: a name is imported when it is asked for.
 _HOMES = {
     "CompiledRequirement": "rvmon.monitor.compiled",
-    "CompiledSpec": "rvmon.monitor.compiled",
+    "CompiledSpec": "rvmon.monitor.compiled_spec",
     "Monitor": "rvmon.monitor.monitor",
     "build_monitor": "rvmon.monitor.build",
-    "compile_spec": "rvmon.monitor.compiled",
+    "compile_spec": "rvmon.monitor.compiled_spec",
 }
 
 

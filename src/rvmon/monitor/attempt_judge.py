@@ -1,22 +1,21 @@
-"""What all judges of open attempts have in common."""
+"""The open attempts of one requirement, with what is told of them."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Protocol
+from functools import cached_property
+from typing import Any, Protocol
 
-from rvmon.automaton.machine import INFINITY, Token
-from rvmon.dataflow.flow import Flow
+from rvmon.automaton.machine import Token
+from rvmon.dataflow.graph import Graph
 from rvmon.dataflow.outages import Outage
-from rvmon.formula.state import UNKNOWN
+from rvmon.dataflow.standing import Standing
+from rvmon.formula.state import TRUE, UNKNOWN, State
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.doubt import Doubt
+from rvmon.runtime.rule import Rule
+from rvmon.spec.checked.specification import Mode
 from rvmon.trace.sample import Scalar
-from rvmon.trace.time import TIME_LIMIT
-
-if TYPE_CHECKING:
-    from rvmon.monitor.episode import Episode
 
 
 class Open:
@@ -27,7 +26,7 @@ class Open:
         triggered: the instant of its trigger.
         token: of the run that takes the unknown for the worse.
         better: of the run that takes it for the better; `None` as long as both are the same.
-        seen: the values of the judge's leaves at the trigger.
+        seen: the values of what is read of the input at the trigger.
         doubt: when and why the two runs parted; `None` if they did not.
         sure: whether its trigger was TRUE; else it is in doubt.
         doubtful_number: as `number`, if its trigger was not TRUE at first.
@@ -47,6 +46,8 @@ class Open:
         "triggered",
         "void",
     )
+
+    STATE = __slots__
 
     def __init__(self, triggered: int, token: Token, seen: tuple[int, ...]) -> None:
         self.number = 0
@@ -68,87 +69,111 @@ class Open:
         return made
 
 
-class Holder(Protocol):
-    """What has open attempts that are driven one by one: a judge, or a rule of generated code."""
-
-    attempts: list[Open]
-
-
 class Clerk(Protocol):
-    """Keeps the records."""
+    """Makes attempts, and keeps the records."""
 
-    def decided(
-        self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
-    ) -> None:
+    def opened(self, judge: Any, triggered: int, token: Token, sure: bool) -> Open:
+        """A new attempt; `sure`: its trigger was true."""
+
+    def assured(self, judge: Any, attempt: Open) -> None:
+        """Hear that the trigger of an attempt was true, which was unknown before."""
+
+    def parted(self, judge: Any, attempt: Open) -> None:
+        """Hear that unknown input made the two runs of an attempt part."""
+
+    def decided(self, judge: Any, attempt: Open, verdict: bool, t: int, before: Token, /) -> None:
         """Take a decision at `t`; `before` is the token of the run that brought it, before that.
 
         Between the position of `before` and `t` the letters were as the judge has them.
         """
 
 
-class AttemptJudge(ABC):
-    """The open attempts of one requirement, driven through positions and time.
+class AttemptJudge(Rule):
+    """A rule that knows its requirement.
+
+    Args:
+        compiled: the requirement, or what judges its attempts in doubt.
+        machine: judges the attempts; `None`: a subclass does.
+        flow: gives the truth of the propositions.
+        clerk: makes attempts and hears of decisions.
+        captured: values of `let` and `for each`.
+        index: of the rule in a unit of generated code.
+        rank: of its instance.
+        hidden: whether these are the attempts in doubt.
+        doubted: whether it is not known that there is such an instance.
 
     Attributes:
-        compiled: the requirement.
-        flow: gives the truth of the propositions.
-        clerk: hears of decisions.
-        captured: values of `let` and `for each`.
-        places: of the propositions in the flow.
         leaves: place and text of what is read of the input.
-        attempts: the undecided ones, oldest first; also those that only the end can settle.
-        due: an instant before which, the letters staying, no attempt can be decided.
-        restless: whether attempts may move at the next position though the letters stay.
-        position: the one visited last.
-        episode: follows its attempts, one after the other, if they are episodes.
     """
 
     def __init__(
         self,
         compiled: CompiledRequirement,
-        flow: Flow,
+        machine: Any,
+        flow: Standing,
         clerk: Clerk,
         captured: Mapping[str, Scalar],
+        *,
+        index: int = 0,
+        rank: int = 0,
+        hidden: bool = False,
+        doubted: bool = False,
     ) -> None:
         self.compiled = compiled
         self.flow = flow
-        self.clerk = clerk
         self.captured = captured
-        index = flow.graph.index
-        self.places = tuple(index[state] for state in compiled.alphabet.propositions)
-        self.leaves = leaves_in(flow, compiled)
-        self.attempts: list[Open] = []
-        self.due = INFINITY
-        self.restless = False
-        self.position = -TIME_LIMIT
-        self.episode: Episode | None = None
+        self.rank = rank
+        self.doubted = doubted
+        obligation, requirement = compiled.obligation, compiled.requirement
+        # With captured values, what is FALSE where an episode is over is more than its trigger.
+        self._asked = self._place_of(obligation.trigger)
+        trigger = self._place_of(obligation.running) if requirement.captures else self._asked
+        super().__init__(
+            index,
+            machine,
+            None,
+            trigger,
+            requirement.pulse,
+            trigger >= 0 and (hidden or requirement.mode is Mode.WHENEVER),
+            hidden,
+            -1 if doubted else self._place_of(obligation.again),
+            self._place_of(obligation.unborn),
+            flow.gap,
+            flow.values,
+            clerk,
+        )
 
-    @abstractmethod
-    def new_attempt(self, t: int, triggered: int, /) -> Open:
-        """An attempt at the position `t`, which the flow is at; it is not driven yet."""
+    def _place_of(self, state: State | None) -> int:
+        return -1 if state is None else self.flow.graph.index.get(state, -1)
 
-    @abstractmethod
-    def begin(self, attempt: Open, t: int) -> None:
-        """Drive an attempt from the position `t` on, which the flow is at."""
+    @cached_property
+    def places(self) -> tuple[int, ...]:
+        """Of the propositions in the flow."""
+        index = self.flow.graph.index
+        return tuple(index[state] for state in self.compiled.alphabet.propositions)
 
-    @abstractmethod
-    def visit(self, t: int) -> None:
-        """Take all attempts to the position `t`, which the flow is at."""
-
-    @abstractmethod
-    def pass_to(self, t: int) -> None:
-        """Let time come to `t` with the letters as they are; positions up to there are stepped."""
-
-    @abstractmethod
-    def reach(self, t: int) -> None:
-        """Let time come to `t`, of which the letter is not known, from the instant before."""
+    @cached_property
+    def leaves(self) -> tuple[tuple[int, str], ...]:
+        """See the class."""
+        return leaves_in(self.flow.graph, self.compiled)
 
     @property
-    @abstractmethod
+    def is_sure(self) -> bool:
+        """See `Rule`."""
+        if self.hidden or self.doubted:
+            return False
+        return not self.episodic or bool(self.values[self._asked] == TRUE)
+
+    def settle_flags(self) -> None:
+        """See `Rule`; where it is not known what was captured, all flags are set already."""
+        if not self.flow.is_cut:
+            super().settle_flags()
+
+    @property
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt, as far as is known now."""
+        return self.due
 
-    @abstractmethod
     def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
         """Whether the rule for the end of a trace makes an undecided attempt true.
 
@@ -157,6 +182,7 @@ class AttemptJudge(ABC):
             end: the last instant of the trace.
             reached: the instant that time has come to.
         """
+        raise NotImplementedError
 
     @property
     def seen(self) -> tuple[int, ...]:
@@ -164,18 +190,19 @@ class AttemptJudge(ABC):
         values = self.flow.values
         return tuple([values[place] for place, _ in self.leaves])
 
-    def _doubt(self) -> Doubt:
+    @property
+    def doubt(self) -> Doubt:
         """What is not known at this position of all that is read of the input."""
         return doubt_in(self.flow, self.leaves, self.position)
 
 
-def leaves_in(flow: Flow, compiled: CompiledRequirement) -> tuple[tuple[int, str], ...]:
-    """What a requirement reads of the input, as far as a flow has it."""
-    index = flow.graph.index
+def leaves_in(graph: Graph, compiled: CompiledRequirement) -> tuple[tuple[int, str], ...]:
+    """Place and text of what a requirement reads of the input, as far as a graph has it."""
+    index = graph.index
     return tuple((index[leaf], text) for leaf, text in compiled.leaves if leaf in index)
 
 
-def doubt_in(flow: Flow, leaves: Sequence[tuple[int, str]], position: int) -> Doubt:
+def doubt_in(flow: Standing, leaves: Sequence[tuple[int, str]], position: int) -> Doubt:
     """What a flow does not know of some leaves.
 
     Args:
@@ -192,9 +219,3 @@ def doubt_in(flow: Flow, leaves: Sequence[tuple[int, str]], position: int) -> Do
             found |= own
             texts += [] if own else [text]
     return Doubt(position, tuple(found.values()), tuple(texts))
-
-
-def held_by(judge: AttemptJudge) -> tuple[str, Holder, Open | None]:
-    """The requirement of a judge, the judge, and the attempt of an episode that runs."""
-    running = None if judge.episode is None else judge.episode.current
-    return judge.compiled.requirement.id, judge, running

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +12,14 @@ from rvmon.codegen.c_batch import NO, YES, BatchLibrary, BatchRun, Column
 from rvmon.codegen.c_columns import columns_of_samples
 from rvmon.errors import TimeOrderError
 from rvmon.monitor.codegen_support import plan_alone
-from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.engines.registry import Asked
+from rvmon.monitor.engines.rows import columns_of
 from rvmon.monitor.recorded import report_of_records
 from rvmon.monitor.validate import Validator
+from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.sample import Recording, Sample
+from rvmon.trace.sample import Sample
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict.report import Report
 
@@ -40,31 +43,26 @@ def library_of(compiled: CompiledSpec, only: Sequence[str] | None) -> BatchLibra
     return found
 
 
-def evaluate_c_blocks(
-    compiled: CompiledSpec,
-    names: Sequence[str],
-    blocks: Iterable[tuple[NDArray[np.int64], Mapping[str, NDArray[Any]]]],
-    *,
-    only: Sequence[str] | None,
-    until: int | None,
-) -> Report:
-    """Judge columns of truth values and numbers.
+def evaluate_columns(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+    """Judge a recording by its columns.
 
     Args:
         compiled: the specification.
-        names: of the columns; declared ones.
-        blocks: instants (int64[n] ticks) and the columns by name, of equal length: every signal is
-            updated in each row, an event occurs where its column is true; NaN is unknown.
-        only: ids of the requirements; default all.
-        until: the end of the trace in ticks, if after its last row.
+        source: the recording: every signal is updated in each row, an event occurs where its column
+            is true; NaN is unknown.
+        asked: what is wanted.
 
     Raises:
+        NotPlainError: it has no such columns.
         TimeOrderError: an instant is not after the one before.
+        RvmonError: see `library_of`.
     """
-    with _Judging(compiled, only, frozenset(names)) as judging:
-        for times, columns in blocks:
-            judging.take(times, array_columns(compiled.checked, columns))
-        return judging.report(until)
+    library = library_of(compiled, asked.only)
+    columns = columns_of(compiled, source, asked)
+    with _Judging(compiled, library, frozenset(columns.names)) as judging:
+        for block in columns.read():
+            judging.take(block.times, array_columns(compiled.checked, block.columns))
+        return judging.report(source.end)
 
 
 def array_columns(spec: CheckedSpec, columns: Mapping[str, NDArray[Any]]) -> dict[str, Column]:
@@ -78,52 +76,46 @@ def array_columns(spec: CheckedSpec, columns: Mapping[str, NDArray[Any]]) -> dic
     return made
 
 
-def evaluate_recording(
-    compiled: CompiledSpec,
-    recording: Recording,
-    *,
-    sources: frozenset[str] | None,
-    only: Sequence[str] | None,
-    until: int | None,
-) -> Report:
-    """Judge a recording; so many samples at a time are in memory.
+def evaluate_samples(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+    """Judge a recording by its samples; so many at a time are in memory.
 
     Args:
         compiled: the specification.
-        recording: its samples.
-        sources: the names that can arrive; `None`: all.
-        only: ids of the requirements; default all.
-        until: the end of the trace in ticks, if after its last sample.
+        source: the recording.
+        asked: what is wanted.
 
     Raises:
         TimeOrderError: an instant is not after the one before.
         TraceError: a name or a value that the specification does not know, or an instant with two
             payloads of one event.
+        RvmonError: see `library_of`.
     """
-    validator = Validator(compiled.checked, sources, frozenset())
+    library = library_of(compiled, asked.only)
+    names = source.names
+    if names is not None:
+        names = names & {*compiled.checked.signals, *compiled.checked.events}
+    validator = Validator(compiled.checked, names, frozenset())
 
     def checked(sample: Sample) -> Sample:
         return Sample(whole_ticks(sample.t), validator.check(sample.t, sample.values))
 
-    samples = map(checked, recording)
-    with _Judging(compiled, only, sources) as judging:
-        library = judging.library
+    samples = map(checked, source.samples(ordered=True))
+    with _Judging(compiled, library, names) as judging:
         while some := list(islice(samples, PIECE)):
             times = np.array([sample.t for sample in some], np.int64)
             judging.take(times, columns_of_samples(some, library.names, library.limits))
-        return judging.report(until)
+        return judging.report(source.end)
 
 
 class _Judging:
     """A run of a compiled monitor over the rows of one recording."""
 
     def __init__(
-        self, compiled: CompiledSpec, only: Sequence[str] | None, names: frozenset[str] | None
+        self, compiled: CompiledSpec, library: BatchLibrary, names: frozenset[str] | None
     ) -> None:
         declared = frozenset((*compiled.checked.signals, *compiled.checked.events))
-        self.library = library_of(compiled, only)
-        self._ids = [rule.requirement.id for rule in self.library.plan.rules]
-        self._run = BatchRun(self.library, declared - (declared if names is None else names))
+        self._ids = [rule.requirement.id for rule in library.plan.rules]
+        self._run = BatchRun(library, declared - (declared if names is None else names))
         self._rows = 0
         self._origin: int | None = None
 

@@ -9,7 +9,7 @@ from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import payloads_of
 from rvmon.dataflow.numbers import reader
 from rvmon.formula.state import FALSE, UNKNOWN
-from rvmon.monitor.attempt_judge import Open, doubt_in, leaves_in
+from rvmon.monitor.attempt_judge import AttemptJudge, Open, doubt_in, leaves_in
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.lane import Lane
 from rvmon.spec.checked.formula import Numeric
@@ -43,7 +43,7 @@ class CapturedAttempt:
         self._lane = parent
         self._own = captured
         self._captures = compiled.requirement.captures
-        self._leaves = leaves_in(parent.flow, compiled)
+        self._leaves = leaves_in(parent.flow.graph, compiled)
         self._trigger = trigger
         self._doubt = doubt
 
@@ -69,17 +69,18 @@ class CapturedAttempt:
             lane.blurs = False
         if lane.flow.cut == t:
             doubt = doubt_in(flow, self._leaves, t)
-            for attempt in self._attempts:
+            for _, attempt in self._attempts:
                 attempt.doubt = attempt.doubt or doubt
-        for attempt in self._attempts if lane.flow.is_cut else ():
+        for judge, attempt in self._attempts if lane.flow.is_cut else ():
             attempt.void = True
             # Its own lane can no longer see whether it is over.
-            attempt.clouded = trigger != FALSE and (attempt.clouded or trigger == UNKNOWN)
+            clouded = attempt.clouded or judge.clouded or trigger == UNKNOWN
+            attempt.clouded = trigger != FALSE and clouded
         return lane.blurs or (lane.flow.is_cut and trigger != FALSE)
 
     @property
-    def _attempts(self) -> Iterator[Open]:
-        return (attempt for judge in self._lane.judges for attempt in judge.attempts)
+    def _attempts(self) -> Iterator[tuple[AttemptJudge, Open]]:
+        return ((judge, attempt) for judge in self._lane.judges for attempt in judge.attempts)
 
     def _is_same(self, flow: Flow) -> bool:
         own, known = self._own, dict(self._own)

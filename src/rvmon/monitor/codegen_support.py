@@ -1,56 +1,17 @@
-"""What generated code can do for requirements, and the plan of it."""
+"""The plan of the code that is generated for requirements."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.codegen.planning import plan_of
 from rvmon.codegen.unit_plan import Plan, PlannedRule
-from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.errors import UnknownNameError
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.engines.refusal import of_c
 from rvmon.spec.checked.selection import requirements_asked
-
-
-def can_feed(requirement: CompiledRequirement) -> bool:
-    """Whether generated code in this process can work out what a requirement reads."""
-    return requirement.requirement.for_each is None and not requirement.requirement.captures
-
-
-def can_generate(requirement: CompiledRequirement) -> bool:
-    """Whether generated code can judge the attempts of a requirement, too."""
-    return not _beyond(requirement)
-
-
-def can_stand_alone(requirement: CompiledRequirement) -> bool:
-    """Whether generated code can judge it without a monitor in this process."""
-    return not _beyond_alone(requirement)
-
-
-def _beyond_alone(requirement: CompiledRequirement) -> str:
-    """Why generated code cannot do that; empty if it can.
-
-    Attempts in doubt need an automaton, too: in this process anything judges them.
-    """
-    reason = _beyond(requirement)
-    if not reason and requirement.hidden is not None:
-        reason = _beyond(requirement.hidden)
-        reason = reason and f"{reason}, where its trigger may be unknown"
-    return reason
-
-
-def _beyond(requirement: CompiledRequirement) -> str:
-    """Why generated code cannot judge a requirement; empty if it can."""
-    if requirement.requirement.for_each:
-        return "uses `for each`"
-    if requirement.requirement.captures:
-        return "uses `let`"
-    if requirement.automaton is None:
-        return f"has no automaton: {requirement.refusal}"
-    if isinstance(requirement.automaton.class_of, LetterDiagram):
-        return f"tells {requirement.alphabet.size:,} combinations of its propositions apart"
-    return ""
 
 
 def plan_requirements(
@@ -89,7 +50,7 @@ def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) ->
 
 def _planned(requirement: CompiledRequirement, explained: bool) -> Automaton | None:
     """The automaton of a requirement that generated code is to step; `None`: a judge does."""
-    if not can_generate(requirement):
+    if not requirement.is_generated:
         return None
     return requirement.automaton if explained else requirement.slim
 
@@ -105,21 +66,13 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
         UnknownNameError: there is no such requirement, or none is asked for.
         RvmonError: one of them is beyond generated code; which and why is said.
     """
-    chosen = list(compiled.requirements.values())
-    names = requirements_asked(compiled.checked, only)
-    if names is not None:
-        if not names:
-            known = ", ".join(compiled.requirements)
-            raise UnknownNameError(f"the list of requirements is empty: there are {known}")
-        chosen = [one for one in chosen if one.requirement.id in names]
-    if compiled.checked.max_delay is not None:
-        raise RvmonError(
-            "generated code cannot sort samples: leave out `max delay`, or use the engine `auto`"
-        )
+    ids = requirements_asked(compiled.checked, only)
+    if ids is not None and not ids:
+        known = ", ".join(compiled.requirements)
+        raise UnknownNameError(f"the list of requirements is empty: there are {known}")
+    chosen = compiled.chosen(ids)
     for one in chosen:
-        if reason := _beyond_alone(one):
-            raise RvmonError(
-                f"{one.requirement.id} {reason}; generated code cannot judge it: "
-                "leave it out (`only`, --only), or use the engine `auto`"
-            )
+        refusal = of_c(one)
+        if refusal is not None:
+            raise refusal.error(one.requirement.id, "generated code")
     return plan_requirements(compiled, chosen, explained=False)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.bulk import moves_in_runs
@@ -20,16 +19,20 @@ from rvmon.dataflow.graph import Graph, graph_of, leaf_texts
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.numbers import events_of, inputs_of
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.state import State
+from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
+from rvmon.monitor.engines.refusal import of_automaton, of_generated, of_progression
 from rvmon.monitor.obligation_words import Words
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+
+__all__ = ["CompileReport", "CompiledRequirement", "CompiledSpec", "compile_spec"]
 
 RUN_BYTES = 20
 """Of an attempt in a run: the instant of its trigger, its number, what was seen."""
@@ -39,21 +42,6 @@ MOST_SEEN = 19
 
 _BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
 """What judges attempts in doubt has to be small: it is rarely asked for, and built beside each."""
-
-ENGINES = ("auto", "python", "automaton", "progression", "network")
-
-ALL_ENGINES = (*ENGINES, "c")
-"""With the one that needs a C compiler, and gives no reasons."""
-
-
-def expect_engine(name: str, known: Sequence[str]) -> None:
-    """See that there is such an engine.
-
-    Raises:
-        UnknownNameError: there is none; those that there are are named.
-    """
-    if name not in known:
-        raise UnknownNameError(f"no engine `{name}`: there are {', '.join(known)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +80,7 @@ class CompiledRequirement:
 
     Attributes:
         rank: its place in the file.
+        spec: the specification that it is of.
         requirement: as checked.
         obligation: its formulas.
         alphabet: of what it owes.
@@ -102,17 +91,18 @@ class CompiledRequirement:
     def __init__(
         self,
         rank: int,
+        spec: CheckedSpec,
         requirement: Requirement,
         obligation: Obligation,
         factory: Factory,
-        gap: int | None,
         *,
         is_beside: bool = False,
     ) -> None:
         self._factory = factory
         self.is_beside = is_beside
         self.rank = rank
-        self.gap = gap
+        self.spec = spec
+        self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
         self.requirement = requirement
         self.obligation = obligation
         self.alphabet: Alphabet = alphabet_of(obligation.owed)
@@ -198,7 +188,7 @@ class CompiledRequirement:
         if obligation is None:
             return None
         return CompiledRequirement(
-            self.rank, self.requirement, obligation, self._factory, self.gap, is_beside=True
+            self.rank, self.spec, self.requirement, obligation, self._factory, is_beside=True
         )
 
     @cached_property
@@ -214,33 +204,32 @@ class CompiledRequirement:
         """The nodes of its delay network."""
         return plan_of(self.obligation.owed, self.gap)
 
+    @property
+    def is_fed(self) -> bool:
+        """Whether generated code in this process can work out what it reads."""
+        return self.requirement.for_each is None and not self.requirement.captures
+
+    @property
+    def is_generated(self) -> bool:
+        """Whether generated code can judge its attempts, too."""
+        return of_generated(self) is None
+
     def engine(self, name: str) -> str:
-        """Which of `automaton`, `network` and `progression` judges it.
+        """Which of `automaton`, `network` and `progression` judges it where no code is generated.
 
         Args:
-            name: what was asked for; `auto` takes the automaton where there is one.
+            name: of the engine that was asked for.
 
         Raises:
-            UnknownNameError: there is no such engine.
             RvmonError: the engine was asked for by name and cannot judge this requirement.
         """
-        expect_engine(name, ENGINES)
-        if name == "network":
+        refuses = {"automaton": of_automaton, "progression": of_progression}.get(name)
+        refusal = None if refuses is None else refuses(self)
+        if refusal is not None:
+            raise refusal.error(self.requirement.id, f"the engine `{name}`")
+        if name in ("network", "progression"):
             return name
-        if name == "progression":
-            if self.network_plan.looks_back:
-                raise RvmonError(
-                    f"{self.requirement.id} looks back at what lies ahead, which progression "
-                    "cannot judge: use the engine `auto` or `network`"
-                )
-            return name
-        if self.automaton is not None:
-            return "automaton"
-        if name == "automaton":
-            raise RvmonError(
-                f"{self.requirement.id} has no automaton ({self.refusal}): use the engine `auto`"
-            )
-        return "network"
+        return "network" if self.automaton is None else "automaton"
 
     def machine(self, engine: str) -> Machine:
         """The machine that judges its attempts, if it is none of `network`.
@@ -249,7 +238,6 @@ class CompiledRequirement:
             engine: as `engine` takes it.
 
         Raises:
-            UnknownNameError: there is no such engine.
             RvmonError: the engine was asked for by name and cannot judge this requirement.
         """
         if self.engine(engine) == "automaton" and self._table is not None:
@@ -324,37 +312,15 @@ class CompiledRequirement:
         return graph_of(self._own)
 
 
-class CompiledSpec:
-    """A specification from which any number of monitors can be built.
-
-    Attributes:
-        checked: as checked.
-        requirements: by id.
-        forms: what was generated for its monitors, by what it depends on.
-    """
-
-    def __init__(
-        self, checked: CheckedSpec, requirements: Mapping[str, CompiledRequirement]
-    ) -> None:
-        self.checked = checked
-        self.requirements = requirements
-        self.forms: dict[object, object] = {}
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # Compiled again elsewhere: what was generated here, and tables in hand, stay here.
-        return compile_spec, (self.checked,)
-
-
-def compile_spec(checked: CheckedSpec) -> CompiledSpec:
-    """Compile a specification, once for all its monitors.
+def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:
+    """The requirements of a specification, compiled, by id.
 
     Raises:
-        RvmonError: a requirement is beyond all engines; which and why is said.
+        RvmonError: one is beyond all engines; which and why is said.
     """
     factory = Factory()
     made = {}
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
-        gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(checked.time, checked.period)
         try:
             obligation = lower(requirement, factory, checked.period)
         except UnmonitorableError as error:
@@ -363,5 +329,5 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
             raise RvmonError(
                 f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
             ) from None
-        made[name] = CompiledRequirement(rank, requirement, obligation, factory, gap)
-    return CompiledSpec(checked, made)
+        made[name] = CompiledRequirement(rank, checked, requirement, obligation, factory)
+    return made

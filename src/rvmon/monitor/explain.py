@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Machine, Token
-from rvmon.automaton.stretch import run
-from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.standing import Standing
 from rvmon.formula.horizon import horizon
 from rvmon.formula.progress import after
 from rvmon.monitor.attempt_judge import AttemptJudge, Open
@@ -17,6 +16,7 @@ from rvmon.monitor.judge import Judge
 from rvmon.monitor.obligation_words import settled_alone
 from rvmon.monitor.reasons import Reasons
 from rvmon.monitor.sentence import told
+from rvmon.runtime.table import run
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
@@ -36,7 +36,7 @@ def explain_decision(
     judge: Judge, attempt: Open, verdict: bool, t: int, before: Token
 ) -> Explanation:
     """Why an attempt was decided at `t`; see `rvmon.monitor.attempt_judge.Clerk.decided`."""
-    letter = judge.letters[0 if verdict else 1]
+    letter = judge.letter if verdict else judge.other
     machine, flow = judge.machine, judge.flow
     token = just_before(machine, before, letter, judge.position, t, flow.gap)
     reasons = Reasons(judge.compiled, machine)
@@ -50,7 +50,7 @@ def explained(
     verdict: bool,
     t: int,
     triggered: int,
-    flow: Flow,
+    flow: Standing,
 ) -> Explanation:
     """Why an attempt was decided.
 
@@ -115,9 +115,8 @@ def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) 
 
 def _by_now(judge: Judge, attempt: Open, t: int) -> Iterator[Token]:
     """The tokens of both runs before the position `t`: they are taken on only when that is due."""
-    for token, letter in zip(
-        (attempt.token, attempt.better or attempt.token), judge.letters, strict=True
-    ):
+    better = attempt.better or attempt.token
+    for token, letter in ((attempt.token, judge.letter), (better, judge.other)):
         if token[0] > PASSED:
             yield just_before(judge.machine, token, letter, judge.position, t, judge.flow.gap)
         else:

@@ -1,9 +1,10 @@
 """The state of a run as plain data, and back into a monitor of the same shape.
 
-What a monitor is made of when it is built (formulas, tables, generated code) is not state. Objects
-that are *kept* are there in a fresh monitor as well: their fields are set, in place. Objects that
-are *made* during a run are made again. Nothing else is taken: no class is looked up by name but in
-these two tables, and nothing is executed.
+What a monitor is made of when it is built (formulas, tables, generated code) is not state. A class
+names the fields that a run changes in `STATE`, what is pointed at first, and in `VARIED` those of
+them that hold first a number, then something else. What is there in a fresh monitor as well has its
+fields set, in place; what is made during a run is made again, of the few classes that are listed
+here. Nothing else is taken: no class is looked up by name but here, and nothing is executed.
 """
 
 from __future__ import annotations
@@ -15,15 +16,6 @@ from dataclasses import fields
 from enum import Enum
 from typing import Any
 
-from rvmon.codegen.runtime import past as generated
-from rvmon.codegen.runtime.bulk import Run
-from rvmon.codegen.runtime.nodes import MISSING
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import Unit
-from rvmon.dataflow import since as flowing
-from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.hidden import Hidden
-from rvmon.dataflow.inputs import Inputs, Slot
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.outages import Outage
@@ -31,100 +23,18 @@ from rvmon.dataflow.positions import Positions
 from rvmon.errors import SnapshotError
 from rvmon.monitor.attempt_judge import Open
 from rvmon.monitor.doubt import Doubt
-from rvmon.monitor.episode import Episode
-from rvmon.monitor.fed_judge import FedJudge
-from rvmon.monitor.generated import GeneratedLanes, GeneratedMonitor
-from rvmon.monitor.health import HealthLog
-from rvmon.monitor.intake import Intake
-from rvmon.monitor.judge import Judge
-from rvmon.monitor.lane import Lane, Starter
-from rvmon.monitor.lanes import Lanes
-from rvmon.monitor.ledger import Ledger
-from rvmon.monitor.monitor import Monitor
-from rvmon.monitor.network_judge import NetworkJudge
-from rvmon.monitor.retention import Kept
-from rvmon.monitor.trigger import Trigger
-from rvmon.readers.coalesce import Conflicts
+from rvmon.runtime.bulk import Run
+from rvmon.runtime.nodes import MISSING
+from rvmon.runtime.past import History, Since
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt, Blame, Decision
 from rvmon.verdict.verdict import Verdict
 
-_BENCH = ("attempts", "due", "restless", "position")
-_LANES = ("_history", "all")
-_MONITOR = ("_ledger", "_kept", "_lanes", "_intake", "_health", "_last", "_reached")
-_UNIT = (
-    *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
-    *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired", "timers"),
-    *("began", "rules", "position", "after", "news", "dirty", "fading", "restless", "repeating"),
-    *("awaited", "dues", "due_at", "active", "births"),
-    *("asked", "eyed", "failing", "resume_at"),
-)
-
-_KEPT: Mapping[type, tuple[str, ...]] = {
-    Monitor: _MONITOR,
-    GeneratedMonitor: (*_MONITOR, "_floor"),
-    Ledger: ("attempts", "_counts", "_doubts", "void"),
-    Kept: ("dropped", "_seen", "_seen_to"),
-    HealthLog: ("began", "_seen"),
-    Intake: ("floor", "conflicts", "late", "crowded", "_held", "_taken"),
-    Conflicts: ("_seen",),
-    Lanes: _LANES,
-    GeneratedLanes: ("outages", "unit", "_counts", *_LANES),
-    Unit: _UNIT,
-    Rule: (
-        *("attempts", "runs", "due", "restless", "slides", "position", "letter", "other"),
-        *("before", "running", "current", "failed_at", "clouded", "eyed"),
-    ),
-    FedJudge: (
-        *("_judge", "_episode", "due", "restless", "before", "running", "failed_at", "eyed"),
-    ),
-    Episode: ("current", "failed_at"),
-    Lane: (
-        *("flow", "judges", "starters", "episodes", "waiting", "_restless", "_repeating"),
-        *("_failed", "blurs"),
-        *("_soonest", "_awaited"),
-    ),
-    Starter: ("trigger", "since"),
-    Trigger: ("before", "running"),
-    Judge: (*_BENCH, "letters"),
-    NetworkJudge: (
-        *(*_BENCH, "worse", "better", "now", "_letters", "_held"),
-        *("_news", "_next_decision", "_changed", "_span"),
-    ),
-    Flow: (
-        *("inputs", "memory", "values", "since", "origin", "position", "_until", "_last"),
-        *("_dirty", "_fading", "_wakes", "_left", "cut", "begun"),
-    ),
-    Inputs: ("slots", "occurrences", "updated", "expired", "changed", "outages"),
-    Slot: (
-        *(
-            "value",
-            "updates",
-            "first_at",
-            "last",
-            "at",
-            "before",
-            "before_at",
-            "stale_at",
-            "births",
-        ),
-    ),
-    flowing.Since: ("optimistic", "pessimistic", "wake"),
-    flowing.Previous: ("seen", "wake"),
-    Hidden: ("_now", "_value", "wake"),
-}
-"""Per class the fields that a run changes, in an order in which what is pointed at comes first."""
-
-_MIXED = ("w", "b")
-"""Fields that hold first a number, then something else."""
-
 _MADE: Mapping[str, type] = {
     one.__name__: one
-    for one in (
-        *(Attempt, Blame, Doubt, Outage, Open, Network, Positions, Run),
-        *(generated.History, generated.Since, flowing._Run),
-    )
+    for one in (Attempt, Blame, Doubt, Outage, Open, Network, Positions, Run, History, Since)
 }
+"""What is made during a run."""
 
 _PLAIN: Mapping[str, type] = {
     "tuple": tuple,
@@ -137,25 +47,21 @@ _PLAIN: Mapping[str, type] = {
 _CHOICES: Mapping[str, type[Enum]] = {one.__name__: one for one in (Verdict, Decision, HealthKind)}
 
 
-def _fields_of(class_: type) -> tuple[str, ...]:
-    if class_ in (Attempt, Blame):
-        return tuple(one.name for one in fields(class_))
-    if class_ is Network:
-        return (
-            *("plan", "positions", "known", "grown", "ahead", "pending", "swept", "carried"),
-            *("_letter", "_tidy", "_visits"),
-        )
-    if class_ is Positions:
-        return ("gap", "slope", "first", "last", "_stamps")
-    return tuple(class_.__slots__)  # type: ignore[attr-defined]
+def _state_of(class_: type) -> tuple[str, ...]:
+    """The fields that a run changes; of data that is made in a run, all."""
+    found: tuple[str, ...] | None = getattr(class_, "STATE", None)
+    return tuple(one.name for one in fields(class_)) if found is None else found
 
 
-def _kept_class(value: object) -> type | None:
-    """The class in `_KEPT` that an object is of; generated classes are of their base."""
-    for class_ in type(value).__mro__:
-        if class_ in _KEPT:
-            return class_
-    return None
+def _name_of(value: object) -> str:
+    """The class that says what the state of an object is; generated classes say nothing."""
+    made = (one for one in type(value).__mro__ if "STATE" in vars(one))
+    return next(made, type(value)).__name__
+
+
+def _is_kept(value: object) -> bool:
+    """Whether something of a fresh monitor has state of its own."""
+    return hasattr(value, "STATE")
 
 
 class Freezer:
@@ -199,13 +105,10 @@ class Freezer:
             return ["same", number]
         self._numbers[id(value)] = len(self._numbers)
         self._alive.append(value)
-        kept = _kept_class(value)
-        if kept is not None:
-            return ["kept", *(self.freeze(getattr(value, field)) for field in _KEPT[kept])]
-        made = type(value)
-        if _MADE.get(made.__name__) is not made:
-            raise TypeError(f"a {made.__name__} is no state of a run")
-        return [made.__name__, *(self.freeze(getattr(value, one)) for one in _fields_of(made))]
+        name = _name_of(value)
+        if not _is_kept(value) and _MADE.get(name) is not type(value):
+            raise TypeError(f"a {name} is no state of a run")
+        return [name, *(self.freeze(getattr(value, one)) for one in _state_of(type(value)))]
 
 
 class Thawer:
@@ -221,25 +124,23 @@ class Thawer:
 
     def into(self, current: Any, frozen: Any) -> Any:
         """The value that stands for `current`: itself where it is kept, with its fields set."""
-        kept = None if current is None else _kept_class(current)
-        if kept is not None and _tag(frozen) == "kept":
+        if _is_kept(current) and _tag(frozen) == _name_of(current):
             self._objects.append(current)
-            names = _KEPT[kept]
-            for name, one in zip(names, frozen[1:], strict=True):
+            for name, one in zip(current.STATE, frozen[1:], strict=True):
                 before = getattr(current, name)
-                kind = _kind(before)
+                kind = () if name in getattr(current, "VARIED", ()) else _kind(before)
                 after = self.into(before, one)
                 # What is a number or a table in a fresh monitor is one in any.
-                if name not in _MIXED and _kind(after)[: len(kind)] != kind:
+                if _kind(after)[: len(kind)] != kind:
                     raise SnapshotError(f"the snapshot is damaged: `{name}` fits no monitor")
                 if after is not before:
-                    object.__setattr__(current, name, after)
+                    setattr(current, name, after)
             return current
-        if type(current) is list and current and _kept_class(current[0]) is not None:
+        if type(current) is list and current and _is_kept(current[0]):
             for one, own in zip(current, frozen[1:], strict=True):
                 self.into(one, own)
             return current
-        if type(current) is dict and any(_kept_class(one) for one in current.values()):
+        if type(current) is dict and any(_is_kept(one) for one in current.values()):
             for key, own in frozen[1:]:
                 self.into(current[self.thaw(key)], own)
             return current
@@ -279,7 +180,7 @@ class Thawer:
         class_ = _MADE[tag]
         made: Any = object.__new__(class_)
         self._objects.append(made)
-        for name, one in zip(_fields_of(class_), rest, strict=True):
+        for name, one in zip(_state_of(class_), rest, strict=True):
             object.__setattr__(made, name, self.thaw(one))
         return made
 

@@ -6,21 +6,21 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from rvmon.automaton.machine import INFINITY
-from rvmon.codegen.python_unit import machine_of, unit_class
-from rvmon.codegen.runtime.nodes import BUSY, LIMIT
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import Unit
+from rvmon.automaton.machine import INFINITY, Machine
+from rvmon.codegen.python_unit import unit_class
 from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
-from rvmon.monitor.attempt_judge import AttemptJudge, Holder, Open, held_by
-from rvmon.monitor.codegen_support import can_feed, plan_requirements
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
+from rvmon.monitor.codegen_support import plan_requirements
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.fed_judge import FedJudge
-from rvmon.monitor.generated_records import GeneratedRecords
-from rvmon.monitor.lanes import Lanes, Shape
+from rvmon.monitor.engines.choice import judged_by
+from rvmon.monitor.generated_records import GeneratedRecords, Hearing, UnitStanding
+from rvmon.monitor.lanes import Lanes, judge_of
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.one_call import overlap
+from rvmon.runtime.nodes import BUSY, LIMIT
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.unit import Unit
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
@@ -41,6 +41,7 @@ class Forms:
         plan: of `requirements`.
         unit: the generated class.
         machines: per requirement, what judges its attempts; `None`: a judge.
+        judged_by: the engines that judge them.
 
     Args:
         compiled: the specification.
@@ -54,11 +55,15 @@ class Forms:
         requirements: Sequence[CompiledRequirement],
         sources: frozenset[str] | None,
     ) -> None:
-        self.requirements = [one for one in requirements if can_feed(one)]
-        self.others = [one for one in requirements if not can_feed(one)]
+        self.judged_by = judged_by(requirements)
+        self.requirements = [one for one in requirements if one.is_fed]
+        self.others = [one for one in requirements if not one.is_fed]
         self.plan = plan_requirements(compiled, self.requirements)
         self.unit = unit_class(self.plan, sources)
-        self.machines = [machine_of(self.plan, index) for index in range(len(self.requirements))]
+        self.machines: list[Machine | None] = [
+            None if rule.automaton is None else one.machine("auto")
+            for one, rule in zip(self.requirements, self.plan.rules, strict=True)
+        ]
         # What judges attempts in doubt is made when one comes up.
         self.machines += [None for _ in self.plan.hidden_of]
 
@@ -75,6 +80,8 @@ class GeneratedLanes(Lanes):
         ledger: takes the records.
         other: takes the samples that need a closer look.
     """
+
+    STATE = ("outages", "unit", "_counts", *Lanes.STATE)
 
     def __init__(
         self,
@@ -95,21 +102,25 @@ class GeneratedLanes(Lanes):
         absent = frozenset() if sources is None else {*spec.signals, *spec.events} - sources
         self.outages = outages_at_first(spec, absent)
         self._counts = [0] * len(forms.requirements)
+        clerks: list[Any] = [None] * (len(forms.requirements) + len(forms.plan.hidden_of))
+        unit.restart(self, clerks)
+        standing = UnitStanding(forms.plan, unit)
         self._seats = [
-            GeneratedRecords(one, forms.plan, unit, ledger, self._counts, noted)
+            GeneratedRecords(one, forms.plan, unit, standing, ledger, self._counts, noted)
             for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
-        unit.restart(self, [*self._seats, *(None for _ in forms.plan.hidden_of)])
         judged: list[CompiledRequirement | None] = [*forms.requirements]
         judged += [forms.requirements[index].hidden for index in forms.plan.hidden_of]
+        hearing = Hearing(unit, ledger)
         for index, one in enumerate(judged):
-            if forms.machines[index] is None and one is not None:
-                unit.rules[index] = rule = FedJudge(index, one, forms.plan, unit, ledger)
-                if one.network_plan.looks_back:
-                    # What it owes depends on what was before.
-                    rule.judge.restless = rule.restless = True
-                    unit.restless |= 1 << index
-                    unit.active |= 1 << index
+            if forms.machines[index] is not None:
+                unit.rules[index].clerk = self._seats[index]
+            elif one is not None:
+                hidden = index >= len(forms.requirements)
+                judge = judge_of(one, "auto", standing, hearing, {}, index=index, hidden=hidden)
+                unit.rules[index] = judge
+                judge.restless = judge.watches
+                unit.note(judge)
 
     # What the unit calls.
 
@@ -132,25 +143,30 @@ class GeneratedLanes(Lanes):
     @property
     def judges(self) -> Sequence[AttemptJudge]:
         """The judges of all lanes."""
-        own = (self._judge_now(rule) for rule in self.unit.rules)
-        return [*(judge for judge in own if judge is not None), *super().judges]
+        return [*(self._judge_now(rule) for rule in self.unit.rules), *super().judges]
 
-    def holders(self) -> Sequence[tuple[str, Holder, Open | None]]:
+    def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
         """See `Lanes`."""
-        return [*(self._holder(rule) for rule in self.unit.rules), *super().holders()]
+        own = [
+            (rule.compiled.requirement.id, rule, rule.running_attempt)
+            if isinstance(rule, AttemptJudge)
+            else (self._seats[rule.index].id, rule, rule.running_attempt)
+            for rule in self.unit.rules
+        ]
+        return [*own, *super().holders()]
 
-    def _holder(self, rule: Rule) -> tuple[str, Holder, Open | None]:
-        if isinstance(rule, FedJudge):
-            return held_by(rule.judge)
-        running = (one for one in rule.attempts if one.triggered == rule.current)
-        return self._seats[rule.index].compiled.requirement.id, rule, next(running, None)
-
-    def _judge_now(self, rule: Rule) -> AttemptJudge | None:
-        """The judge of a rule, or how it would stand if there were one; `None`: nobody asked it."""
-        if isinstance(rule, FedJudge):
-            rule.stand()
-            return rule.judge if rule.runs else None
+    def _judge_now(self, rule: Rule) -> AttemptJudge:
+        """A rule that knows its requirement, or how one would stand in its place."""
+        if isinstance(rule, AttemptJudge):
+            return rule
         return self._seats[rule.index].judge_now(rule)
+
+    def take_along(self, t: int) -> None:
+        """See `Lanes`."""
+        for rule in self.unit.rules:
+            if rule.slides:
+                rule.pass_to(t)
+        super().take_along(t)
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`."""
@@ -175,33 +191,14 @@ class GeneratedLanes(Lanes):
         self.unit.close(end, reached)
         for rule in self.unit.rules:
             judge = self._judge_now(rule)
-            if judge is None:
-                continue
             rule.attempts = judge.attempts
             rule.settle_flags()
             for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
-            rule.attempts = judge.attempts = []
-            rule.runs = {}
+            rule.attempts, rule.runs = [], {}
         super().finish(end, reached)
         if self.alone:
             self._show_inputs()
-
-    def shape(self) -> Shape:
-        """See `Lanes`."""
-        instances, lanes, unopened, _ = super().shape()
-        rules = self.unit.rules
-        hosted = [rule.index for rule in rules if isinstance(rule, FedJudge) and rule.runs]
-        return instances, lanes, unopened, hosted
-
-    def rebuild(self, shape: Shape) -> None:
-        """See `Lanes`."""
-        super().rebuild(shape)
-        for index in shape[3]:
-            rule = self.unit.rules[index]
-            if isinstance(rule, FedJudge):
-                rule.stand()
-                _ = rule.judge  # it is made when it is asked for
 
     def untold(self) -> list[str]:
         """See `Lanes`."""
@@ -238,6 +235,8 @@ class GeneratedMonitor(Monitor):
         keep: see `build_monitor`.
     """
 
+    STATE = (*Monitor.STATE, "_floor")
+
     def __init__(
         self,
         forms: Forms,
@@ -251,6 +250,7 @@ class GeneratedMonitor(Monitor):
         names = {*compiled.checked.signals, *compiled.checked.events}
         absent = frozenset() if sources is None else frozenset(names - sources)
         self._forms = forms
+        self.judged_by = forms.judged_by
         self._unit = forms.unit(forms.machines, absent)
         super().__init__(compiled, requirements, engine, settle, sources, keep)
         self._by_unit = not forms.others and self._intake is None
@@ -323,13 +323,6 @@ class GeneratedMonitor(Monitor):
         if self._unit.after != self._floor:
             raise overlap()
         return data
-
-    def _open(self) -> Sequence[Attempt]:
-        for rule in self._unit.rules:
-            if rule.slides and self._reached is not None:
-                # Its clocks are taken along when somebody looks.
-                rule.pass_to(self._reached - (self._reached != self._last))
-        return super()._open()
 
     def _next_due(self) -> int | None:
         own = min(self._unit.next_position(), self._unit.next_due())

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from operator import itemgetter
 from typing import Any
 
 from rvmon.automaton.machine import Token
-from rvmon.codegen.runtime.rule import Rule
-from rvmon.codegen.runtime.unit import Unit
 from rvmon.codegen.unit_plan import Plan
-from rvmon.monitor.attempt_judge import Open
+from rvmon.dataflow.outages import Outage
+from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.ledger import Ledger
-from rvmon.monitor.witness import Stood, Witness
+from rvmon.monitor.witness import Witness
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.unit import Unit
 from rvmon.verdict.attempt import decided_attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -24,6 +25,74 @@ Pick = Callable[[list[Any]], tuple[Any, ...]]
 Noted = Callable[..., tuple[Any, ...]]
 
 
+class UnitStanding:
+    """The values that generated code works out; see `rvmon.dataflow.standing.Standing`.
+
+    Args:
+        plan: of the generated code.
+        unit: of that plan; has begun a run.
+    """
+
+    begun = None
+    is_cut = False
+
+    def __init__(self, plan: Plan, unit: Unit) -> None:
+        self.graph = plan.graph
+        self.gap = plan.gap
+        self.values = unit.v
+        self.since = unit.since
+        self._unit = unit
+
+    @property
+    def position(self) -> int:
+        """See `Standing`."""
+        return self._unit.position
+
+    @property
+    def outages(self) -> Mapping[str, Outage]:
+        """See `Standing`."""
+        found: Mapping[str, Outage] = self._unit.clerk.outages
+        return found
+
+    def last_with(self, place: int, value: int, t: int) -> int | None:
+        """See `Standing`; of the propositions that a requirement owes."""
+        return t if self.values[place] == value else self._unit.until[3 * place + value]
+
+
+class Hearing:
+    """Tells generated code of all that a ledger hears from a rule that is no part of it.
+
+    Args:
+        unit: looks for news after each step.
+        ledger: takes the records.
+    """
+
+    def __init__(self, unit: Unit, ledger: Ledger) -> None:
+        self._unit = unit
+        self._ledger = ledger
+
+    def opened(self, judge: AttemptJudge, triggered: int, token: Token, sure: bool) -> Open:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
+        self._unit.news = True  # it is numbered where decisions are looked for
+        return self._ledger.opened(judge, triggered, token, sure)
+
+    def assured(self, judge: AttemptJudge, attempt: Open) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
+        self._unit.news = True
+        self._ledger.assured(judge, attempt)
+
+    def parted(self, judge: AttemptJudge, attempt: Open) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
+        self._ledger.parted(judge, attempt)
+
+    def decided(
+        self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
+    ) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
+        self._unit.news = True
+        self._ledger.decided(judge, attempt, verdict, t, before)
+
+
 class GeneratedRecords(Witness):
     """Stands where the judge of a requirement would, and writes the records of its decisions.
 
@@ -31,9 +100,13 @@ class GeneratedRecords(Witness):
         compiled: the requirement.
         plan: that it is part of.
         unit: judges it.
+        standing: of the unit.
         ledger: takes the records.
         counts: of the attempts of all requirements.
-        noted: gives what a record keeps, see `rvmon.codegen.runtime.unit.Unit.NOTED`.
+        noted: gives what a record keeps, see `rvmon.runtime.unit.Unit.NOTED`.
+
+    Attributes:
+        id: of the requirement.
     """
 
     def __init__(
@@ -41,6 +114,7 @@ class GeneratedRecords(Witness):
         compiled: CompiledRequirement,
         plan: Plan,
         unit: Unit,
+        standing: UnitStanding,
         ledger: Ledger,
         counts: list[int],
         noted: Noted,
@@ -48,21 +122,20 @@ class GeneratedRecords(Witness):
         super().__init__(compiled, plan, ledger)
         self._ledger = ledger
         self._unit = unit
+        self._standing = standing
         self._tell = ledger.told.append
         self._counts = counts
         self._seen_of = _picking(self.leaves)
         self._noted = noted
         self._noted_last: tuple[Any, ...] = ()
-        self._id = compiled.requirement.id
+        self.id = compiled.requirement.id
         self._rank = compiled.rank
         self._upon_end = compiled.obligation.trigger is None
 
     def judge_now(self, rule: Rule) -> Judge:
         """The judge of the requirement, as it would stand now if it had judged."""
-        unit = self._unit
-        flow = Stood(self._plan, unit.v, unit.since, unit.until, unit.clerk.outages)
-        flow.origin, flow.position = unit.origin, unit.position
-        return self.judge(flow, (rule.letter, rule.other), rule.position, rule.undecided())
+        letters = rule.letter, rule.other
+        return self.judge(self._standing, letters, rule.position, rule.undecided())
 
     # What the unit calls.
 
@@ -74,7 +147,7 @@ class GeneratedRecords(Witness):
             self._counts[rule.index] += 1
             attempt.number = self._counts[rule.index]
         else:
-            attempt.doubtful_number = self._ledger.next_doubtful(self._id)
+            attempt.doubtful_number = self._ledger.next_doubtful(self.id)
         return attempt
 
     def assured(self, rule: Rule, attempt: Open) -> None:
@@ -99,7 +172,7 @@ class GeneratedRecords(Witness):
 
     def parted(self, rule: Rule, attempt: Open) -> None:
         """Hear that unknown input made the two runs of an attempt part."""
-        attempt.doubt = self.judge_now(rule)._doubt()
+        attempt.doubt = self.judge_now(rule).doubt
         self._unit.news = True
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:
@@ -144,7 +217,7 @@ class GeneratedRecords(Witness):
         else:
             self._noted_last = noted
         record = decided_attempt(
-            self._id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
+            self.id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
         )
         self._tell((decided, self._rank, number, record))
 

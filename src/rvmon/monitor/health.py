@@ -26,6 +26,8 @@ class HealthLog:
         alternations: how known and unknown values of columns follow each other.
     """
 
+    STATE = ("began", "_seen")
+
     def __init__(self) -> None:
         self.began: int | None = None
         self.alternations = Alternations()

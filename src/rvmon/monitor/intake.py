@@ -31,6 +31,8 @@ class Intake:
         crowded: samples judged early because too many waited: the same.
     """
 
+    STATE = ("floor", "conflicts", "late", "crowded", "_held", "_taken")
+
     def __init__(self, delay: int, events: Container[str]) -> None:
         self.delay = delay
         self.events = events

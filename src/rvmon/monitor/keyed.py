@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rvmon.dataflow.graph import Graph
 from rvmon.dataflow.leaves import captured_names
 from rvmon.dataflow.numbers import events_of
-from rvmon.formula.state import Leaf, Missing, State, StateOp
+from rvmon.formula.state import Leaf, State, StateOp
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.instances import Instance, values_in
 from rvmon.monitor.lane import Lane
@@ -51,7 +51,7 @@ def reach_of(compiled: CompiledRequirement, each: ForEach) -> Reach:
     of their fields, with whatever value.
     """
     graph, event = compiled.shared_graph, each.value.event
-    leaves = {place: _atom(state.leaf) for place, state in enumerate(graph.nodes) if state.leaf}
+    leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}
     reads = {place for place, leaf in leaves.items() if each.name in captured_names(leaf)}
     own = frozenset(graph.by_name.get(event, ()))
     varying = _above(graph, reads - own)
@@ -70,10 +70,6 @@ def reach_of(compiled: CompiledRequirement, each: ForEach) -> Reach:
         varying.isdisjoint(graph.stateful) and not compiled.network_plan.looks_back,
         trigger is not None and _occurs(trigger, event),
     )
-
-
-def _atom(leaf: Leaf) -> Leaf:
-    return leaf.atom if isinstance(leaf, Missing) else leaf
 
 
 def _above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:

@@ -6,38 +6,18 @@ attempt of a requirement with `let`, has a lane of its own, because its proposit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
-from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.inputs import Reported
 from rvmon.formula.state import TRUE
-from rvmon.monitor.attempt_judge import AttemptJudge, Open
+from rvmon.monitor.attempt_judge import AttemptJudge
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.episode import Episode
-from rvmon.monitor.trigger import Trigger
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.table import NEVER
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TIME_LIMIT
-
-
-@dataclass(slots=True, eq=False)
-class Starter:
-    """What starts the attempts of one requirement in a lane.
-
-    Attributes:
-        trigger: follows the truth of the trigger; `None` if that is the end of the trace.
-        place: of the trigger's formula in the flow; −1 if there is none.
-        start: starts an attempt; takes the position, which the flow is at, and the instant of the
-            trigger (they differ only at the end of a trace).
-        since: nothing starts before this instant.
-    """
-
-    trigger: Trigger | None
-    place: int
-    start: Callable[[int, int], None]
-    since: int = -TIME_LIMIT
 
 
 class Captive(Protocol):
@@ -53,13 +33,19 @@ class Lane:
     Attributes:
         flow: evaluates the propositions of its judges.
         judges: of the requirements in it, in the order of the file.
-        starters: the same.
-        episodes: of those that start again after a failure.
+        starters: the same, those of which attempts start in it; where attempts have lanes of their
+            own, what makes them.
+        since: nothing starts in it before this instant; `NEVER`: nothing does.
         waiting: samples whose position has not come yet.
         made_for: the requirement of an instance or of a captured attempt, with its values.
         captured: the lanes of captured attempts that were triggered in this one.
         blurs: of such a lane, whether its values may turn out not to be known.
     """
+
+    STATE = (
+        *("flow", "judges", "starters", "since", "waiting", "_restless", "_repeating", "_failed"),
+        *("blurs", "_soonest", "_awaited"),
+    )
 
     def __init__(
         self, flow: Flow, made_for: tuple[CompiledRequirement, Mapping[str, Scalar]] | None = None
@@ -67,23 +53,24 @@ class Lane:
         self.flow = flow
         self.made_for = made_for
         self.judges: list[AttemptJudge] = []
-        self.starters: list[Starter] = []
-        self.episodes: list[Episode] = []
+        self.starters: list[Rule] = []
+        self.since = -TIME_LIMIT
         self.captured: list[Captive] = []
         self.blurs = True
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
         nodes = flow.graph.nodes
         self._judges_at: list[list[AttemptJudge]] = [[] for _ in nodes]
-        self._starters_at: list[list[Starter]] = [[] for _ in nodes]
+        self._asking_at: list[list[Rule]] = [[] for _ in nodes]
+        self._going_on: list[list[AttemptJudge]] = [[] for _ in nodes]
+        self._resumes = False
+        """Whether a failure may be followed by another attempt."""
         self._expected: list[CompiledRequirement] = []
-        self._looking: list[list[Episode]] = [[] for _ in nodes]
-        self._going_on: list[list[Episode]] = [[] for _ in nodes]
-        self._failed: dict[Episode, None] = {}
-        self._restless: dict[AttemptJudge, None] = {}
-        self._repeating: dict[Starter, None] = {}
-        self._soonest = INFINITY
+        self._failed: dict[Rule, None] = {}
+        self._restless: dict[Rule, None] = {}
+        self._repeating: dict[Rule, None] = {}
+        self._soonest = NEVER
         """No judge is due before."""
-        self._awaited = INFINITY
+        self._awaited = NEVER
         """The next position at which samples that were taken will show."""
 
     def add_judge(self, judge: AttemptJudge) -> None:
@@ -91,13 +78,20 @@ class Lane:
         self.judges.append(judge)
         for place in judge.places:
             self._judges_at[place].append(judge)
+        if judge.again >= 0:
+            self._resumes = True
+            self._going_on[judge.again].append(judge)
         self._note(judge)
+        self._have_asked(judge)
 
-    def add_starter(self, starter: Starter) -> None:
+    def add_starter(self, rule: Rule) -> None:
         """Have a requirement's attempts started."""
-        self.starters.append(starter)
-        if starter.trigger is not None:
-            self._starters_at[starter.place].append(starter)
+        self.starters.append(rule)
+        self._have_asked(rule)
+
+    def _have_asked(self, rule: Rule) -> None:
+        if rule.trigger >= 0 and rule not in self._asking_at[rule.trigger]:
+            self._asking_at[rule.trigger].append(rule)
 
     def expect(self, compiled: CompiledRequirement) -> None:
         """Have it seen whether the trigger of a requirement is ever true or false."""
@@ -112,20 +106,11 @@ class Lane:
             if told is None or values[index[told]] == TRUE:
                 yield compiled.requirement.id
 
-    def add_episode(self, episode: Episode) -> None:
-        """Have a requirement's episodes followed."""
-        self.episodes.append(episode)
-        self._looking[episode.place].append(episode)
-        if episode.again >= 0:
-            self._going_on[episode.again].append(episode)
-        episode.resume = lambda failed: self._failed.update({failed: None})
-
     @property
     def is_idle(self) -> bool:
         """Whether nothing is open in it and nothing will start, as in that of a decided attempt."""
         judged = bool(self.judges) and not any(judge.attempts for judge in self.judges)
-        running = any(episode.is_running for episode in self.episodes)
-        return judged and not self.starters and not running
+        return judged and not self.starters and not any(judge.running for judge in self.judges)
 
     @property
     def is_quiet(self) -> bool:
@@ -136,8 +121,7 @@ class Lane:
             or self._failed
             or self._repeating
             or any(judge.attempts for judge in self.judges)
-            or any(episode.is_running for episode in self.episodes)
-            or any(one.trigger is not None and one.trigger.running for one in self.starters)
+            or any(rule.running for rule in self.starters)
         )
 
     @property
@@ -162,9 +146,12 @@ class Lane:
             position = min(self._awaited, self.flow.next_change, self._next_start)
             until = min(position - 1, limit)
             # What fails may be followed by another attempt at once.
-            stop = min(until, self._soonest) if self.episodes else until
+            stop = min(until, self._soonest) if self._resumes else until
             self._pass_to(stop)
-            if stop < until or self._next_start < position:
+            starts = self._next_start < position
+            if stop < until and self._soonest <= stop and not starts:
+                raise AssertionError("what has passed is due again: no run comes to stand so")
+            if stop < until or starts:
                 continue
             if position > limit:
                 return
@@ -173,15 +160,15 @@ class Lane:
     @property
     def _next_start(self) -> int:
         """The next position at which an attempt may start though nothing changes."""
-        gap, found = self.flow.gap, INFINITY
+        gap, found = self.flow.gap, NEVER
         if gap is None:
             return found
         if self.captured and self.flow.inputs.occurrences:
             found = self.flow.position + gap  # there, what was captured of them is another
-        for starter in self._repeating:
-            found = min(found, max(self.flow.position + gap, -(-starter.since // gap) * gap))
-        for episode in self._failed:
-            late = (episode.failed_at or 0) - self.flow.position
+        if self._repeating:
+            found = min(found, max(self.flow.position + gap, -(-self.since // gap) * gap))
+        for rule in self._failed:
+            late = (rule.failed_at or 0) - self.flow.position
             found = min(found, self.flow.position + max(late // gap + 1, 1) * gap)
         return found
 
@@ -203,15 +190,22 @@ class Lane:
         self._look_over()
 
     def _look_over(self) -> None:
-        self._soonest = INFINITY
-        for judge in self.judges:
-            self._note(judge)
+        soonest = NEVER
+        for judge in self.judges:  # there may be thousands, most of which nothing happened to
+            if judge.due < soonest:
+                soonest = judge.due
+            if judge.restless:
+                self._restless[judge] = None
+        self._soonest = soonest
 
-    def _note(self, judge: AttemptJudge) -> None:
+    def _note(self, judge: Rule) -> None:
         """Remember when a judge has to be seen to, after something was done to it."""
         self._soonest = min(self._soonest, judge.due)
         if judge.restless:
             self._restless[judge] = None
+        # Where it fails at once, something has to change first.
+        if judge.failed_at is not None and judge.goes_on:
+            self._failed[judge] = None
 
     def sample(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take a sample; time has come to `t − 1` before."""
@@ -226,14 +220,15 @@ class Lane:
 
     def _visit(self, t: int) -> None:
         first = self.flow.origin is None
-        self._awaited = INFINITY
+        self._awaited = NEVER
         for taken, values in self.waiting:
             self.flow.apply(taken, values)
         self.waiting.clear()
         changed = self.flow.evaluate(t)
         for place in changed:
-            for episode in self._looking[place]:
-                episode.look(t)
+            for rule in self._asking_at[place]:
+                if rule.eyed:
+                    rule.look()
         for judge in self.judges if first else self._concerned(changed, t):
             judge.visit(t)
             self._note(judge)
@@ -241,35 +236,37 @@ class Lane:
         if first:
             asked = dict.fromkeys(self.starters)
         for place in changed:
-            asked.update(dict.fromkeys(self._starters_at[place]))
-        for starter in asked:
-            self._ask(starter, t)
+            asked.update(dict.fromkeys(self._asking_at[place]))
+        for rule in asked:
+            self._ask(rule, t)
         failed, self._failed = self._failed, {}
         for place in changed:
             failed.update(dict.fromkeys(self._going_on[place]))
-        for episode in failed:
-            self._go_on(episode, t)
+        for rule in failed:
+            self._go_on(rule, t)
         self.captured = [one for one in self.captured if one.keeps(t)]
 
-    def _go_on(self, episode: Episode, t: int) -> None:
+    def _go_on(self, rule: Rule, t: int) -> None:
         """Follow a failure by another attempt at the position `t`, if it is time for that."""
-        if episode.goes_on(t):
-            episode.begin(t, t)
-            self._note(episode.judge)
-        elif episode.failed_at is not None and t <= episode.failed_at:
-            self._failed[episode] = None
+        if rule.failed_at is None:
+            return
+        if t <= rule.failed_at:
+            self._failed[rule] = None
+        elif rule.goes_on:
+            self.begin(rule, t, t)
 
-    def begin(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
-        """Drive an attempt of one of the judges from the position `t` on, which the flow is at."""
-        judge.begin(attempt, t)
-        self._note(judge)
+    def begin(self, rule: Rule, t: int, triggered: int) -> None:
+        """Start an attempt at the position `t`, which the flow is at.
 
-    def begin_episode(self, episode: Episode, t: int) -> None:
-        """Begin the first attempt of an episode at the position `t`, which the flow is at."""
-        episode.begin(t, t)
-        self._note(episode.judge)
+        Args:
+            rule: of this lane.
+            t: ticks.
+            triggered: the instant of the trigger, which is another at the end of a trace.
+        """
+        rule.begin(t, triggered)
+        self._note(rule)
 
-    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[AttemptJudge]:
+    def _concerned(self, changed: Sequence[int], t: int) -> Iterable[Rule]:
         """The judges that have to visit the position at `t`."""
         concerned = self._restless
         self._restless = {}
@@ -280,27 +277,31 @@ class Lane:
             concerned.update((judge, None) for judge in self.judges if judge.due <= t)
         return concerned
 
-    def _ask(self, starter: Starter, t: int) -> None:
-        """Let a starter see the position at `t`."""
-        trigger = starter.trigger
-        if trigger is None:
+    def _ask(self, rule: Rule, t: int) -> None:
+        """Let a rule see its trigger at the position `t`."""
+        if rule.trigger < 0:
             return
-        if trigger.starts(self.flow.values[starter.place]):
-            starter.start(t, t)
-        if trigger.repeats:
-            self._repeating[starter] = None
+        if self.since == NEVER:
+            if rule.running:
+                rule.starts(self.flow.values[rule.trigger])  # what was captured ends with that
+            return
+        if rule.starts(self.flow.values[rule.trigger]):
+            self.begin(rule, t, t)
+        if rule.repeats:
+            self._repeating[rule] = None
         else:
-            self._repeating.pop(starter, None)
+            self._repeating.pop(rule, None)
 
-    def drop_episode(self, starter: Starter, t: int) -> None:
-        """Take it that no episode of a starter is running, and none was before `t`."""
-        if starter.trigger is not None:
-            if self.flow.origin is not None:
-                starter.trigger.before = self.flow.values[starter.place]
-            starter.trigger.running = False
-            starter.since = t
-            if starter.trigger.repeats:
-                self._repeating[starter] = None
+    def open(self, t: int) -> None:
+        """Let attempts start from `t` on, as if none had run before."""
+        self.since = t
+        for rule in self.starters:
+            if rule.trigger >= 0:
+                if self.flow.origin is not None:
+                    rule.before = self.flow.values[rule.trigger]
+                rule.running = False
+                if rule.repeats:
+                    self._repeating[rule] = None
 
     def stand_at_last(self, end: int) -> int:
         """Go to the last position at or before `end`, up to which time has come; returns it."""
@@ -315,6 +316,6 @@ class Lane:
     @property
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt or start one."""
-        due = min((judge.next_due for judge in self.judges), default=INFINITY)
+        due = min((judge.next_due for judge in self.judges), default=NEVER)
         # What changes at an instant is known when that instant has passed.
         return min(due, self.flow.next_change + 1, self._awaited + 1, self._next_start + 1)

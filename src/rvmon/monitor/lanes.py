@@ -3,40 +3,97 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs
-from rvmon.monitor.attempt_judge import AttemptJudge, Holder, Open, held_by
+from rvmon.dataflow.standing import Standing
+from rvmon.monitor.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.episode import Episode
 from rvmon.monitor.instances import Instance, seen_by, values_in
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.keyed import Keyed
-from rvmon.monitor.lane import Lane, Starter
+from rvmon.monitor.lane import Lane
 from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.network_judge import NetworkJudge
 from rvmon.monitor.roster import Roster
-from rvmon.monitor.trigger import Trigger
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.table import NEVER
 from rvmon.spec.checked.specification import CheckedSpec, Mode, TimeModel
 from rvmon.trace.sample import Scalar, Value
 
 Captured = Mapping[str, Scalar]
 
 Start = Callable[[int, int], None]
-"""Starts an attempt; see `rvmon.monitor.lane.Starter`."""
+"""Starts an attempt; takes the position and the instant of the trigger."""
 
 Shape = tuple[
     list[tuple[str, list[tuple[int, Scalar, int]]]],
     list[tuple[str, str, dict[str, Scalar], Scalar, bool]],
-    list[str],
-    list[int],
 ]
 """Per requirement its instances: rank, value, first instant; per lane its requirement,
 which of its judges it has, captured values, the value of its instance, and whether attempts start
-in it; the requirements of which all values were known so far; the rules of generated code that had
-a judge of their own."""
+in it."""
+
+
+def judge_of(
+    compiled: CompiledRequirement,
+    engine: str,
+    standing: Standing,
+    clerk: Clerk,
+    captured: Captured,
+    **kind: Any,
+) -> AttemptJudge:
+    """What judges the attempts of a requirement, or those of it that are in doubt.
+
+    Args:
+        compiled: as for `AttemptJudge`; so are the others.
+        engine: judges them. For those in doubt no automaton is built while a monitor runs.
+        standing: gives the truth of the propositions.
+        clerk: makes attempts and hears of decisions.
+        captured: values of `let` and `for each`.
+        **kind: `rank`, `hidden` and so on.
+    """
+    if compiled.is_beside or compiled.engine(engine) == "network":
+        return NetworkJudge(compiled, standing, clerk, captured, **kind)
+    return Judge(compiled, compiled.machine(engine), standing, clerk, captured, **kind)
+
+
+class CapturingRule(Rule):
+    """Starts the attempts of a requirement with captured values, each in a lane of its own.
+
+    Args:
+        compiled: the requirement, or what judges its attempts in doubt.
+        flow: gives the truth of its trigger.
+        start: makes the lane, and starts the attempt.
+        hidden: whether these are the attempts in doubt.
+    """
+
+    def __init__(
+        self, compiled: CompiledRequirement, flow: Flow, start: Start, *, hidden: bool
+    ) -> None:
+        trigger = compiled.obligation.trigger
+        super().__init__(
+            0,
+            None,
+            None,
+            -1 if trigger is None else flow.graph.index[trigger],
+            compiled.requirement.pulse,
+            hidden or compiled.requirement.mode is Mode.WHENEVER,
+            hidden,
+            -1,
+            -1,
+            flow.gap,
+            flow.values,
+            None,
+        )
+        self._start = start
+
+    def begin(self, t: int, triggered: int) -> None:
+        """Start an attempt at the position `t`, at which the values are."""
+        self._start(t, triggered)
 
 
 class Lanes:
@@ -54,6 +111,8 @@ class Lanes:
         roster: the lanes of those with it, an instance each.
         forgets: whether instances are let go of that are over.
     """
+
+    STATE: tuple[str, ...] = ("_history", "all")
 
     forgets = True
 
@@ -78,7 +137,6 @@ class Lanes:
         self.main = Lane(self._flow(graph_of(roots), {}))
         for compiled in shared:
             self._seat(self.main, compiled, {}, None)
-        self._unopened: dict[str, tuple[Lane, list[Starter], list[Start]]] = {}
         self._captured: list[tuple[Lane, Instance | None]] = []
         for compiled in requirements:
             if compiled.requirement.for_each is not None:
@@ -106,9 +164,19 @@ class Lanes:
         """The judges of all lanes."""
         return [judge for lane in self.all for judge in lane.judges]
 
-    def holders(self) -> Sequence[tuple[str, Holder, Open | None]]:
+    def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
         """What has open attempts: of which requirement, and the attempt of an episode that runs."""
-        return [held_by(judge) for lane in self.all for judge in lane.judges]
+        return [
+            (judge.compiled.requirement.id, judge, judge.running_attempt)
+            for lane in self.all
+            for judge in lane.judges
+        ]
+
+    def take_along(self, t: int) -> None:
+        """Take clocks along to `t` that move while attempts loop, as when somebody looks."""
+        for judge in [judge for lane in self.all for judge in lane.judges]:
+            if judge.slides:
+                judge.pass_to(t)
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit` in all lanes, also those that are made on the way."""
@@ -150,15 +218,15 @@ class Lanes:
         for judge in self.judges:
             judge.pass_to(end)
         for lane, instance in tuple(self._entries):
-            for starter in lane.starters:
-                if starter.trigger is None and lane.flow.origin is not None:
+            for rule in lane.starters if lane.since < NEVER else ():
+                if rule.trigger < 0 and lane.flow.origin is not None:
                     position = lane.stand_at_last(end)
                     # A value that came after the last tick of a clock has not occurred at any.
                     if instance is None or instance.first <= position:
-                        starter.start(position, end)
+                        rule.begin(position, end)
         for lane in self.all:
-            for episode in lane.episodes:
-                episode.close()
+            for judge in lane.judges:
+                judge.settle_flags()
         for judge in self.judges:
             judge.reach(reached)
             for attempt in judge.attempts:
@@ -179,7 +247,7 @@ class Lanes:
             for starts in (bool(lane.starters),)
             if lane.made_for is not None and lane not in templates
         ]
-        return instances, lanes, list(self._unopened), []
+        return instances, lanes
 
     def _kind(self, compiled: CompiledRequirement) -> tuple[str, str]:
         """The requirement, and which of its judges it is."""
@@ -193,13 +261,11 @@ class Lanes:
         Args:
             shape: of the other run.
         """
-        instances, lanes, unopened, _ = shape
+        instances, lanes = shape
         for name, found in instances:
             keyed = self.roster.keyed[name]
             source = keyed.each.value
             keyed.take(Instance(rank, source, value, first) for rank, value, first in found)
-        for name in [name for name in self._unopened if name not in unopened]:
-            _open(*self._unopened.pop(name), 0)
         for name, kind, captured, value, starts in lanes:
             compiled = self._by_id[name].judges[kind]
             own = self.roster.keyed.get(name)
@@ -210,6 +276,7 @@ class Lanes:
                 self._seat(lane, compiled, captured, instance)
                 self.roster.opened(own, value, lane)
             else:
+                lane.since = NEVER
                 self._judge(compiled, lane, captured, instance)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
                 parent = next(parents, self.main)
@@ -229,19 +296,18 @@ class Lanes:
         captured: Captured,
         instance: Instance | None,
     ) -> AttemptJudge:
-        judge = self._new_judge(compiled, lane.flow, captured)
+        judge = judge_of(
+            compiled,
+            self.engine,
+            lane.flow,
+            self.ledger,
+            captured,
+            rank=0 if instance is None else instance.rank,
+            hidden=compiled is not self._by_id[compiled.requirement.id],
+            doubted=_is_doubted(instance),
+        )
         lane.add_judge(judge)
-        episodic = compiled.requirement.mode is Mode.WHENEVER
-        if episodic and compiled.obligation.trigger is not None:
-            self._follow_episodes(lane, judge, instance)
         return judge
-
-    def _new_judge(
-        self, compiled: CompiledRequirement, flow: Flow, captured: Captured
-    ) -> AttemptJudge:
-        if compiled.is_beside or compiled.engine(self.engine) == "network":
-            return NetworkJudge(compiled, compiled.network_plan, flow, self.ledger, captured)
-        return Judge(compiled, compiled.machine(self.engine), flow, self.ledger, captured)
 
     def _seat(
         self,
@@ -249,21 +315,17 @@ class Lanes:
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
-    ) -> list[Starter]:
+    ) -> None:
         """Give a requirement triggers in a lane, and judges, unless attempts bring theirs."""
-        doubted = instance is not None and instance.value is None
         lane.expect(compiled)
+        kinds = [compiled, compiled.hidden]
         if compiled.obligation.trigger is None:
-            return [self._starter(lane, compiled, captured, instance, hidden=doubted)]
-        if compiled.requirement.mode is Mode.UPON and doubted:
+            kinds = [compiled]
+        elif compiled.requirement.mode is Mode.UPON and _is_doubted(instance):
             kinds = [compiled.doubted]
-        else:
-            kinds = [compiled, compiled.hidden]
-        return [
-            self._starter(lane, kind, captured, instance, hidden=kind is not compiled)
-            for kind in kinds
-            if kind is not None
-        ]
+        for kind in kinds:
+            if kind is not None:
+                lane.add_starter(self._starter(lane, kind, captured, instance))
 
     def _starter(
         self,
@@ -271,33 +333,19 @@ class Lanes:
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
-        *,
-        hidden: bool,
-    ) -> Starter:
-        requirement, formula = compiled.requirement, compiled.obligation.trigger
-        start: Start
-        if requirement.captures:
+    ) -> Rule:
+        if not compiled.requirement.captures:
+            return self._judge(compiled, lane, captured, instance)
 
-            def start(t: int, triggered: int) -> None:
-                new, own, compared = self._captured_lane(lane, compiled, captured, instance, t)
-                self._begin(new, own, instance, t, triggered, hidden=hidden)
-                self._captured.append((new, instance))
-                if compared is not None:
-                    compared.keeps(t)
-        else:
-            judge = self._judge(compiled, lane, captured, instance)
+        def start(t: int, triggered: int) -> None:
+            new, own, compared = self._captured_lane(lane, compiled, captured, instance, t)
+            new.begin(own, t, triggered)
+            self._captured.append((new, instance))
+            if compared is not None:
+                compared.keeps(t)
 
-            def start(t: int, triggered: int) -> None:
-                self._begin(lane, judge, instance, t, triggered, hidden=hidden)
-
-        if formula is None:
-            starter = Starter(None, -1, start)
-        else:
-            episodic = hidden or requirement.mode is Mode.WHENEVER
-            trigger = Trigger(requirement.pulse, episodic, hidden)
-            starter = Starter(trigger, lane.flow.graph.index[formula], start)
-        lane.add_starter(starter)
-        return starter
+        hidden = compiled is not self._by_id[compiled.requirement.id]
+        return CapturingRule(compiled, lane.flow, start, hidden=hidden)
 
     def _compared(
         self,
@@ -307,7 +355,6 @@ class Lanes:
         instance: Instance | None,
     ) -> CapturedAttempt | None:
         """What sees whether the values of an attempt stay known, where that can end."""
-        doubted = instance is not None and instance.value is None
         obligation = compiled.obligation
         doubt = obligation.doubt or obligation.trigger
         main = self._by_id[compiled.requirement.id].obligation
@@ -315,46 +362,8 @@ class Lanes:
             return None  # what it owes, it owes at one position
         index = parent.flow.graph.index
         # Of what has a key that is not known, another may have begun wherever the episode runs.
-        place = None if doubted and obligation.doubt is not None else index[doubt]
+        place = None if _is_doubted(instance) and obligation.doubt is not None else index[doubt]
         return CapturedAttempt(parent, compiled, captured, index[main.trigger], place)
-
-    def _begin(
-        self,
-        lane: Lane,
-        judge: AttemptJudge,
-        instance: Instance | None,
-        t: int,
-        triggered: int,
-        *,
-        hidden: bool,
-    ) -> None:
-        """Start an attempt at the position `t` of a lane."""
-        rank = 0 if instance is None else instance.rank
-        for episode in lane.episodes:
-            if episode.judge is judge:
-                lane.begin_episode(episode, t)
-                return
-        attempt = judge.new_attempt(t, triggered)
-        attempt.void = lane.flow.is_cut
-        if hidden:
-            self.ledger.doubtful(rank, judge, attempt)
-        else:
-            attempt.sure = True
-            self.ledger.sure(rank, judge, attempt, triggered)
-        lane.begin(judge, attempt, t)
-
-    def _follow_episodes(self, lane: Lane, judge: AttemptJudge, instance: Instance | None) -> None:
-        rank = 0 if instance is None else instance.rank
-        ledger = self.ledger
-
-        def start(attempt: Open) -> None:
-            ledger.doubtful(rank, judge, attempt)
-
-        def sure(attempt: Open, t: int) -> None:
-            ledger.sure(rank, judge, attempt, t)
-
-        doubted = instance is not None and instance.value is None
-        lane.add_episode(Episode(judge, lane.flow, doubted=doubted, start=start, sure=sure))
 
     def untold(self) -> list[str]:
         """The requirements whose trigger was never true or false."""
@@ -380,6 +389,7 @@ class Lanes:
         graph = compiled.consequent_graph
         if _looks_back(compiled, parent.flow.graph):
             lane = Lane(self._flow(graph, own), (compiled, own))
+            lane.since = NEVER
             if lapses:
                 lane.flow.cut_at(t)
             judge = self._judge(compiled, lane, own, instance)
@@ -387,6 +397,7 @@ class Lanes:
             lane.through(t)
         else:
             lane = Lane(parent.flow.fork(graph, own), (compiled, own))
+            lane.since = NEVER
             if lapses:
                 lane.flow.cut_at(t)
             judge = self._judge(compiled, lane, own, instance)
@@ -405,9 +416,8 @@ class Lanes:
         for value in keyed.values_to_open(values):
             instance = keyed.instance(value, t)
             self.roster.opened(keyed, value, self._instance_lane(keyed, instance, t))
-        name = keyed.compiled.requirement.id
-        if name in self._unopened and None in values_in(keyed.each.value, values):
-            _open(*self._unopened.pop(name), t)
+        if keyed.template.since == NEVER and None in values_in(keyed.each.value, values):
+            keyed.template.open(t)
 
     def _make_keyed(self, compiled: CompiledRequirement) -> Keyed:
         """A lane for the occurrences whose value is not known; nothing starts in it before one."""
@@ -417,13 +427,10 @@ class Lanes:
         captured = {each.name: None}
         instance = Instance(0, each.value, None, 0)
         lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
-        starters = self._seat(lane, compiled, captured, instance)
+        self._seat(lane, compiled, captured, instance)
+        # Without a source, whatever occurs is unknown, from the first position on.
         if self.sources is None or each.value.event in self.sources:
-            starts = [starter.start for starter in starters]
-            for starter in starters:
-                starter.start = _never
-            self._unopened[compiled.requirement.id] = (lane, starters, starts)
-        # Else whatever occurs is unknown, from the first position on.
+            lane.since = NEVER
         return Keyed(compiled, each, lane, instance, is_timed=self.gap is not None)
 
     def _instance_lane(self, keyed: Keyed, instance: Instance, t: int) -> Lane:
@@ -435,15 +442,13 @@ class Lanes:
             lane = keyed.template.twin(flow, captured)
         else:
             lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
-        starters = self._seat(lane, compiled, captured, instance)
+        self._seat(lane, compiled, captured, instance)
         # No attempt starts before the value has occurred.
-        starts = [starter.start for starter in starters]
-        for starter in starters:
-            starter.start = _never
+        lane.since = NEVER
         if not reach.is_fresh:
             self._replay(lane, instance)
             lane.through(t - 1)
-        _open(lane, starters, starts, t)
+        lane.open(t)
         return lane
 
     def _needs_history(self, compiled: CompiledRequirement) -> bool:
@@ -468,12 +473,6 @@ def _looks_back(compiled: CompiledRequirement, parent: Graph) -> bool:
     return any(graph.nodes[place] not in parent.index for place in graph.stateful)
 
 
-def _open(lane: Lane, starters: Sequence[Starter], starts: Sequence[Start], t: int) -> None:
-    """Let attempts start in a lane, from `t` on."""
-    for starter, start in zip(starters, starts, strict=True):
-        starter.start = start
-        lane.drop_episode(starter, t)
-
-
-def _never(t: int, triggered: int) -> None:
-    """Start nothing."""
+def _is_doubted(instance: Instance | None) -> bool:
+    """Whether it is not known that there is such an instance."""
+    return instance is not None and instance.value is None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from operator import itemgetter
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
@@ -34,35 +33,54 @@ class Ledger:
             file, the number of the attempt, the record.
     """
 
+    STATE = ("attempts", "_counts", "_doubts", "void")
+
     def __init__(self) -> None:
         self.attempts: list[Attempt] = []
         self._counts: dict[str, int] = {}
-        self._started: list[tuple[int, int, AttemptJudge, Open]] = []
-        self._doubtful: list[tuple[int, int, AttemptJudge, Open]] = []
+        self._started: list[tuple[int, AttemptJudge, Open]] = []
+        self._doubtful: list[tuple[int, AttemptJudge, Open]] = []
         self._doubts: dict[str, int] = {}
         self.void: list[tuple[int, Open, Attempt]] = []
         self._decided: list[tuple[AttemptJudge, Open, Attempt]] = []
         self.told: list[tuple[int, int, int, Attempt]] = []
 
-    def sure(self, instance: int, judge: AttemptJudge, attempt: Open, t: int) -> None:
+    def sure(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """Take an attempt whose trigger was true, at `t` first, to be numbered by that.
 
+        The rank of its instance decides between equal instants.
+
         Args:
-            instance: the rank of its instance, which decides between equal instants.
             judge: of the attempt.
             attempt: new, or in doubt so far.
             t: ticks.
         """
-        self._started.append((t, instance, judge, attempt))
+        self._started.append((t, judge, attempt))
 
-    def doubtful(self, instance: int, judge: AttemptJudge, attempt: Open) -> None:
+    def doubtful(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """Take a new attempt of which it is not known whether there was a trigger; see `sure`."""
-        self._doubtful.append((attempt.triggered, instance, judge, attempt))
+        self._doubtful.append((t, judge, attempt))
 
     def next_doubtful(self, name: str) -> int:
         """The number of another attempt in doubt of a requirement."""
         self._doubts[name] = self._doubts.get(name, 0) + 1
         return self._doubts[name]
+
+    def opened(self, judge: AttemptJudge, triggered: int, token: Token, sure: bool) -> Open:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
+        attempt = Open(triggered, token, judge.seen)
+        attempt.void = judge.flow.is_cut
+        attempt.sure = sure
+        (self.sure if sure else self.doubtful)(judge, attempt, triggered)
+        return attempt
+
+    def assured(self, judge: AttemptJudge, attempt: Open) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
+        self.sure(judge, attempt, judge.flow.position)
+
+    def parted(self, judge: AttemptJudge, attempt: Open) -> None:
+        """See `rvmon.monitor.attempt_judge.Clerk`."""
+        attempt.doubt = judge.doubt
 
     def decided(
         self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
@@ -75,8 +93,6 @@ class Ledger:
             if not verdict:
                 self.say_nothing(judge, attempt)
             return  # if met, triggered or not
-        if judge.episode is not None and not verdict:
-            judge.episode.fail(attempt, t)
         upon_end = judge.compiled.obligation.trigger is None
         why = why_decided(judge, attempt, verdict, t, before)
         record = _record(
@@ -135,11 +151,11 @@ class Ledger:
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
-        for _, _, judge, attempt in sorted(self._started, key=itemgetter(0, 1)):
+        for _, judge, attempt in sorted(self._started, key=_turn):
             name = judge.compiled.requirement.id
             attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
         self._started.clear()
-        for _, _, judge, attempt in sorted(self._doubtful, key=itemgetter(0, 1)):
+        for _, judge, attempt in sorted(self._doubtful, key=_turn):
             attempt.doubtful_number = self.next_doubtful(judge.compiled.requirement.id)
         self._doubtful.clear()
         if not self._decided:
@@ -220,6 +236,11 @@ def _why_open(judge: AttemptJudge, attempt: Open, now: int, end: int | None = No
 
 def _outlook(judge: AttemptJudge, attempt: Open, now: int) -> Verdict | None:
     return outlook(judge, attempt, now) if attempt.sure and not attempt.void else None
+
+
+def _turn(entry: tuple[int, AttemptJudge, Open]) -> tuple[int, int]:
+    t, judge, _ = entry
+    return t, judge.rank
 
 
 def _number(attempt: Open) -> int:

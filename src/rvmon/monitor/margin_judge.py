@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from rvmon.automaton.machine import INFINITY
 from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.inputs import NEVER
 from rvmon.dataflow.leaves import reads
 from rvmon.dataflow.margin_nodes import Rest
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
@@ -73,7 +71,9 @@ class MarginJudge(AttemptJudge):
         *,
         every: bool,
     ) -> None:
-        super().__init__(compiled, flow, clerk, captured)
+        super().__init__(compiled, None, flow, clerk, captured)
+        self.trigger = self.again = -1  # the other judge starts them
+        self.inputs = flow.inputs
         self.restless = True
         self.gauger = clerk
         self.every = every
@@ -101,11 +101,12 @@ class MarginJudge(AttemptJudge):
         if isinstance(core, Constant):
             fixed = OF_TRUTH[TRUE if core.value else FALSE]
             return (lambda: fixed), None
-        flow, state = self.flow, core.proposition
+        flow, inputs, state = self.flow, self.inputs, core.proposition
         place = flow.graph.index[state]
 
         def truth() -> int:
-            return flow.values[place]
+            found: int = flow.values[place]
+            return found
 
         if core.sense is Sense.KNOWN_FALSE:
             return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
@@ -113,19 +114,15 @@ class MarginJudge(AttemptJudge):
         if state.leaf is None:
             read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
         else:
-            read = margin_reader(state.leaf, truth, flow.inputs, self.captured, spec)
+            read = margin_reader(state.leaf, truth, inputs, self.captured, spec)
             about = reads(state.leaf)
-            if about.momentary and not about.names & flow.inputs.absent:
+            if about.momentary and not about.names & inputs.absent:
                 later = OF_TRUTH[FALSE]
         if core.sense is Sense.TRUE:
             return read, later
         return (lambda: _negated(read())), None if later is None else _negated(later)
 
-    def new_attempt(self, t: int, triggered: int) -> Open:
-        """Nothing starts here."""
-        raise NotImplementedError
-
-    def begin(self, attempt: Open, t: int) -> None:
+    def measure(self, attempt: Open, t: int) -> None:
         """Measure an attempt of the other judge from the position `t` on."""
         if self.position < t or self._least is None:
             self.position = t
@@ -236,7 +233,7 @@ class MarginJudge(AttemptJudge):
 
     def _figure(self, low: float, high: float, kept: float) -> Robustness:
         # Behind the cut it is owed with values that nobody knows.
-        if self.flow.cut < NEVER:
+        if self.flow.is_cut:
             return Robustness(-INFINITE, high, -INFINITE)
         return Robustness(low, high, kept)
 
@@ -245,15 +242,6 @@ class MarginJudge(AttemptJudge):
 
     def reach(self, t: int) -> None:
         """Nothing is decided by time here."""
-
-    @property
-    def next_due(self) -> int:
-        """Nothing is decided by time here."""
-        return INFINITY
-
-    def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
-        """Nothing is judged here."""
-        raise NotImplementedError
 
 
 def _in_order(values: Mapping[int, float]) -> list[float]:

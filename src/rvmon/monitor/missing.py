@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.nearest import MOST_NAMES, nearest
 from rvmon.errors import MissingNameError
-from rvmon.monitor.compiled import CompiledSpec
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.values import shorten
+from rvmon.spec.checked.reads import names_of_requirement
 from rvmon.spec.checked.selection import sources_asked
+from rvmon.spec.checked.specification import CheckedSpec
 
 if TYPE_CHECKING:
     from rvmon.readers.columns import TableRecording
@@ -22,23 +23,23 @@ _SHOWN = 8
 """Columns that are listed where none is like a name."""
 
 
-def names_read(compiled: CompiledSpec, only: Sequence[str] | None) -> dict[str, tuple[str, ...]]:
+def names_read(spec: CheckedSpec, only: Collection[str] | None) -> dict[str, tuple[str, ...]]:
     """The signals and events that requirements read, each with the ids of those.
 
     Args:
-        compiled: the specification.
+        spec: the specification.
         only: ids of the requirements; default all.
     """
-    found: dict[str, tuple[str, ...]] = {}
-    for name, requirement in compiled.requirements.items():
+    found: dict[str, list[str]] = {}
+    for name, requirement in spec.requirements.items():
         if only is None or name in only:
-            for read in sorted(requirement.reads):
-                found[read] = (*found.get(read, ()), name)
-    return found
+            for read in sorted({*names_of_requirement(requirement)}):
+                found.setdefault(read, []).append(name)
+    return {read: tuple(names) for read, names in found.items()}
 
 
 def expect_names(
-    compiled: CompiledSpec,
+    spec: CheckedSpec,
     recording: FileRecording | TableRecording,
     mapped: Mapping[str, str],
     *,
@@ -48,7 +49,7 @@ def expect_names(
     """Refuse a recording that lacks what is read.
 
     Args:
-        compiled: the specification.
+        spec: the specification.
         recording: of which nothing but the names is looked at.
         mapped: by declared name the column that a person named.
         only: ids of the requirements; default all.
@@ -61,11 +62,11 @@ def expect_names(
         MissingNameError: it lacks others, too; each is told with the column that is most like it.
         UnknownNameError: a name that it may lack is not declared.
     """
-    some = None if isinstance(allowed, bool) else sources_asked(compiled.checked, allowed)
+    some = None if isinstance(allowed, bool) else sources_asked(spec, allowed)
     names = recording.names
     if names is None:
         return ()
-    lacking = {name: ids for name, ids in names_read(compiled, only).items() if name not in names}
+    lacking = {name: ids for name, ids in names_read(spec, only).items() if name not in names}
     refused = [] if allowed is True else [name for name in lacking if name not in (some or ())]
     if refused:
         place = f"{recording.path}: " if isinstance(recording, FileRecording) else ""

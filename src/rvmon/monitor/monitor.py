@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
 from rvmon.automaton.machine import INFINITY
@@ -43,7 +43,22 @@ class Monitor:
 
     Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
     methods that end in `_ns`.
+
+    Attributes:
+        judged_by: the engines that judge its requirements, as its report says them.
     """
+
+    STATE: tuple[str, ...] = (
+        "_ledger",
+        "_kept",
+        "_lanes",
+        "_intake",
+        "_health",
+        "_last",
+        "_reached",
+    )
+
+    judged_by = ""
 
     def __init__(
         self,
@@ -291,7 +306,8 @@ class Monitor:
             t_ns = self._taken_time(t_ns)
         for sample in () if self._intake is None else self._intake.close():
             self._judge(sample.t, sample.values)
-        self._report, decided = self._conclude(t_ns)
+        report, decided = self._conclude(t_ns)
+        self._report = replace(report, engine=self.judged_by)
         return self._report, decided
 
     def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
@@ -401,7 +417,9 @@ class Monitor:
     def _open(self) -> Sequence[Attempt]:
         if self._reached is None:
             return []
-        now = 2 * self._reached + (self._reached == self._last)
+        known = self._reached == self._last
+        now = 2 * self._reached + known
+        self._lanes.take_along(self._reached - (not known))
         return [
             self._ledger.open_record(judge, attempt, now)
             for judge in self._lanes.judges

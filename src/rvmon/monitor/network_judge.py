@@ -5,16 +5,17 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping
 from itertools import chain
+from typing import Any
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import INFINITY, Token
 from rvmon.dataflow.at_end import held_at_end
 from rvmon.dataflow.evaluate import Range
-from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.piecewise import Pieces, stamp
 from rvmon.dataflow.ranges import merged
+from rvmon.dataflow.standing import Standing
 from rvmon.dataflow.sweep import Carried
 from rvmon.dataflow.time_decisions import Moment
 from rvmon.formula.core import Constant, Sense
@@ -44,16 +45,21 @@ class NetworkJudge(AttemptJudge):
         now: the stamp that time has come to.
     """
 
+    STATE = (
+        *(*AttemptJudge.STATE, "worse", "better", "now", "_letters", "_held"),
+        *("_news", "_next_decision", "_changed", "_span"),
+    )
+
     def __init__(
         self,
         compiled: CompiledRequirement,
-        plan: Plan,
-        flow: Flow,
+        flow: Standing,
         clerk: Clerk,
         captured: Mapping[str, Scalar],
+        **kind: Any,
     ) -> None:
-        super().__init__(compiled, flow, clerk, captured)
-        self.plan = plan
+        super().__init__(compiled, None, flow, clerk, captured, **kind)
+        self.plan: Plan = compiled.network_plan
         self.worse: Network | None = None
         self.better: Network | None = None
         self._letters: tuple[list[bool], list[bool]] | None = None
@@ -62,7 +68,7 @@ class NetworkJudge(AttemptJudge):
         self._next_decision = INFINITY
         self._changed = self.position
         """When the letter changed last."""
-        self._span = _PATIENCE * plan.settles
+        self._span = _PATIENCE * self.plan.settles
         """How far it is worth while to look ahead when it does, ticks."""
         self._held: Pieces | None = None
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
@@ -73,7 +79,7 @@ class NetworkJudge(AttemptJudge):
             (-1, core.value)
             if isinstance(core, Constant)
             else (index[core.proposition], core.sense)
-            for _, core in plan.leaves
+            for _, core in self.plan.leaves
         )
 
     def read(self) -> tuple[list[bool], list[bool]]:
@@ -91,12 +97,15 @@ class NetworkJudge(AttemptJudge):
             better.append(certain or (value == UNKNOWN and sense is not Sense.KNOWN_FALSE))
         return worse, better
 
-    def new_attempt(self, t: int, triggered: int) -> Open:
-        """See `AttemptJudge`."""
-        return Open(triggered, (WAITING, (t,)), self.seen)
+    @property
+    def watches(self) -> bool:  # type: ignore[override]
+        """See `Rule`: what it owes may depend on what was before."""
+        return self.plan.looks_back
 
-    def begin(self, attempt: Open, t: int) -> None:
-        """See `AttemptJudge`."""
+    def begin(self, t: int, triggered: int) -> None:
+        """See `Rule`."""
+        attempt = self.clerk.opened(self, triggered, (WAITING, (t,)), self.is_sure)
+        self.enter(triggered)
         self.attempts.append(attempt)
         self._begin_network()
         if self._letters is None or self.position < t:
@@ -127,12 +136,12 @@ class NetworkJudge(AttemptJudge):
         if self.worse is not None:
             letters = self.read()
             if letters != self._letters or self.flow.gap is None:
-                self._step(t, self.worse, letters)
+                self._turn(t, self.worse, letters)
             self._look(2 * t + 1)
         self._foresee()
         self.restless = self.flow.gap is None and self.worse is not None
 
-    def _step(self, t: int, worse: Network, letters: tuple[list[bool], list[bool]]) -> None:
+    def _turn(self, t: int, worse: Network, letters: tuple[list[bool], list[bool]]) -> None:
         self._letters = letters
         self._news = -FOREVER
         stayed = min(t - self._changed, self.plan.settles)
@@ -150,14 +159,15 @@ class NetworkJudge(AttemptJudge):
         """Note in each attempt what was unknown first while it was open."""
         if self._letters is not None and self._letters[0] != self._letters[1]:
             for attempt in self.attempts:
-                attempt.doubt = attempt.doubt or self._doubt()
+                attempt.doubt = attempt.doubt or self.doubt
 
     def _first_waiting(self, *, better: bool) -> int | None:
         """The first position whose value is waited for in a network."""
         for attempt in self.attempts:
             token = (attempt.better or attempt.token) if better else attempt.token
             if token[0] == WAITING:
-                return token[1][0]
+                position: int = token[1][0]
+                return position
         return None
 
     def _look(self, limit: int) -> None:
@@ -221,7 +231,7 @@ class NetworkJudge(AttemptJudge):
         if attempt.token[0] == WAITING and (found := self._known(worse, t)):
             value, at = found
             if value or better is None:
-                self.clerk.decided(self, attempt, value, at // 2, attempt.token)
+                self._decided(attempt, value, at // 2, attempt.token)
                 return True
             attempt.better = attempt.better or attempt.token
             attempt.token = (FAILED, (t,))
@@ -230,7 +240,7 @@ class NetworkJudge(AttemptJudge):
         if found:
             value, at = found
             if not value:
-                self.clerk.decided(self, attempt, False, at // 2, token)
+                self._decided(attempt, False, at // 2, token)
                 return True
             attempt.better = (PASSED, (t,))
         return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.standing import Standing
 from rvmon.formula.core import Constant, Core, Literal, Release, Sense, Until
 from rvmon.formula.obligation import Origin
 from rvmon.formula.progress import after, value
@@ -199,7 +199,7 @@ class Words:
         quoted, is_event = f"`{format_formula(formula)}`", isinstance(formula, EventAtom)
         return _Atom(quoted, positive, is_event, not (positive and is_pulse(formula)))
 
-    def blame(self, cause: Cause, t: int, start: int, flow: Flow) -> Blame:
+    def blame(self, cause: Cause, t: int, start: int, flow: Standing) -> Blame:
         """What failed at `t`, instantiated at `start`."""
         node = cause.node
         formula = self.formula(node)

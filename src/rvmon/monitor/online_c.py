@@ -66,7 +66,14 @@ class CompiledMonitor(Monitor):
         self._core.reset()
 
     def _enter(self) -> None:
-        """Note how far the run has come."""
+        """Have C take no samples, and note how far the run has come."""
+        self._core.hold(True)
+        self._note_times()
+
+    def _leave(self) -> None:
+        self._core.hold(False)
+
+    def _note_times(self) -> None:
         sampled, began, last, reached = self._core.times()
         self._health.began = began if sampled else None
         self._last = None if last == NOT_YET else last
@@ -133,7 +140,7 @@ class CompiledMonitor(Monitor):
 
         end = self._core.close(t_ns)
         decided = self._core.flush()
-        self._enter()
+        self._note_times()
         told = Told(
             np.frombuffer(self._core.records(), RECORD),
             ordered=False,

@@ -30,6 +30,8 @@ class Kept:
         dropped: by requirement, how many attempts were not kept, by verdict.
     """
 
+    STATE = ("dropped", "_seen", "_seen_to")
+
     def __init__(self, ledger: Ledger, keep: int | None) -> None:
         self.dropped: dict[str, dict[Verdict, int]] = {}
         self._ledger = ledger

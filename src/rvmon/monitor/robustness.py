@@ -223,28 +223,25 @@ class _Gauged(Ledger):
         self._found: list[tuple[MarginJudge, Open | None, int, Robustness]] = []
         self._ends: dict[AttemptJudge, Mapping[int, Robustness]] = {}
 
-    def sure(self, instance: int, judge: AttemptJudge, attempt: Open, t: int) -> None:
+    def sure(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """See `Ledger`; what was in doubt before is measured already."""
-        super().sure(instance, judge, attempt, t)
+        super().sure(judge, attempt, t)
         if t == attempt.triggered:
             self._measure(judge, attempt)
 
-    def doubtful(self, instance: int, judge: AttemptJudge, attempt: Open) -> None:
+    def doubtful(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """See `Ledger`."""
-        super().doubtful(instance, judge, attempt)
+        super().doubtful(judge, attempt, t)
         self._measure(judge, attempt)
 
     def _measure(self, judge: AttemptJudge, attempt: Open) -> None:
         sampled = judge.flow.gap is None
-        self.beside[judge].begin(attempt, judge.flow.position if sampled else attempt.triggered)
+        self.beside[judge].measure(attempt, judge.flow.position if sampled else attempt.triggered)
 
-    def decided(self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, _: Token) -> None:
+    def decided(self, _: AttemptJudge, attempt: Open, verdict: bool, __: int, ___: Token) -> None:
         """See `rvmon.monitor.attempt_judge.Clerk`; there are no records."""
-        if not attempt.sure:
-            if verdict and not attempt.void:
-                self.vanished.add(attempt)
-        elif judge.episode is not None and not verdict:
-            judge.episode.fail(attempt, t)
+        if not attempt.sure and verdict and not attempt.void:
+            self.vanished.add(attempt)
 
     def settled(self, judge: MarginJudge, attempt: Open, found: Robustness) -> None:
         """See `rvmon.monitor.margin_judge.Gauger`."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, assert_never
 
-from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.standing import Standing
 from rvmon.formula.state import State
 from rvmon.trace.time import format_ticks
 
@@ -95,7 +95,7 @@ Sentence = tuple[Part, ...]
 """Its parts in order."""
 
 
-def told(sentence: Sentence, decided: int, start: int, triggered: int, flow: Flow) -> str:
+def told(sentence: Sentence, decided: int, start: int, triggered: int, flow: Standing) -> str:
     """A sentence about one decision.
 
     Args:

@@ -7,16 +7,16 @@ from functools import cached_property
 from typing import Any
 
 from rvmon.automaton.machine import Machine
-from rvmon.codegen.runtime.bulk import FROM_TRIGGER, unpacked
 from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.outages import Outage
+from rvmon.dataflow.standing import Standing
 from rvmon.monitor.attempt_judge import Clerk, Open
 from rvmon.monitor.compiled import CompiledRequirement
 from rvmon.monitor.explain import explained, just_before
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.ledger import truths_shown
 from rvmon.monitor.reasons import Reasons
+from rvmon.runtime.bulk import FROM_TRIGGER, unpacked
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -58,7 +58,7 @@ class Witness:
 
     def judge(
         self,
-        flow: Flow,
+        flow: Standing,
         letters: tuple[int, int],
         position: int,
         attempts: list[Open],
@@ -72,7 +72,7 @@ class Witness:
             attempts: the open ones.
         """
         judge = Judge(self.compiled, self._machine, flow, self._clerk, {})
-        judge.letters = letters
+        judge.letter, judge.other = letters
         judge.position = position
         judge.attempts = attempts
         return judge
@@ -96,7 +96,8 @@ class Witness:
         instants = {}
         for index, place in enumerate(self.places):
             instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
-        flow = Stood(self._plan, nodes, dict(zip(self.places, since, strict=True)), instants, {})
+        kept = dict(zip(self.places, since, strict=True))
+        flow = Stood(self._plan, nodes, kept, instants, {}, position)
         passed = attempt.verdict is Verdict.PASS
         letter = letter if passed else other
         token = just_before(self._machine, before, letter, position, t, self._plan.gap)
@@ -114,33 +115,39 @@ class Witness:
         }
 
 
-class Stood(Flow):
-    """A flow as it stood: it tells, and does not go on.
+class Stood:
+    """The values of state formulas as they stood; see `rvmon.dataflow.standing.Standing`.
 
     Args:
         plan: has the nodes.
         values: by node, its truth.
         since: by node of a letter, the position from which on it has had that.
-        outages: by name what was not known.
         until: by three times the node plus a truth, the last position at which it had that before.
+        outages: by name what was not known.
+        position: that the values are of.
     """
 
+    begun = None
+    is_cut = False
+
     def __init__(
-        self, plan: Plan, values: Any, since: Any, until: Any, outages: Mapping[str, Outage]
+        self,
+        plan: Plan,
+        values: Any,
+        since: Any,
+        until: Any,
+        outages: Mapping[str, Outage],
+        position: int,
     ) -> None:
         self.graph = plan.graph
         self.gap = plan.gap
         self.values = values
         self.since = since
-        self._instants = until
-        self._outages = outages
-
-    @property
-    def outages(self) -> Mapping[str, Outage]:
-        """See `Flow.outages`."""
-        return self._outages
+        self.outages = outages
+        self.position = position
+        self._until = until
 
     def last_with(self, place: int, value: int, t: int) -> int | None:
-        """See `Flow.last_with`; of the propositions that the requirement owes."""
-        found: int | None = t if self.values[place] == value else self._instants[3 * place + value]
+        """See `Standing`; of the propositions that the requirement owes."""
+        found: int | None = t if self.values[place] == value else self._until[3 * place + value]
         return found

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.columns import TableRecording
-from rvmon.readers.csv_rows import Column
+from rvmon.readers.csv_rows import Column, Layout
 from rvmon.readers.held import held_values
 from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.gaps import Gaps
@@ -24,24 +23,30 @@ _WIDEST = 8
 _EXACT = 1 << 53
 """Floats up to here are the whole numbers that they stand for."""
 
+_PIECE = 1 << 17
+"""Instants that are compared together."""
+
 
 def block_of_table(
-    table: TableRecording, schema: Schema, fillable: Callable[[], frozenset[str]]
+    columns: Mapping[str, Any],
+    layout: Layout,
+    schema: Schema,
+    fillable: Callable[[], frozenset[str]],
 ) -> Block:
-    """A table as one block, without copies if possible. Whether instants ascend is not looked at.
+    """A table as one block, without copies if possible.
 
     Args:
-        table: its columns.
+        columns: of the table, by name.
+        layout: what they are.
         schema: the declared names.
         fillable: gives the names of which "no update" may be read as what was there before: of
             signals the value, of events that they do not occur.
 
     Raises:
         NotPlainError: a column is something else, holds labels or payloads, or has gaps that may
-            matter; or stamps are dates.
+            matter; stamps are dates, or do not increase.
         TraceError: an instant is not finite or out of range.
     """
-    layout, columns = table.layout, table.columns
     stamps, given = _array_of(columns[layout.stamps.column])
     kinds = {"ns": "i", "iso": ""}.get(layout.stamps.unit, "if")
     if given is not None or stamps.dtype.kind not in kinds:
@@ -49,12 +54,21 @@ def block_of_table(
     found = {}
     for column in layout.columns:
         if column.field is not None or column.kind is Kind.LABEL:
-            raise NotPlainError
+            raise NotPlainError(f"`{layout.header[column.index]}` holds no numbers or truth values")
         cells = columns[layout.header[column.index]]
         found[column.name] = _values(cells, column, schema, fillable)
     if any(len(column) != len(stamps) for column in found.values()):
         raise NotPlainError
-    return Block(ticks_of_column(stamps, layout.stamps), found)
+    times = ticks_of_column(stamps, layout.stamps)
+    if not _ascend(times):
+        raise NotPlainError("its instants do not increase")
+    return Block(times, found)
+
+
+def _ascend(times: NDArray[np.int64]) -> bool:
+    """Whether instants increase strictly; looked at in pieces that stay near the processor."""
+    pieces = (times[start : start + _PIECE + 1] for start in range(0, len(times), _PIECE))
+    return all(bool((piece[1:] > piece[:-1]).all()) for piece in pieces)
 
 
 def _values(
@@ -68,7 +82,7 @@ def _values(
     if given is None:
         return values
     if column.name not in fillable():
-        raise NotPlainError
+        raise NotPlainError(f"whether `{column.name}` is updated matters, and it has gaps")
     if column.name in schema.signals:
         return held_values(values, given, None)
     occurs = np.zeros(len(given), bool)

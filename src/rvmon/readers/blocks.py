@@ -12,7 +12,16 @@ if TYPE_CHECKING:
 
 
 class NotPlainError(Exception):
-    """The file has to be read row by row."""
+    """The recording has to be read row by row; the message says why, if it is more than its form.
+
+    >>> str(NotPlainError())
+    'it is not plain numbers and truth values at instants that increase'
+    """
+
+    def __init__(
+        self, why: str = "it is not plain numbers and truth values at instants that increase"
+    ) -> None:
+        super().__init__(why)
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,3 +35,11 @@ class Block:
 
     times: NDArray[np.int64]
     columns: Mapping[str, NDArray[Any]]
+
+
+def up_to(until: int | None, block: Block) -> Block:
+    """The rows of a block up to an instant (ticks); all of them without one."""
+    if until is None or not len(block.times) or block.times[-1] <= until:
+        return block
+    rows = int(block.times.searchsorted(until, "right"))
+    return Block(block.times[:rows], {name: one[:rows] for name, one in block.columns.items()})

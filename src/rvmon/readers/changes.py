@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Set as AbstractSet
+from typing import Any
 
 import numpy as np
 
 from rvmon.readers.blocks import Block
 from rvmon.trace.sample import Sample
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 
 class Changes:
@@ -23,6 +21,8 @@ class Changes:
         events: those that are events.
         end: the last instant that is looked at, ticks.
 
+    Where a recording is not plain, `in_samples` looks at its samples instead.
+
     >>> block = Block(np.array([1, 2, 3]), {"p": np.array([True, True, False])})
     >>> changes = Changes([block], {"p"}, (), 9)
     >>> [(one.t, dict(one.values)) for one in changes.samples({"p"})]
@@ -30,10 +30,10 @@ class Changes:
     """
 
     def __init__(
-        self, blocks: Iterable[Block], names: Collection[str], events: Collection[str], end: int
+        self, blocks: Iterable[Block], names: AbstractSet[str], events: Collection[str], end: int
     ) -> None:
         self._first: int | None = None
-        self._found: dict[str, list[tuple[NDArray[np.int64], NDArray[Any]]]] = {}
+        self._found: dict[str, list[tuple[list[int], list[Any]]]] = {}
         held: dict[str, object] = {}
         for block in blocks:
             count = int(block.times.searchsorted(end, "right"))
@@ -52,9 +52,38 @@ class Changes:
                     held[name] = column.item(-1)
                 rows = np.flatnonzero(differs)
                 if len(rows):
-                    self._found.setdefault(name, []).append((times[rows], column[rows]))
+                    found = times[rows].tolist(), column[rows].tolist()
+                    self._found.setdefault(name, []).append(found)
             if count < len(block.times):
                 break
+
+    @classmethod
+    def in_samples(
+        cls, samples: Sequence[Sample], names: AbstractSet[str], events: Collection[str]
+    ) -> Changes:
+        """The samples that tell another value than the one before, or of an event.
+
+        Args:
+            samples: of one recording, in order.
+            names: those that are looked at.
+            events: those that are events.
+        """
+        made = cls((), names, events, 0)
+        made._first = samples[0].t if samples else None
+        held: dict[str, object] = {}
+        for sample in samples:
+            for name in names & sample.values.keys():
+                value = sample.values[name]
+                if name in events:
+                    differs = value is not False
+                else:
+                    differs = name not in held or bool(value != held[name])
+                    held[name] = value
+                if differs:
+                    ((times, values),) = made._found.setdefault(name, [([], [])])
+                    times.append(sample.t)
+                    values.append(value)
+        return made
 
     def samples(self, names: Iterable[str]) -> list[Sample]:
         """The first row, and those at which one of some names changes; others are left out.
@@ -69,6 +98,6 @@ class Changes:
         made: dict[int, dict[str, Any]] = {self._first: {}}
         for name in names:
             for times, values in self._found.get(name, ()):
-                for t, value in zip(times.tolist(), values.tolist(), strict=True):
+                for t, value in zip(times, values, strict=True):
                     made.setdefault(t, {})[name] = value
         return [Sample(t, made[t]) for t in sorted(made)]

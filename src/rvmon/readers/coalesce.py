@@ -11,6 +11,8 @@ from rvmon.trace.sample import Payload, Sample, Value
 class Conflicts:
     """Signals that got two values at one stamp; the later one in source order was kept."""
 
+    STATE = ("_seen",)
+
     def __init__(self) -> None:
         self._seen: dict[str, tuple[int, int]] = {}
 

@@ -46,7 +46,7 @@ def csv_blocks(
     held: dict[str, Any] = {}
     for text in whole_lines(path, BLOCK):
         if any(odd in text for odd in _ODD):
-            raise NotPlainError
+            raise NotPlainError("it has quoted or odd characters")
         body = text
         if layout is None:
             header, _, body = text.partition(b"\n")
@@ -70,10 +70,9 @@ def _plain_layout(header: bytes, schema: Schema) -> Layout:
         layout = read_layout(names, schema)
     except TraceError:
         raise NotPlainError from None
-    if any(column.field is not None for column in layout.events):
-        raise NotPlainError
-    if any(column.kind is Kind.LABEL for column in layout.signals):
-        raise NotPlainError
+    for column in (*layout.events, *layout.signals):
+        if column.field is not None or column.kind is Kind.LABEL:
+            raise NotPlainError(f"`{layout.header[column.index]}` holds no numbers or truth values")
     return layout
 
 
@@ -97,7 +96,7 @@ def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[
 
     times = _plain(instants(cells(layout.time), layout.stamps.unit))
     if not (times[1:] > times[:-1]).all():
-        raise NotPlainError
+        raise NotPlainError("its instants do not increase")
     try:
         ticks_in_range(times)
     except TraceError:  # whoever reads rows says in which it is

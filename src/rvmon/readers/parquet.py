@@ -46,6 +46,8 @@ def _opened(path: str | Path) -> Any:
         ) from None
     try:
         return pyarrow.parquet.ParquetFile(path)
+    except MemoryError:  # of Arrow, too: the file may be as it should be
+        raise
     except pyarrow.ArrowException as error:
         raise TraceError(f"not a Parquet file ({_first_line(error)})") from None
     except OSError as error:
@@ -71,12 +73,16 @@ def _batches(path: str | Path, layout: Layout) -> Iterator[list[Any]]:
             batch = next(batches)
         except StopIteration:
             return
+        except MemoryError:
+            raise
         except (pyarrow.ArrowException, OSError) as error:
             raise _damage(error) from None
         yield [batch.column(name) for name in names]
 
 
 def _damage(error: Exception) -> TraceError:
+    if "launch worker thread" in str(error):  # its stack needs memory, too
+        raise MemoryError
     return TraceError(f"damaged Parquet file ({_first_line(error)}): write or copy it again")
 
 
@@ -119,7 +125,7 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
     layout = parquet_layout(path, schema)
     columns = layout.columns
     if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
-        raise NotPlainError
+        raise NotPlainError("a column holds no numbers or truth values")
     last = -TIME_LIMIT
     held: dict[str, Any] = {}
     for stamps, *batch in _batches(path, layout):

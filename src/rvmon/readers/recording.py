@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
 from rvmon.errors import TraceError
+from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
@@ -104,6 +105,54 @@ class FileRecording:
                 self._stamps = stamps_of("t_ns")
             yield line
 
+    @property
+    def is_told_otherwise(self) -> bool:
+        """Whether somebody has said how columns are called, or what cells and stamps mean."""
+        schema = self._schema
+        return bool(schema.columns or schema.gaps or schema.stamps is not None)
+
+    def blocks(
+        self, fillable: Callable[[], frozenset[str]], until: int | None = None
+    ) -> Iterator[Block]:
+        """The recording as blocks of columns; memory does not grow with its length.
+
+        Args:
+            fillable: gives the names of which "no update" may be read as what was there before: of
+                signals the value, of events that they do not occur.
+            until: rows behind this instant (ticks) are left out.
+
+        Raises:
+            NotPlainError: it has to be read row by row; a block before may have been given out.
+        """
+        if not can_be_read_again(self.path):
+            raise NotPlainError("it is a stream")
+        if self._schema.gaps:
+            raise NotPlainError("values that stand for no update are looked for in rows")
+        seen = Counter[str]()
+        for block in self._blocks(fillable(), seen):
+            own = up_to(until, block)
+            yield own
+            if len(own.times) < len(block.times):
+                if seen:
+                    raise NotPlainError("undeclared names are counted up to the end only")
+                return
+        for name, count in seen.items():
+            self.ignored[name] = count
+
+    def _blocks(self, fillable: frozenset[str], seen: Counter[str]) -> Iterator[Block]:
+        """The blocks of its format; where each line has names of its own, undeclared ones count."""
+        if self._format == "csv":
+            from rvmon.readers.csv_blocks import csv_blocks
+
+            return csv_blocks(self.path, self._schema, fillable)
+        if self._format == "parquet":
+            from rvmon.readers.parquet import parquet_blocks
+
+            return parquet_blocks(self.path, self._schema, fillable)
+        from rvmon.readers.jsonl_blocks import jsonl_blocks
+
+        return jsonl_blocks(self.path, self._schema, fillable, ignored=seen)
+
     def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
         yield from self.rows.samples(rows)
         if not self.rows.count:
@@ -165,6 +214,11 @@ class FileRecording:
             raise type(error)(f"{self.path}: {error}") from None
         except OSError as error:
             raise TraceError(f"{self.path}: {error.strerror or error}") from None
+
+
+def can_be_read_again(path: str) -> bool:
+    """Whether a recording is a file, and not a stream that is gone when it was read."""
+    return path != "-" and not Path(path).is_fifo()
 
 
 def _format_of(path: str) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from rvmon.diagnostics.shown import shown_line
 from rvmon.monitor.compiled import CompileReport
+from rvmon.report.plain_table import plain_table
 from rvmon.spec.print.printer import format_duration
 
 _HEAD = ("", "engine", "locations", "clocks", "letters", "decided within", "open attempts")
@@ -17,13 +18,7 @@ def costs_text(reports: Mapping[str, CompileReport]) -> str:
     Args:
         reports: by id.
     """
-    rows = [_HEAD, *(_row(name, report) for name, report in reports.items())]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = (
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    )
-    return "\n".join(lines) + "\n"
+    return plain_table([_HEAD, *(_row(name, report) for name, report in reports.items())])
 
 
 def _row(name: str, report: CompileReport) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cache import cache_folder, files_told, keep, read_kept
-from rvmon.spec.checked.plain_data import restored, stored
+from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.checked.specification import CheckedSpec
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _HERE = Path(__file__).parent
 
 
-def compile_kept(
+def compile_cached(
     text: str,
     *,
     name: str = "<string>",
@@ -40,7 +40,7 @@ def compile_kept(
     found = _read(path)
     if found is None:
         found = _compiled(text, name, constants, directory)
-        keep(path, json.dumps(stored(found), separators=(",", ":")).encode())
+        keep(path, json.dumps(to_plain(found), separators=(",", ":")).encode())
     return found
 
 
@@ -57,7 +57,7 @@ def _read(path: Path) -> Compiled | None:
     if body is None:
         return None
     try:
-        spec, warnings = restored(json.loads(body))
+        spec, warnings = from_plain(json.loads(body))
     except (ValueError, LookupError, TypeError, RecursionError):
         return None
     return (spec, warnings) if isinstance(spec, CheckedSpec) else None

@@ -24,7 +24,7 @@ class Monitored(Protocol):
         """End the trace."""
 
 
-class Asked(Monitored, Protocol):
+class OnlineMonitor(Monitored, Protocol):
     """A monitor that can be asked at any time."""
 
     @property
@@ -36,7 +36,7 @@ class Asked(Monitored, Protocol):
         """The next instant at which time alone can decide something."""
 
 
-def is_asked(monitor: Monitored) -> TypeGuard[Asked]:
+def is_online(monitor: Monitored) -> TypeGuard[OnlineMonitor]:
     """Whether a monitor can be asked; without asking it."""
     return hasattr(type(monitor), "open")
 
@@ -51,11 +51,11 @@ def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt
     Returns:
         The report, and what each action returned.
     """
-    returned = [tell(monitor, action) for action in case.actions]
+    returned = [feed(monitor, action) for action in case.actions]
     return monitor.finish_ns(case.end), returned
 
 
-def tell(monitor: Monitored, action: Sample | int) -> Sequence[Attempt]:
+def feed(monitor: Monitored, action: Sample | int) -> Sequence[Attempt]:
     """Tell a monitor one action; returns what it decided."""
     if isinstance(action, Sample):
         return monitor.step_ns(action.t, action.values)

@@ -13,13 +13,13 @@ from rvmon.codegen.python_file import python_file
 from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
-from rvmon.monitor.codegen_support import can_stand_alone, plan_alone
-from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.codegen_support import plan_alone
+from rvmon.monitor.engines.registry import EXPLAINING, HANDING_ON, engine_named
 from rvmon.monitor.online_c import CompiledMonitor
 from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.drive import Asked, Monitored
+from rvmon.testing.drive import Monitored, OnlineMonitor
 from rvmon.testing.held_back import HeldBack
 from rvmon.testing.interrupt import Interrupted
 from rvmon.trace.sample import Sample, Value
@@ -27,7 +27,7 @@ from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
-FORMS = (*ENGINES, "file", "c", "c rows")
+FORMS = (*EXPLAINING, "file", "c", "c rows")
 """The engines of `Spec.monitor` that give reasons; the Python file that runs alone; compiled C that
 is stepped, and fed rows."""
 
@@ -67,11 +67,11 @@ class Maker:
 
     def __init__(self, form: str, compiler: Compiler | None = None) -> None:
         self.form, *ways = form.split("+")
-        driven = self.form in ENGINES or not ways
+        driven = self.form in EXPLAINING or not ways
         if self.form not in FORMS or not driven or {*ways} - {NEXT, INTERRUPT}:
             raise RvmonError(
                 f"no form `{form}`: there are {', '.join(FORMS)}; "
-                f"{', '.join(ENGINES)} also with +{NEXT}, +{INTERRUPT}"
+                f"{', '.join(EXPLAINING)} also with +{NEXT}, +{INTERRUPT}"
             )
         self.settle = "next" if NEXT in ways else "now"
         self._interrupts = INTERRUPT in ways
@@ -99,7 +99,7 @@ class Maker:
             case _:
                 return None
 
-    def _driven(self, compiled: CompiledSpec, case: Case) -> Asked:
+    def _driven(self, compiled: CompiledSpec, case: Case) -> OnlineMonitor:
         dice = random.Random(len(case.actions))  # noqa: S311 - repeatable
         monitor = build_monitor(compiled, engine=self.form, settle=self.settle, sources=case.names)
         driven = Interrupted(monitor, dice) if self._interrupts else monitor
@@ -109,26 +109,20 @@ class Maker:
         self, spec: CheckedSpec
     ) -> CompiledSpec | BatchLibrary | OnlineLibrary | ModuleType | None:
         compiled = self._compile(spec)
-        requirements = compiled.requirements.values()
-        if self.form == "progression":
-            ahead = any(one.network_plan.looks_back for one in requirements)
-            return None if ahead else compiled
-        if self.form not in ("automaton", "file", "c", "c rows"):
+        if self.form in HANDING_ON:
             return compiled
-        if any(one.automaton is None for one in requirements):
+        engine = engine_named(self.form if self.form in EXPLAINING else "c")
+        if any(engine.refuses(one) for one in compiled.requirements.values()):
             return None
-        if self.form == "automaton":
-            return compiled
-        if not all(can_stand_alone(one) for one in requirements):
-            return None
-        plan = plan_alone(compiled)
         match self.form:
             case "c":
-                return online_library(plan, optimised=False)
+                return online_library(plan_alone(compiled), optimised=False)
             case "c rows":
-                return BatchLibrary(plan, optimised=False)
+                return BatchLibrary(plan_alone(compiled), optimised=False)
+            case "file":
+                return _module_of(plan_alone(compiled))
             case _:
-                return _module_of(plan)
+                return compiled
 
 
 def _module_of(plan: Plan) -> ModuleType:

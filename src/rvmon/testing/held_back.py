@@ -6,7 +6,7 @@ import random
 from collections.abc import Mapping, Sequence
 
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.drive import Asked
+from rvmon.testing.drive import OnlineMonitor
 from rvmon.testing.health import readers_of
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
@@ -29,7 +29,7 @@ class HeldBack:
         monitor: the same.
     """
 
-    def __init__(self, monitor: Asked, spec: CheckedSpec, dice: random.Random) -> None:
+    def __init__(self, monitor: OnlineMonitor, spec: CheckedSpec, dice: random.Random) -> None:
         self.monitor = monitor
         self._spec = spec
         self._dice = dice

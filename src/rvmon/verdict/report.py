@@ -34,6 +34,8 @@ class Report:
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
         law: version of the law that judged; a report that was kept may be of an older one.
+        engine: the engines that judged, the fastest first; no part of what was judged, and so
+            neither compared nor written down.
         dropped: by requirement, how many of its attempts were not kept, by verdict; verdicts and
             counts speak of them as well.
     """
@@ -50,6 +52,10 @@ class Report:
     goals: Mapping[str, Verdict] = field(default_factory=dict)
     law: int = LAW
     dropped: Mapping[str, Mapping[Verdict, int]] = field(default_factory=dict)
+    engine: str = field(default="", compare=False)
+    _kinds: dict[tuple[str, Verdict], list[Attempt]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.
@@ -60,11 +66,10 @@ class Report:
         """
         if isinstance(self.attempts, LazyAttempts):
             return self.attempts.of(requirement, verdict)
-        return (
-            attempt
-            for attempt in self.attempts
-            if attempt.requirement == requirement and attempt.verdict is verdict
-        )
+        if not self._kinds:
+            for attempt in self.attempts:
+                self._kinds.setdefault((attempt.requirement, attempt.verdict), []).append(attempt)
+        return iter(self._kinds.get((requirement, verdict), ()))
 
     def is_silent(self, requirement: str) -> bool:
         """Whether a requirement has no attempt: it is `NT`, or `I` if its trigger was never known.

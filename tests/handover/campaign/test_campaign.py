@@ -1,6 +1,9 @@
 """Campaigns: what they count, and that it follows from the seed alone."""
 
 import json
+import multiprocessing
+import os
+import signal
 
 import pytest
 
@@ -13,6 +16,8 @@ from handover.campaign.plan import plan
 from handover.campaign.summarise import summarise
 from handover.generator.files import directed
 from rvmon.verdict.verdict import Verdict
+
+pytestmark = pytest.mark.campaign
 
 REQUIREMENTS = dict.fromkeys(("R1", "R2", "R3", "R4", "R5"), "")
 TEXTS = {"legacy": REQUIREMENTS, "correct": REQUIREMENTS}
@@ -44,10 +49,9 @@ def directed_results():
 
 
 def test_the_number_of_workers_changes_nothing(results):
-    """The same bytes with one and with two workers, and on a second run."""
+    """The same bytes with one worker and with two, which play it a second time."""
     once = document(results)
     assert document(execute(small(), jobs=2)) == once
-    assert document(execute(small(), jobs=1)) == once
     assert document(execute(small(seed=4), jobs=1)) != once
 
 
@@ -110,7 +114,7 @@ def test_a_crash_of_the_robot_is_a_result(directed_results):
     assert set(crashed[0].verdicts) == set(REQUIREMENTS)
 
 
-def test_an_interrupt_keeps_the_finished_tests(monkeypatch):
+def test_an_interrupt_keeps_the_finished_tests(monkeypatch, results):
     """The table is made of what was played, and says that it is partial."""
     calls = []
 
@@ -124,7 +128,7 @@ def test_an_interrupt_keeps_the_finished_tests(monkeypatch):
     monkeypatch.setattr(playing, "run_test", run_test)
     played = execute(small(), jobs=1)
     assert played.cut_short == INTERRUPTED
-    assert len(played.outcomes) == 8
+    assert played.outcomes == results.outcomes[:8]
     content = table_document(summarise(played, TEXTS))
     assert content["partial"] == {"why": "interrupted", "planned": 24, "finished": 8}
     counted = sum(
@@ -133,6 +137,25 @@ def test_an_interrupt_keeps_the_finished_tests(monkeypatch):
         for strategy in robot["strategies"].values()
     )
     assert counted == 8
+
+
+@pytest.mark.skipif(
+    multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
+)
+def test_a_worker_that_is_lost_keeps_the_finished_tests(monkeypatch, results):
+    """Those before the one that it had, which is named."""
+    last = small().jobs()[4]
+
+    def run_test(test, **options):
+        if (test.name, options["robot"]) == (last.test.name, last.robot):
+            os.kill(os.getpid(), signal.SIGKILL)
+        return real(test, **options)
+
+    real = playing.run_test
+    monkeypatch.setattr(playing, "run_test", run_test)
+    played = execute(small(), jobs=2)
+    assert played.outcomes == results.outcomes[:4]
+    assert "the process that had test 5 was ended from outside" in played.cut_short
 
 
 def test_without_monitors_nothing_is_judged():

@@ -19,6 +19,8 @@ from handover.checker import spec_path
 from handover.cli import main
 from handover.generator.files import directed, save
 
+pytestmark = pytest.mark.campaign
+
 ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 
 
@@ -197,17 +199,32 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
     assert "Partial: interrupted" in (tmp_path / "report.html").read_text()
 
 
-@pytest.mark.parametrize("seconds", [0.3, 0.5, 0.9])
+_PROGRAM = """
+import sys
+from handover import cli
+parser = cli._parser
+def said():
+    print(flush=True)
+    return parser()
+cli._parser = said
+sys.exit(cli.main())
+"""
+"""Says when it has begun: nobody answers for an interrupt while Python itself starts."""
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.3, 0.9])
 def test_ctrl_c_at_a_terminal_reaches_all_processes(seconds):
     """Whenever it comes, also while the workers start: no traceback, and 130 (or all was done)."""
     words = ["run", "--strategy", "constrained", "--tests", "40", "--jobs", "2"]
     process = subprocess.Popen(  # noqa: S603 - our own program
-        [sys.executable, "-m", "handover.cli", *words],
+        [sys.executable, "-c", _PROGRAM, *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
     )
+    assert process.stdout is not None
+    process.stdout.readline()
     time.sleep(seconds)
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGINT)

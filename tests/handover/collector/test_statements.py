@@ -16,13 +16,14 @@ TESTS = {test.name: test for test in directed()}
 
 @pytest.fixture(scope="module")
 def measured():
-    """A handover that ends in a release, and one in which nobody comes."""
+    """A handover that ends in a release, and one in which nobody comes: runs and lines."""
     meter = StatementMeter()
-    runs = {}
+    runs, executed = {}, {}
     for name in ("released", "nobody-comes"):
-        meter.begin(name)
+        meter.begin()
         runs[name] = run_test(TESTS[name], around_robot_step=lambda: meter)
-    return meter, runs
+        executed[name] = meter.executed()
+    return runs, executed
 
 
 def test_every_state_has_statements():
@@ -36,10 +37,9 @@ def test_every_state_has_statements():
 
 def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
     """The block of the paper's coverage hole: 100 % by one test, 0 % by another."""
-    meter, _ = measured
-    executed = meter.executed()
-    released = coverage_by_state(meter.statements, executed["released"])
-    nobody = coverage_by_state(meter.statements, executed["nobody-comes"])
+    _, executed = measured
+    released = coverage_by_state(robot_statements(), executed["released"])
+    nobody = coverage_by_state(robot_statements(), executed["nobody-comes"])
     assert released["release"].percent == 100
     assert released["release"].missing == ()
     assert nobody["release"].percent == 0
@@ -48,17 +48,17 @@ def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
 
 def test_tests_are_kept_apart(measured):
     """What one test ran is not counted for another; together they cover more than each."""
-    meter, _ = measured
-    executed = meter.executed()
-    alone = [total_coverage(meter.statements, lines).covered for lines in executed.values()]
-    both = total_coverage(meter.statements, frozenset().union(*executed.values()))
+    _, executed = measured
+    statements = robot_statements()
+    alone = [total_coverage(statements, lines).covered for lines in executed.values()]
+    both = total_coverage(statements, frozenset().union(*executed.values()))
     assert both.covered > max(alone)
     assert 0 < both.percent < 100
 
 
 def test_measuring_changes_nothing(measured):
     """The run is the same as without measuring."""
-    _, runs = measured
+    runs, _ = measured
     assert runs["released"] == run_test(TESTS["released"])
 
 

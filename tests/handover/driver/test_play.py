@@ -19,6 +19,8 @@ from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
 from handover.generator.files import AbstractTestError
 from handover.generator.pseudorandom import constrained, pseudorandom
 
+pytestmark = pytest.mark.campaign
+
 NUMBERS = {"hand_distance", "hand_offset_x", "hand_offset_z", "tool_speed"}
 
 
@@ -60,9 +62,9 @@ def facts(run: Run) -> list[tuple[int, dict[str, object]]]:
 
 @pytest.mark.parametrize("robot", ["correct", "legacy"])
 def test_jumps_change_no_event(robot: str) -> None:
-    """Fifty tests give the same events at the same nanosecond whether rest is stepped or not."""
+    """Tests give the same events at the same nanosecond whether rest is stepped or not."""
     gripped = 0
-    for test in pseudorandom(10, seed=5) + constrained(15, seed=5):
+    for test in pseudorandom(3, seed=5) + constrained(6, seed=5):
         jumped = run_test(test, robot=robot)
         stepped = run_test(test, robot=robot, jump=False)
         assert facts(jumped) == facts(stepped)
@@ -76,7 +78,7 @@ def test_jumps_change_no_event(robot: str) -> None:
         gripped += len(closings)
         for one, other in closings:
             assert one == pytest.approx(other, abs=1e-3)
-    assert gripped >= 10
+    assert gripped >= 4
 
 
 def digest(run: Run) -> str:
@@ -237,7 +239,7 @@ def test_unknown_names_are_told(settings: dict[str, str], names: str) -> None:
 def test_loss_switched_off_changes_nothing_else() -> None:
     """Without the fitted loss all other conditions of a seed stay as they were."""
     lost = 0
-    for seed in range(2000):
+    for seed in range(500):
         fitted, plain = draw(seed, startup_loss=True), draw(seed, startup_loss=False)
         assert plain.connected
         lost += not fitted.connected
@@ -246,7 +248,7 @@ def test_loss_switched_off_changes_nothing_else() -> None:
             plain.timeout_time_s,
             plain.start_pose,
         )
-    assert 100 < lost < 180
+    assert 20 < lost < 50
 
 
 def test_dead_sensors_are_unknown() -> None:

@@ -106,12 +106,13 @@ def test_a_clock_that_is_started_at_every_position(time, owed, passes):
     assert analysis_of(text).examination.possible["R"].pass_ is passes
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("model", list(TimeModel))
 def test_what_cannot_be_is_never_seen(model):
     """Random requirements: none passes, or fails, of which that was ruled out."""
     dice = random.Random(model.value)
     claims = 0
-    for _ in range(150):
+    for _ in range(60):
         spec = random_spec(dice, Profile(time=model, requirements=1, depth=3, numbers=False))
         [one] = compile_spec(spec).requirements.values()
         can = possible(spec, one.obligation.trigger, one.automaton, one.requirement.at_end)
@@ -123,7 +124,7 @@ def test_what_cannot_be_is_never_seen(model):
             report = evaluate(spec, case.samples, advances=case.advances, end=case.end)
             seen = {attempt.verdict.value for attempt in report.attempts}
             assert not seen & ruled_out, (show_spec(spec), case)
-    assert claims > 5
+    assert claims > 1
 
 
 def test_timelines_trigger_what_conflicts():
@@ -252,6 +253,7 @@ def test_implications(text, implied):
     assert {(one.implied, one.by) for one in found} == implied
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("seed", range(2))
 def test_claims_about_random_specs_are_not_refuted(seed):
     """Random requirements: no run meets a conflict, or fails what is implied alone."""

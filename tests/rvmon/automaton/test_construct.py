@@ -11,11 +11,11 @@ from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import INFINITY
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
-from rvmon.automaton.stretch import run
 from rvmon.automaton.table import TableMachine
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
+from rvmon.runtime.table import run
 from rvmon.spec.checked.formula import SignalAtom
 
 SECOND = 10**9
@@ -114,7 +114,7 @@ def test_held_time_is_jumped_over(kind, scale):
     holds = alphabet.size - 1
     token, due = counted.start, 0
     for letter, length in ((holds, 100), (holds - 1, 10), (holds, 50)):
-        token, due = run(counted, token, letter, due, due + length * scale - 1, 1)
+        token, due, _ = run(counted, token, letter, due, due + length * scale - 1, 1)
         due = min(due, 10**18)
     assert counted.steps <= 12
 
@@ -123,11 +123,11 @@ def test_a_stretch_is_due_when_a_kept_clock_crosses():
     """A pending deadline makes the stretch due one tick after it, a settled loop never."""
     owed, alphabet = core(eventually(p, 0, 30))
     machine = TableMachine(construct(owed, alphabet, Budget()))
-    _, due = run(machine, machine.start, 0, 10, 20, 1)
+    _, due, _ = run(machine, machine.start, 0, 10, 20, 1)
     assert due == 41
     owed, alphabet = core(always(p))
     machine = TableMachine(construct(owed, alphabet, Budget()))
-    _, due = run(machine, machine.start, 1, 10, 20, 1)
+    _, due, _ = run(machine, machine.start, 1, 10, 20, 1)
     assert due == INFINITY
 
 

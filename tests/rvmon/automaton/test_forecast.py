@@ -19,6 +19,8 @@ from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
 
+pytestmark = pytest.mark.law
+
 HEAD = 'spec t\ntime {}\nsignal p, q : bool\nrequirement R1 "x"\n  upon start then {}\n'
 CASES = {
     "eventually p": None,
@@ -121,7 +123,7 @@ def test_more_than_is_looked_at_is_not_forecast():
     assert forecast_of(formula, {"p": False, "q": False}, {}) is None
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(data=st.data(), engine=st.sampled_from(ENGINES))
 def test_untimed_forecasts_are_those_of_the_tableau(data, engine):
     """Verdict or forecast is what the infinite continuations leave, at every position."""
@@ -149,7 +151,7 @@ def test_untimed_forecasts_are_those_of_the_tableau(data, engine):
 def test_forecasts_with_windows_are_those_of_the_tableau(engine):
     """Where every tick is a position, windows are nests of `X`; hardly a forecast is missed."""
     given = missed = 0
-    for seed in range(60):
+    for seed in range(30):
         dice = random.Random(f"windows/{seed}")
         formula = random_mtl(dice, dice.randint(1, 3))
         tableau = Tableau.of(unrolled(formula), 7)
@@ -171,7 +173,7 @@ def test_forecasts_with_windows_are_those_of_the_tableau(engine):
     assert given > 100 * missed
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(case=cases(Profile(), TraceProfile()), engine=st.sampled_from(ENGINES))
 def test_forecasts_come_true(case, engine):
     """What was forecast of an attempt at some moment is never overturned by a later decision."""

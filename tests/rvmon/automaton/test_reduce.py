@@ -41,7 +41,7 @@ def walk(automaton, word):
         seen += [machine.time_value(token, later) for later in range(t, t + gap + 1)]
         if seen[-1] != seen[0]:  # time alone has decided
             return seen
-    row = machine._row(token, word[-1][0])
+    row = machine.row(token, word[-1][0])
     return [*seen, automaton.end_values[row]]
 
 

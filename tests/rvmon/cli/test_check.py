@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -109,7 +110,7 @@ def test_standard_input(monkeypatch, capsys):
 
 
 def test_engines_are_told_on_demand(write, capsys):
-    """With `--engines` each requirement says what judges it, and why it has no automaton."""
+    """With `--engines` each requirement says what judges it, and why nothing faster does."""
     path = write(
         "a.rv",
         "spec s\nsignal a, b : bool\nevent e\nrequirement R1\n  upon e then within 3 s b\n"
@@ -119,8 +120,17 @@ def test_engines_are_told_on_demand(write, capsys):
     assert "automaton" not in capsys.readouterr().out
     assert main(["check", path, "--engines"]) == 0
     shown = capsys.readouterr().out
-    assert "R1: automaton of 4 locations" in shown
-    assert "R2: delay network: as an automaton it would have more than 6 clocks" in shown
+    assert re.search(r"^R1 +python +columns$", shown, re.MULTILINE)
+    why = "columns, python, automaton, c: has no automaton (more than 6 clocks)"
+    assert re.search(rf"^R2 +network +network +{re.escape(why)}$", shown, re.MULTILINE)
+    assert main(["check", path, "--engines", "--format", "json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["engines"][path]["R1"] == {
+        "online": "python",
+        "recording": "columns",
+        "refused": {},
+    }
+    assert found["engines"][path]["R2"]["refused"]["c"]["engine"] == "network"
 
 
 @pytest.mark.parametrize("seconds", ["nan", "-1", "inf", "x"])

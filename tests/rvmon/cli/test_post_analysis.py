@@ -9,9 +9,10 @@ import rvmon
 from rvmon.cli.judging import Options, judge
 from rvmon.cli.post_analysis import in_order
 from rvmon.explain.nearest_miss import nearest_miss, read_as_values
-from rvmon.monitor import batch_file
-from rvmon.readers.blocks import Block
+from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.changes import Changes
+from rvmon.readers.recording import FileRecording
+from rvmon.trace.sample import Sample
 
 HEAD = """
 spec cell
@@ -49,15 +50,17 @@ def rows(seed: int) -> list[dict]:
 
 @pytest.fixture(params=[1, 2])
 def traces(request, tmp_path):
-    """The same rows as CSV and as JSON lines."""
+    """The same rows as plain CSV, as CSV in words, and as JSON lines."""
     found = rows(request.param)
     lines = [",".join(found[0])]
     lines += [
         ",".join(str(float(v) if k == "x" else int(v)) for k, v in row.items()) for row in found
     ]
     (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
+    words = [",".join(str(v).lower() for v in row.values()) for row in found]
+    (tmp_path / "b.csv").write_text("\n".join([lines[0], *words]) + "\n")
     (tmp_path / "a.jsonl").write_text("".join(json.dumps(row) + "\n" for row in found))
-    return [str(tmp_path / "a.csv"), str(tmp_path / "a.jsonl")]
+    return [str(tmp_path / name) for name in ("a.csv", "b.csv", "a.jsonl")]
 
 
 @pytest.mark.parametrize("until", [None, 60.0])
@@ -109,10 +112,14 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     )
     spec = rvmon.loads(text)
     by_columns = [judge(spec, trace, Options(until=until)).report for trace in traces]
-    monkeypatch.setattr(batch_file, "evaluate_file", lambda *_, **__: None)
+
+    def refuse(*_):
+        raise NotPlainError
+
+    monkeypatch.setattr(FileRecording, "blocks", refuse)
     by_samples = [judge(spec, trace, Options(until=until)).report for trace in traces]
     assert by_columns == by_samples
-    assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 2
+    assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
 
 
 def test_rows_that_repeat_are_left_out():
@@ -135,8 +142,6 @@ def test_rows_that_repeat_are_left_out():
 
 def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
     """However many requirements failed or were silent, a file is read once again; each is told."""
-    from rvmon.readers import block_readers
-
     pairs = range(6)
     text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
     for n in range(30):
@@ -150,12 +155,12 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
     path = tmp_path / "a.csv"
     path.write_text("\n".join(rows) + "\n")
     opened = []
-    reader_of = block_readers.reader_of
+    blocks = FileRecording.blocks
     monkeypatch.setattr(
-        block_readers, "reader_of", lambda *given: opened.append(given) or reader_of(*given)
+        FileRecording, "blocks", lambda *given: opened.append(given) or blocks(*given)
     )
     report = judge(rvmon.loads(text), str(path), Options()).report
-    assert len(opened) == 1
+    assert len(opened) == 2  # to judge, and once again
     assert {name: dict(found) for name, found in report.late.items()} == {
         f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
     }
@@ -177,3 +182,23 @@ def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, m
     assert {name: list(found) for name, found in report.late.items()} == {
         f"R{n}": [1] for n in range(9)
     }
+
+
+def test_samples_show_the_changes_that_columns_show():
+    """Of a recording that is not plain the same is looked at, wherever a value is not known too."""
+    import numpy as np
+
+    times, values, occurred = [1, 2, 4, 7, 9], [1.5, 1.5, 2.0, 2.0, 1.5], [1, 0, 0, 1, 0]
+    events = np.array(occurred, bool)
+    block = Block(np.array(times), {"x": np.array(values), "go": events})
+    samples = [
+        Sample(t, {"x": x, "go": bool(go), "else": t})
+        for t, x, go in zip(times, values, occurred, strict=True)
+    ]
+    by_columns = Changes([block], {"x", "go"}, {"go"}, 9)
+    by_samples = Changes.in_samples(samples, {"x", "go"}, {"go"})
+    for names in ({"x"}, {"go"}, {"x", "go"}, set()):
+        assert by_samples.samples(names) == by_columns.samples(names)
+    gone = [Sample(1, {"x": 1.0}), Sample(3, {}), Sample(5, {"x": None}), Sample(8, {"x": None})]
+    assert [one.t for one in Changes.in_samples(gone, {"x"}, ()).samples({"x"})] == [1, 5]
+    assert Changes.in_samples([], {"x"}, ()).samples({"x"}) == []

@@ -8,6 +8,8 @@ from threading import Thread
 
 import pytest
 
+pytestmark = pytest.mark.process
+
 SPEC = """
 spec door
 signal closed : bool
@@ -91,14 +93,31 @@ def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(folder):
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_command_takes_no_more_memory_than_it_may(folder, jobs):
     """Where that is not enough there is a message, from workers, too."""
-    (folder / "big.jsonl").write_text('{"t":0,"x":[1' + ",1" * 30_000_000 + "]}\n")
-    words = ("--max-memory", "256", "--jobs", jobs, "door.rv", "run.jsonl", "big.jsonl")
+    (folder / "big.jsonl").write_text('{"t":0,"x":[[]' + ",[]" * 20_000_000 + "]}\n")
+    words = ("--max-memory", "512", "--jobs", jobs, "door.rv", "run.jsonl", "big.jsonl")
     done = rvmon(folder, "run", *words, stdout=subprocess.PIPE)
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"error: the memory is not enough, of 256 MB: raise --max-memory\n"
+    assert done.stderr == b"error: the memory is not enough, of 512 MB: raise --max-memory\n"
     done = rvmon(folder, "run", "--max-memory", "5", "door.rv", "run.jsonl")
     assert done.returncode == 2
-    assert b"at least 256 MB" in done.stderr
+    assert b"at least 512 MB" in done.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are not kept elsewhere")
+def test_a_parquet_file_that_needs_more_memory_is_not_called_damaged(folder):
+    """A cell that unpacks to 300 MB ends with the message; the least that may be had is enough."""
+    pa = pytest.importorskip("pyarrow")
+    pq = pytest.importorskip("pyarrow.parquet")
+    (folder / "said.rv").write_text("spec s\nsignal l : {a, b}\nrequirement R1\n  always l == b\n")
+    for name, label in (("big", "a" * 300_000_000), ("small", "b")):
+        columns = {"t": [0.0, 1.0], "l": pa.array([label, "b"], pa.large_string())}
+        pq.write_table(pa.table(columns), folder / f"{name}.parquet", compression="zstd")
+    words = ("run", "--max-memory", "512", "said.rv")
+    done = rvmon(folder, *words, "big.parquet", stdout=subprocess.PIPE)
+    assert done.stderr == b"error: the memory is not enough, of 512 MB: raise --max-memory\n"
+    assert done.returncode == 2
+    done = rvmon(folder, *words, "small.parquet", stdout=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 @pytest.mark.parametrize("name", ["zero.csv", "zero.jsonl"])

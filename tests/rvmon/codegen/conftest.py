@@ -72,7 +72,6 @@ def program(request, tmp_path_factory) -> Program:
     spec = folder / "watch.rv"
     spec.write_text(request.param(SPEC.replace('"at work"', "working")))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
         flags = (
             "-std=c99",
             "-Wall",

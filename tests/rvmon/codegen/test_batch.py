@@ -1,7 +1,6 @@
 """Columns of arrays: judged as the same samples one by one."""
 
 import ctypes
-import shutil
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -127,7 +126,7 @@ def test_disorder_and_wrong_columns_are_refused_as_ever():
         spec.evaluate(columns | {"p": columns["load"]})
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.compiler
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_the_engine_c_agrees(time, tmp_path, monkeypatch):
     """Compiled C gives the same attempts; what it has not are reasons and health."""
@@ -176,7 +175,7 @@ def test_many_traces_in_one_call(jobs):
     assert set(reports[0].verdicts) == {"R1", "R3"}
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.compiler
 def test_builds_at_the_same_time_do_not_disturb_each_other(tmp_path, monkeypatch):
     """Whoever comes second finds a whole file; nothing is left over."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -193,11 +192,10 @@ def test_builds_at_the_same_time_do_not_disturb_each_other(tmp_path, monkeypatch
     assert not list(path.parent.glob("*.part"))
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.compiler
 @pytest.mark.parametrize(("engine", "seeds"), [("auto", 30), ("c", 4)])
-def test_columns_judge_as_the_law_has_it(engine, seeds, tmp_path, monkeypatch):
+def test_columns_judge_as_the_law_has_it(engine, seeds, optimised):
     """Random specifications on random arrays: what the oracle says of the same samples."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     profile = Profile(captures=False, for_each=False)
     judged = 0
     for seed in range(seeds):

@@ -2,7 +2,6 @@
 
 import json
 import random
-import shutil
 import struct
 import subprocess
 
@@ -10,7 +9,7 @@ import pytest
 
 from rvmon.cli import main
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+pytestmark = pytest.mark.compiler
 
 COLUMNS = ("open_door", "arm.speed", "parts", "mode", "pick", "pick.id", "pick.force", "halt", "x")
 MODES = ("idle", "stopped")
@@ -243,9 +242,8 @@ def test_csv_that_is_unusual_is_read_as_rvmon_run_does(program, tmp_path, capsys
     assert len(said_alike(program, trace, capsys)["R1"][2]) == 1
 
 
-def test_a_gap_that_starts_many_attempts(tmp_path, capsys, monkeypatch):
+def test_a_gap_that_starts_many_attempts(tmp_path, capsys):
     """The room for open attempts grows also between two samples; so does that of columns."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     (tmp_path / "echo.rv").write_text(
         "spec echo\nsignal p, q : bool\n"
         "requirement R1\n  upon once[1 s, 1 s] p\n  then within 1 h q\n"
@@ -264,9 +262,8 @@ def test_a_gap_that_starts_many_attempts(tmp_path, capsys, monkeypatch):
     assert found["requirements"]["R1"]["counts"]["P"] == 22 * 50
 
 
-def test_what_is_read_has_a_column(tmp_path, monkeypatch):
+def test_what_is_read_has_a_column(tmp_path):
     """Else the program refuses, or says that it is not known and is not content."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     (tmp_path / "door.rv").write_text(
         "spec door\nsignal open, shut : bool\nrequirement R1\n  always not (open and shut)\n"
     )

@@ -1,13 +1,12 @@
 """What programs made by `rvmon build` refuse: the place, the cause, and nothing judged."""
 
-import shutil
 import struct
 
 import pytest
 
 from rvmon.cli import main
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+pytestmark = pytest.mark.compiler
 
 HALT = b"rvmonbin" + struct.pack("=II", 1, 4) + b"halt"
 

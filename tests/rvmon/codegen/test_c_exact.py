@@ -1,24 +1,14 @@
 """Whole numbers in compiled C: judged as Python computes them, or refused."""
 
-import shutil
-
 import numpy as np
 import pytest
 
 import rvmon
 from rvmon.codegen.c_source import c_files
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+pytestmark = pytest.mark.compiler
 
 MOST = 2**53
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    """Compiled monitors of these tests are kept for these tests."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 def spec_of(owed: str) -> rvmon.Spec:

@@ -13,6 +13,8 @@ from rvmon.codegen.c_online import online_source
 from rvmon.codegen.c_source import c_files
 from rvmon.errors import RvmonError
 
+pytestmark = pytest.mark.compiler
+
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O2"]
 
 SPEC = """
@@ -130,13 +132,12 @@ def test_it_runs_clean(tmp_path):
     (tmp_path / "spec.rv").write_text(SPEC.format(name="odd"))
     (tmp_path / "waiting.rv").write_text(WAITING)
     (tmp_path / "run.py").write_text(RUN)
-    flags = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined"
+    flags = "-g -fsanitize=address,undefined -fno-sanitize-recover=undefined"
     command = ["gcc", "-print-file-name=libasan.so"]
     shown = subprocess.run(command, capture_output=True, text=True, check=True)  # noqa: S603
     environment = {
         **os.environ,
-        "CC": f"gcc {flags}",
-        "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        "CC": f"{os.environ['CC']} {flags}",
         "LD_PRELOAD": shown.stdout.strip(),
         "ASAN_OPTIONS": "detect_leaks=0",  # Python frees not all at its end
         "PYTHONMALLOC": "malloc",
@@ -153,10 +154,8 @@ def test_it_runs_clean(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["core", "py", "python", "finite", "module", "pyconfig", "double"])
-def test_any_name_of_a_specification(name, tmp_path, monkeypatch):
+def test_any_name_of_a_specification(name):
     """A specification may be called as something of Python's headers, or of ours."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr("rvmon.codegen.c_online.FAST", ("-O0",))
     spec = rvmon.loads(f"spec `{name}`\nsignal p : bool\nrequirement R1\n  always p\n")
     monitor = spec.monitor(engine="c")
     (attempt,) = (*monitor.step(0.0, {"p": True}), *monitor.step(1.0, {"p": False}))
@@ -166,7 +165,6 @@ def test_any_name_of_a_specification(name, tmp_path, monkeypatch):
 def test_compiled_once(tmp_path, monkeypatch):
     """Another monitor, another load of the same text, another process: one file in the cache."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr("rvmon.codegen.c_online.FAST", ("-O0",))
     for _ in range(2):
         spec = rvmon.loads(BARE)
         spec.monitor(engine="c").step(0.0, {"f": True})
@@ -176,7 +174,6 @@ def test_compiled_once(tmp_path, monkeypatch):
 
 def test_a_file_that_was_cut_off_is_made_anew(tmp_path, monkeypatch):
     """A module that cannot be loaded is compiled once more."""
-    monkeypatch.setattr("rvmon.codegen.c_online.FAST", ("-O0",))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "first"))
     rvmon.loads(BARE).monitor(engine="c")
     (whole,) = (tmp_path / "first" / "rvmon").glob("*.so")
@@ -188,10 +185,8 @@ def test_a_file_that_was_cut_off_is_made_anew(tmp_path, monkeypatch):
     assert broken.stat().st_size == whole.stat().st_size
 
 
-def test_modules_that_share_names(tmp_path, monkeypatch):
+def test_modules_that_share_names():
     """Each monitor runs its own code even where a program lets all modules see each other's."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr("rvmon.codegen.c_online.FAST", ("-O0",))
     before = sys.getdlopenflags()
     try:
         sys.setdlopenflags(before | os.RTLD_GLOBAL)

@@ -1,7 +1,6 @@
 """The cache of compiled C, and the compiler that fills it."""
 
 import os
-import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -9,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import rvmon
-from rvmon.children import run
+from rvmon.execute.command import run
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+pytestmark = pytest.mark.compiler
 
 SPEC = "spec s\nsignal p : bool\nrequirement R1\n  always p\n"
 TRACE = {"t": [0.0, 1.0], "p": [True, False]}

@@ -1,7 +1,6 @@
 """Names of a specification are nothing but names in the code that is made of it."""
 
 import json
-import shutil
 import subprocess
 
 import pytest
@@ -30,9 +29,6 @@ def test_python_that_is_generated_runs_no_name():
     exec(compile(python_file(spec.plan()), "generated", "exec"), {"__name__": "generated"})  # noqa: S102
 
 
-needs_compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-
-
 @pytest.fixture
 def files(tmp_path, monkeypatch):
     """The specification without ends of lines in names, which no file has, and a recording."""
@@ -46,7 +42,7 @@ def files(tmp_path, monkeypatch):
     return names
 
 
-@needs_compiler
+@pytest.mark.compiler
 def test_the_report_of_a_program_has_the_ids_and_nothing_else(files):
     """It parses, and forges no requirement."""
     assert main(["build", "s.rv", "-o", "judge"]) == 0
@@ -59,7 +55,7 @@ def test_the_report_of_a_program_has_the_ids_and_nothing_else(files):
     assert not STEERING.search(done.stdout.decode())
 
 
-@needs_compiler
+@pytest.mark.compiler
 def test_what_run_prints_of_compiled_monitors_parses(files, tmp_path, capfd):
     """Also where a program that was compiled before prints it, with columns that are ignored."""
     (tmp_path / "r.csv").write_text("t,x\x1b,y\x1b\n0,1,1\n1,0,1\n", encoding="utf-8")
@@ -70,7 +66,7 @@ def test_what_run_prints_of_compiled_monitors_parses(files, tmp_path, capfd):
         assert report["health"][0]["name"].startswith("y\x1b")
 
 
-@needs_compiler
+@pytest.mark.compiler
 def test_a_program_shows_what_would_steer_a_terminal(files, tmp_path):
     """In the file's name, the column's and the cell."""
     assert main(["build", "s.rv", "-o", "judge"]) == 0

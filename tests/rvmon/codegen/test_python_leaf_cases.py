@@ -6,11 +6,13 @@ import pytest
 
 import rvmon
 from rvmon.codegen import python_leaf_cases
-from rvmon.codegen.runtime.unit import Unit, closures
 from rvmon.errors import TraceError
+from rvmon.runtime.unit import Unit, closures
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.show import show
 from rvmon.trace.time import TIME_LIMIT
+
+pytestmark = pytest.mark.law
 
 SIGNALS = ("p", "q", "r")
 SHAPE = Shape(future=False, numbers=False, events=False)
@@ -46,7 +48,7 @@ def test_they_judge_as_tables_do(time, count, monkeypatch):
     monkeypatch.setattr(
         Unit, "meets", lambda unit, t, cone: met.add(found := meets(unit, t, cone)) or found
     )
-    for seed in range(60):
+    for seed in range(25):
         dice = random.Random(f"{time}/{count}/{seed}")
         text, samples = many(dice, time, count)
         spec = rvmon.loads(text)
@@ -59,7 +61,7 @@ def test_they_judge_as_tables_do(time, count, monkeypatch):
 def test_they_judge_as_tables_do_however_deep_blocks_stand(count, deepest, monkeypatch):
     """What depends on one node alone stands within its block, or behind it and asks for it."""
     monkeypatch.setattr(python_leaf_cases, "_DEEPEST", deepest)
-    for seed in range(40):
+    for seed in range(15):
         text, samples = many(random.Random(f"deep/{count}/{seed}"), "held", count)
         spec = rvmon.loads(text)
         assert judged(spec, samples, "python") == judged(spec, samples, "automaton"), text

@@ -24,11 +24,12 @@ from tests.tools.build import (
 
 from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.graph import graph_of
-from rvmon.dataflow.inputs import NEVER, Inputs
-from rvmon.dataflow.since import Since
+from rvmon.dataflow.inputs import Inputs
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.runtime.past import Since
+from rvmon.runtime.table import NEVER
 
 
 def flow_of(formula, gap=1, stale=None, names=None):
@@ -114,6 +115,6 @@ def test_the_memory_of_a_window_is_bounded(low, high):
     for _ in range(3_000):
         t += dice.randint(2, 5)
         node.step(t, t - 1, TRUE, dice.choice((FALSE, UNKNOWN, TRUE)))
-        most = max(most, len(node.pessimistic.stretches), len(node.optimistic.stretches))
+        most = max(most, len(node.runs), len(node.better.runs) if node.better else 0)
     width = None if high is None else high - low
     assert most <= (2 if width is None else low / max(width, 1) + 3)

@@ -23,7 +23,7 @@ from rvmon.testing.scale import in_units, scaled
 
 SECOND = 10**9
 RESPAWNED = "whenever a then F[2 s, 5 s] b"
-PAIRS = 60
+PAIRS = 30
 BRIEF, LENGTHY = ("100 ms", "250 ms"), ("1 s", "2.5 s")
 
 
@@ -42,6 +42,7 @@ def outcomes(spec, samples, end=None, engine="auto"):
     return [(a.triggered, a.decided, a.verdict.value) for a in monitor.finish(end).attempts]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", TimeModel)
 def test_no_disagreement(time):
     """On formulas of all kinds, mixed ones too, it is the oracle's in verdicts and instants."""

@@ -15,6 +15,8 @@ from rvmon.monitor import compile_spec
 from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.show import show_spec
 
+pytestmark = pytest.mark.law
+
 
 @pytest.mark.parametrize("seed", range(5))
 def test_cubes_cover_exactly(seed):

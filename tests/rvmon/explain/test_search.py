@@ -13,6 +13,8 @@ from rvmon.testing.generate_spec import Profile, random_spec
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec
 
+pytestmark = pytest.mark.law
+
 KINDS = ("P", "F", "NT", "I")
 SMALL = Budget(runs=120, samples=3, step=4)
 

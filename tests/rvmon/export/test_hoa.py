@@ -16,6 +16,8 @@ from rvmon.export.hoa import hoa
 from rvmon.monitor import compile_spec
 from rvmon.spec.checked.specification import TimeModel
 
+pytestmark = pytest.mark.law
+
 GRAMMAR = Lark(
     r"""
     automaton: "HOA:" "v1" header* "--BODY--" state* "--END--"

@@ -107,7 +107,7 @@ def test_a_trigger_that_speaks_of_the_future_is_refused():
 def test_nested_equivalences_take_no_time():
     """What stands for `<->` has each operand twice; yet each is read once."""
     nested = "p"
-    for _ in range(40):
+    for _ in range(30):
         nested = f"(q <-> {nested})"
     head = "spec s\nsignal p, q : bool\nrequirement R\n  upon"
     spec = rvmon.loads(f"{head} {nested} then {nested}\n")

@@ -27,7 +27,7 @@ FURTHER = 1_000_000
 FORMS = ("auto", "automaton", "network", "file")
 """Progression may have to step at every tick; C is made of the automaton's tables."""
 
-ENGINE = ("automaton/stretch.py", "automaton/table.py", "/dataflow/", "/runtime/", "<generated")
+ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
 """The code whose calls are the steps of an engine."""
 
 

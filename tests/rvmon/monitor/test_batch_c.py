@@ -1,7 +1,6 @@
 """The engine `c`: what it refuses, and what it says where columns are missing."""
 
 import math
-import shutil
 
 import numpy as np
 import pytest
@@ -9,15 +8,7 @@ import pytest
 import rvmon
 from rvmon.errors import UnknownNameError
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    """Compiled monitors of these tests are kept for these tests."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        yield
+pytestmark = pytest.mark.compiler
 
 
 def spec_of(declared: str, owed: str) -> rvmon.Spec:

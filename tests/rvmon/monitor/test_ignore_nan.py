@@ -1,7 +1,6 @@
 """Signals that ignore NaN: by each way in, what is ignored is as if it were not there."""
 
 import math
-import shutil
 
 import numpy as np
 import pytest
@@ -41,13 +40,12 @@ ROWS = [
     (0.9, {"range": NAN, "free": 2.5, "look": True}),
     (1.5, {"range": 3.0, "free": NAN}),
 ]
-C = pytest.param("c", marks=pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler"))
+C = pytest.param("c", marks=pytest.mark.compiler)
 
 
 @pytest.fixture(params=["held", "sampled", "sampled every 100 ms"])
-def spec(request, tmp_path, monkeypatch):
+def spec(request):
     """The specification in each model of time."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     return rvmon.loads(SPEC.format(time=request.param))
 
 

@@ -11,6 +11,8 @@ import rvmon
 from rvmon.monitor.monitor import Monitor
 from rvmon.verdict.attempt import Attempt
 
+pytestmark = pytest.mark.law
+
 _SPEC = """spec s
 signal x, y : real
 event e, p, f, q

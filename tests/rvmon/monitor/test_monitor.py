@@ -7,7 +7,7 @@ import pytest
 import rvmon
 from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
 from rvmon.monitor import compile_spec
-from rvmon.monitor.compiled import ENGINES
+from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.monitor.generated import GeneratedMonitor
 from rvmon.verdict.verdict import Verdict
 
@@ -239,7 +239,7 @@ def test_code_is_generated_for_up_to_2000_requirements(count, generated):
     monitor = spec.monitor()
     assert (type(monitor) is GeneratedMonitor) == generated
     if not generated:
-        with pytest.raises(RvmonError, match="2001 requirements are more than the 2000"):
+        with pytest.raises(RvmonError, match="one of 2001 requirements, more than the 2000"):
             spec.monitor(engine="python")
         assert type(spec.monitor(only=["R7"], engine="python")) is GeneratedMonitor
     monitor.step(0, {"p": False, "e": True})

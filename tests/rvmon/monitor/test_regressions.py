@@ -1,7 +1,5 @@
 """Cases in which an engine once differed from the law, shrunk by the differential test."""
 
-import shutil
-
 import pytest
 from tests.tools.differential import disagreements
 
@@ -10,14 +8,11 @@ from rvmon.testing.case import Case
 from rvmon.testing.forms import FORMS, Maker
 from rvmon.trace.sample import Sample
 
-WITHOUT_COMPILER = shutil.which("gcc") is None
-ONLINE = [
-    pytest.param(form, marks=pytest.mark.skipif(WITHOUT_COMPILER, reason="no C compiler"))
-    if form == "c"
-    else form
+ALL = [
+    pytest.param(form, marks=pytest.mark.compiler) if form in ("c", "c rows") else form
     for form in FORMS
-    if form not in ("file", "c rows")
 ]
+ONLINE = [one for one, form in zip(ALL, FORMS, strict=True) if form not in ("file", "c rows")]
 """Forms that are told one thing after the other."""
 
 CASES = {
@@ -143,18 +138,10 @@ CASES = {
 }
 
 
-@pytest.fixture(autouse=True)
-def cache(tmp_path, monkeypatch):
-    """Compiled monitors of tests stay in the test."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-
-
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", ALL)
 @pytest.mark.parametrize("name", CASES)
 def test_forms_agree_with_the_law(name, form):
     """Each form gives the oracle's verdicts and decision instants, if it judges such a spec."""
-    if form.startswith("c") and WITHOUT_COMPILER:
-        pytest.skip("no gcc")
     time, requirement, samples, end = CASES[name]
     spec = rvmon.loads(
         f"spec s\ntime {time}\nsignal p, q : bool\nsignal unread : real stale after 1 ns\n"
@@ -165,11 +152,9 @@ def test_forms_agree_with_the_law(name, form):
     assert not disagreements(case, Maker(form))
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", ALL)
 def test_a_window_opens_between_samples_that_change_nothing(form):
     """In sampled time, `advance` into a window is no position; the sample after it is one."""
-    if form.startswith("c") and WITHOUT_COMPILER:
-        pytest.skip("no gcc")
     spec = rvmon.loads(
         "spec s\ntime sampled\nsignal p, q, r : bool\n"
         "requirement R1\n  upon p\n  then always [5 ns, 9 ns] q\n"
@@ -217,13 +202,11 @@ def test_no_source_and_many(form, count):
     assert not disagreements(case, Maker(form), online=True)
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", ALL)
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
 @pytest.mark.parametrize("sources", ["g", "h", "gh", ""])
 def test_two_events_of_which_one_has_no_source(form, time, sources):
     """A comparison over two events is false while one surely does not occur, else unknown."""
-    if form.startswith("c") and WITHOUT_COMPILER:
-        pytest.skip("no gcc")
     spec = rvmon.loads(
         f"spec s\ntime {time}\nevent g(k: int)\nevent h(m: real)\n"
         "requirement R1\n  upon start\n  then for 5 ns not g.k > h.m\n"

@@ -11,6 +11,7 @@ from rvmon.cli.judging import Options, judge
 from rvmon.readers import jsonl_blocks as module
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.jsonl_blocks import jsonl_blocks
+from rvmon.readers.source import Source
 from rvmon.trace.schema import Kind, Schema
 
 SPEC = """
@@ -69,13 +70,13 @@ def test_columns_say_what_lines_say(time, gaps, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "BLOCK", 1999)
     path = written(tmp_path / "a.jsonl", lines(1, gaps=gaps))
     spec = rvmon.loads(SPEC.format(time=time))
-    ignored = Counter()
-    report = spec.evaluate_file(path, ignored=ignored)
+    read = spec.recording(path)
+    report = spec.judge(Source(read))
     assert report == by_lines(spec, path)
     assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
     recording = spec.recording(path)
     list(recording)
-    assert list(ignored.items()) == list(recording.ignored.items())
+    assert list(read.ignored.items()) == list(recording.ignored.items())
 
 
 @pytest.mark.parametrize("until", [None, 31.4])

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from rvmon.errors import SpecError
-from rvmon.spec.checked.plain_data import restored, stored
+from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.compile import compile_text
-from rvmon.spec.compiled_cache import compile_kept
+from rvmon.spec.compiled_cache import compile_cached
 from rvmon.testing.generate_spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]
@@ -33,7 +33,7 @@ def kept_in(folder):
 def test_what_is_stored_is_restored(path):
     """A specification and its warnings are equal to what is made of their data."""
     compiled = compile_text(path.read_text(), name=str(path), directory=path.parent)
-    again = restored(stored(compiled))
+    again = from_plain(to_plain(compiled))
     assert again == compiled
     spans = [one.span for one in again[0].requirements.values() if one.span is not None]
     assert len({id(span.source) for span in spans}) <= len({span.source.name for span in spans})
@@ -43,27 +43,27 @@ def test_random_specifications_are_restored():
     """All kinds of formulas, triggers, captures and instances."""
     for seed in range(200):
         spec = random_spec(random.Random(seed), Profile())
-        assert restored(stored(spec)) == spec
+        assert from_plain(to_plain(spec)) == spec
 
 
 def test_the_second_time_it_is_read(folder):
     """The second time equals the first, warnings too, and only one file is written."""
-    first = compile_kept(TEXT)
+    first = compile_cached(TEXT)
     assert first[1]  # `f` is never read
-    assert compile_kept(TEXT) == first == compile_text(TEXT)
+    assert compile_cached(TEXT) == first == compile_text(TEXT)
     [path] = kept_in(folder)
-    other = compile_kept(TEXT.replace("x > 1 m", "x > 3 m"))
+    other = compile_cached(TEXT.replace("x > 1 m", "x > 3 m"))
     # That it is read at all: it tells what stands in the file.
     [second] = {*kept_in(folder)} - {path}
     path.write_bytes(second.read_bytes())
-    assert compile_kept(TEXT) == other
+    assert compile_cached(TEXT) == other
 
 
 def test_all_that_counts_is_told_apart(folder):
     """Another name or constant is another specification."""
-    compile_kept(TEXT)
-    compile_kept(TEXT, name="b.rv")
-    five, _ = compile_kept(TEXT, constants={"T": "5 s"})
+    compile_cached(TEXT)
+    compile_cached(TEXT, name="b.rv")
+    five, _ = compile_cached(TEXT, constants={"T": "5 s"})
     assert five == compile_text(TEXT, constants={"T": "5 s"})[0]
     assert len(kept_in(folder)) == 3
 
@@ -73,18 +73,18 @@ def test_a_damaged_file_is_of_no_account(folder, damage):
     """Whatever stands there, with a right checksum or without, the text is compiled anew."""
     import hashlib
 
-    first = compile_kept(TEXT)
+    first = compile_cached(TEXT)
     [path] = kept_in(folder)
     for content in (damage, hashlib.sha256(damage).hexdigest().encode() + b"\n" + damage):
         path.write_bytes(content)
-        assert compile_kept(TEXT) == first
+        assert compile_cached(TEXT) == first
 
 
 def test_errors_are_not_kept(folder):
     """A wrong text is told anew each time."""
     for _ in range(2):
         with pytest.raises(SpecError, match="unknown"):
-            compile_kept("requirement R\n  always nothing\n")
+            compile_cached("requirement R\n  always nothing\n")
     assert not kept_in(folder)
 
 
@@ -92,9 +92,9 @@ def test_imports_are_compiled_each_time(folder, tmp_path):
     """What is imported may change while the text that imports it stays."""
     (tmp_path / "names.rv").write_text("signal p : bool\n")
     text = 'import "names.rv"\nrequirement R\n  always p\n'
-    compile_kept(text, directory=tmp_path)
+    compile_cached(text, directory=tmp_path)
     (tmp_path / "names.rv").write_text("signal p : bool\nsignal q : bool\n")
-    spec, _ = compile_kept(text, directory=tmp_path)
+    spec, _ = compile_cached(text, directory=tmp_path)
     assert set(spec.signals) == {"p", "q"}
     assert not kept_in(folder)
 
@@ -102,5 +102,5 @@ def test_imports_are_compiled_each_time(folder, tmp_path):
 def test_it_can_be_switched_off(folder, monkeypatch):
     """Then nothing is written."""
     monkeypatch.setenv("RVMON_CACHE", "off")
-    assert compile_kept(TEXT) == compile_text(TEXT)
+    assert compile_cached(TEXT) == compile_text(TEXT)
     assert not folder.exists()

@@ -27,6 +27,8 @@ from rvmon.testing.strategies import cases
 from rvmon.testing.walk import intervals, subformulas
 from rvmon.trace.sample import Sample
 
+pytestmark = pytest.mark.law
+
 
 def some_cases(time: TimeModel, number: int = 400) -> list[Case]:
     return [case_of(seed, Profile(time=time), TraceProfile()) for seed in range(number)]

@@ -9,6 +9,8 @@ import pytest
 
 from rvmon.testing.peers.client import Peer, PeerError
 
+pytestmark = pytest.mark.process
+
 MODULE = """
 import os
 

@@ -9,22 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.dataflow.inputs import Inputs
-from rvmon.formula.numeric import operands
-from rvmon.formula.state import Leaf
-from rvmon.monitor.codegen_support import can_generate, plan_requirements
+from rvmon.monitor.codegen_support import plan_requirements
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
-from rvmon.monitor.columns.moves import moves_of
 from rvmon.monitor.columns.outages import ColumnOutages
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
-from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.health import HealthLog, holds_nan
 from rvmon.monitor.ledger import Ledger
-from rvmon.spec.checked.formula import Compare, Literal, Probe, ProbeAtom, SignalValue
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -37,12 +32,9 @@ CHUNK = 1 << 19
 
 _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
-_MOST_LEAVES = 39
-"""So many truth values fit into a number of 64 bits."""
-
 
 class ColumnJudge:
-    """Judges requirements by columns; see `columns_judge` for which.
+    """Judges requirements by columns: those that `rvmon.monitor.engines.refusal.of_columns` lets.
 
     Args:
         compiled: the specification.
@@ -57,13 +49,12 @@ class ColumnJudge:
     def __init__(
         self,
         compiled: CompiledSpec,
-        chosen: frozenset[str],
+        chosen: Sequence[str],
         ids: frozenset[str],
         names: frozenset[str],
     ) -> None:
         self.ids = ids
-        requirements = compiled.requirements
-        self._chosen = [one for name, one in requirements.items() if name in chosen]
+        self._chosen = compiled.chosen(chosen)
         own = [one for one in self._chosen if one.requirement.id in ids]
         plan = plan_requirements(compiled, own)
         self._ledger = Ledger()
@@ -169,68 +160,6 @@ class ColumnJudge:
             origin=self._health.began or 0,
             end=end,
         )
-
-
-def columns_judge(
-    compiled: CompiledSpec, only: frozenset[str], names: frozenset[str]
-) -> ColumnJudge | None:
-    """What judges by columns those requirements that can be; `None` if none can.
-
-    These have an automaton of one clock at most, in held time or where samples are the positions,
-    and ask for no updates before the last, payloads or captured values, staleness or the end.
-
-    Args:
-        compiled: the specification.
-        only: ids of the requirements.
-        names: of the columns.
-    """
-    spec = compiled.checked
-    gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
-    if spec.max_delay is not None or gap not in (None, 1):
-        return None
-    stale = {name for name in names & spec.signals.keys() if spec.signals[name].stale_after}
-    found = frozenset(
-        name
-        for name, one in compiled.requirements.items()
-        if name in only
-        and not stale & one.reads
-        and _looks_at_present(one)
-        # What judges attempts in doubt is only looked at where there are some.
-        and one.automaton is not None
-        and moves_of(one.automaton, gap) is not None
-    )
-    return ColumnJudge(compiled, only, found, names) if found else None
-
-
-def _looks_at_present(requirement: CompiledRequirement) -> bool:
-    """Whether a requirement is started by, and asks for, what rows say of the present."""
-    judged = [requirement, *(() if requirement.hidden is None else (requirement.hidden,))]
-    return (
-        can_generate(requirement)
-        and requirement.obligation.trigger is not None
-        and all(len(one.leaves) <= _MOST_LEAVES for one in judged)
-        and all(
-            _is_present(state.leaf)
-            for one in judged
-            for state, _ in one.leaves
-            if state.leaf is not None
-        )
-    )
-
-
-def _is_present(leaf: Leaf) -> bool:
-    match leaf:
-        case ProbeAtom(probe=probe):
-            return probe is not Probe.CHANGED
-        case Compare(left=left, right=right):
-            return all(
-                isinstance(part, SignalValue)
-                or (isinstance(part, Literal) and not isinstance(part.value, str))
-                for side in (left, right)
-                for part in operands(side)
-            )
-        case _:
-            return True
 
 
 def _assembled(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.formula.numeric import signals_of
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf, Lost, Missing, State, Unborn
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf, Lost, State, Unborn
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, Truth, compared, known_truth
 from rvmon.spec.checked.formula import (
@@ -96,8 +96,6 @@ class Reading:
                 return steady(known_truth(yes if value else no))
             case SignalAtom() | Compare():
                 return steady(self._born(leaf, unborn))
-            case Missing(atom=atom):
-                return steady(self._missing(atom))
             case Unborn(signals=signals):
                 return steady(known_truth(self._is_unborn(signals)))
             case Lost():
@@ -143,14 +141,6 @@ class Reading:
         may = truth.may & ~before if unborn == FALSE else truth.may
         return known_truth(must) if np.array_equal(must, may) else Truth(must, may)
 
-    def _missing(self, atom: SignalAtom | Compare) -> Truth:
-        truth = self._truth(atom)
-        if truth.known:
-            return known_truth(np.zeros(self._rows, bool))
-        lost = truth.must != truth.may
-        unborn = self._is_unborn(_signals(atom)) & lost
-        return known_truth(lost) if np.array_equal(unborn, lost) else Truth(unborn, lost)
-
     def _is_unborn(self, signals: Iterable[tuple[str, bool]]) -> Bits:
         """Per row whether some signal has had no value, or update after it, that is asked for."""
         birth = max((self._births[name] + moved for name, moved in signals), default=0)
@@ -163,8 +153,6 @@ def _signals(leaf: Leaf) -> Sequence[tuple[str, bool]]:
     match leaf:
         case SignalAtom() | Compare():
             return tuple(signals_of(leaf).items())
-        case Missing(atom=atom):
-            return tuple(signals_of(atom).items())
         case Unborn(signals=signals):
             return signals
         case _:

@@ -11,12 +11,12 @@ import numpy as np
 
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.leaves import reads
-from rvmon.formula.state import Leaf, Missing, Unborn
-from rvmon.monitor.build import build_monitor
-from rvmon.monitor.codegen_support import can_feed, plan_requirements
+from rvmon.formula.state import Leaf, Unborn
+from rvmon.monitor.codegen_support import plan_requirements
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.columns.reading import first_known
-from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.engines.registry import Asked, Engine
 from rvmon.monitor.health import HealthLog, by_name, holds_nan
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, SignalAtom
 from rvmon.spec.checked.specification import TimeModel
@@ -37,27 +37,22 @@ class RowJudge:
 
     Args:
         compiled: the specification.
+        engine: makes the monitor.
         names: of the columns; declared ones.
-        only: ids of the requirements; default all.
-        engine: `auto` or the name of one that judges samples.
+        asked: what is wanted.
     """
 
     def __init__(
-        self,
-        compiled: CompiledSpec,
-        names: Sequence[str],
-        *,
-        only: Sequence[str] | None,
-        engine: str,
+        self, compiled: CompiledSpec, engine: Engine, names: Sequence[str], asked: Asked
     ) -> None:
-        requirements = compiled.requirements.items()
-        self._chosen = [one for name, one in requirements if only is None or name in only]
+        self._chosen = compiled.chosen(asked.only)
         self._names = names
-        sources = frozenset(names)
-        self._monitor = build_monitor(compiled, only=only, engine=engine, sources=sources)
+        self._monitor = engine.online(compiled, replace(asked, sources=frozenset(names)))
         self._plan: Plan | None = None
         """Tells which rows matter; `None` if all do."""
-        if compiled.checked.time is not TimeModel.SAMPLED and all(map(can_feed, self._chosen)):
+        if compiled.checked.time is not TimeModel.SAMPLED and all(
+            one.is_fed for one in self._chosen
+        ):
             self._plan = plan_requirements(compiled, self._chosen)
         self._ignoring = compiled.checked.ignoring
         self._unknown = HealthLog()
@@ -177,8 +172,6 @@ def _truth(leaf: Leaf, columns: Columns) -> NDArray[np.int8] | None:
             values = columns[name]
             known: NDArray[np.int8] = (values == values).astype(np.int8)
             return known
-        case Missing(atom=atom):
-            return _truth(atom, columns)
         case Unborn(signals=signals) if not any(moved for _, moved in signals):
             return np.zeros(len(next(iter(columns.values()))), np.int8)
         case Compare():

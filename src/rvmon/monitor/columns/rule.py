@@ -236,8 +236,7 @@ class ColumnRule:
             until[3 * place + UNKNOWN] = None
         if self._episodes is not None and self._unborn >= 0:
             values[self._unborn] = TRUE if self._episodes.is_unborn else FALSE
-        flow = Stood(self._plan, values, since, until, {})
-        flow.origin, flow.position = timeline.origin, last
+        flow = Stood(self._plan, values, since, until, {}, last)
         opened = self._opened(self._open, outages_at)
         judge = self._witness.judge(flow, self._letters, last, opened)
         if opened and self._episodes is not None and self._open.stop[-1] == FAR:
@@ -268,8 +267,8 @@ class ColumnRule:
             values = dict(
                 zip(leaves, self._witness.unpacked(attempts.doubt_seen.item(index)), strict=True)
             )
-            flow = Stood(self._plan, values, {}, {}, outages_at(instant))
-            made.doubt = self._witness.judge(flow, (0, 0), instant, [])._doubt()
+            flow = Stood(self._plan, values, {}, {}, outages_at(instant), instant)
+            made.doubt = self._witness.judge(flow, (0, 0), instant, []).doubt
         return made
 
     def _token(self, tokens: Tokens, index: int) -> Token:

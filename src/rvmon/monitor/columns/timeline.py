@@ -43,7 +43,7 @@ class Piece:
     truths: dict[int, Truth]
 
     def seen(self, leaves: Sequence[int], places: NDArray[np.int64]) -> NDArray[np.int64]:
-        """What leaves are at each place, as `rvmon.codegen.runtime.bulk.packed` puts it.
+        """What leaves are at each place, as `rvmon.runtime.bulk.packed` puts it.
 
         Args:
             leaves: nodes that look at one position.

@@ -47,20 +47,20 @@ def _own_classes(*modules: ModuleType) -> Iterator[tuple[str, type]]:
                 yield name, one
 
 
-def stored(value: Any) -> Any:
+def to_plain(value: Any) -> Any:
     """A value as lists, numbers and texts; each source stands in it once.
 
     Raises:
         TypeError: something in it is of no class of a specification.
 
-    >>> restored(stored((1, "a", None))) == (1, "a", None)
+    >>> from_plain(to_plain((1, "a", None))) == (1, "a", None)
     True
     """
     sources: dict[int, int] = {}
-    return _stored(value, sources)
+    return _to_plain(value, sources)
 
 
-def _stored(value: Any, sources: dict[int, int]) -> Any:
+def _to_plain(value: Any, sources: dict[int, int]) -> Any:
     if value is None or type(value) in (bool, int, float, str):
         return value
     if isinstance(value, Source):
@@ -71,25 +71,25 @@ def _stored(value: Any, sources: dict[int, int]) -> Any:
     if isinstance(value, Enum) and _class_named(name) is type(value):
         return [name, value.name]
     if is_dataclass(value) and _class_named(name) is type(value):
-        return [name, *(_stored(getattr(value, one.name), sources) for one in fields(value))]
+        return [name, *(_to_plain(getattr(value, one.name), sources) for one in fields(value))]
     if isinstance(value, Mapping):
-        pairs = ([_stored(key, sources), _stored(own, sources)] for key, own in value.items())
+        pairs = ([_to_plain(key, sources), _to_plain(own, sources)] for key, own in value.items())
         return ["dict", *pairs]
     if type(value) in (tuple, frozenset):
-        return [name, *(_stored(one, sources) for one in value)]
+        return [name, *(_to_plain(one, sources) for one in value)]
     raise TypeError(f"a {name} is no part of a specification")
 
 
-def restored(data: Any) -> Any:
+def from_plain(data: Any) -> Any:
     """The value that was stored.
 
     Raises:
         ValueError, LookupError, TypeError: the data are no such value.
     """
-    return _restored(data, [])
+    return _from_plain(data, [])
 
 
-def _restored(data: Any, sources: list[Source]) -> Any:
+def _from_plain(data: Any, sources: list[Source]) -> Any:
     if not isinstance(data, list):
         return data
     name, *rest = data
@@ -97,17 +97,17 @@ def _restored(data: Any, sources: list[Source]) -> Any:
         case "same":
             return sources[rest[0]]
         case "dict":
-            return {_restored(key, sources): _restored(own, sources) for key, own in rest}
+            return {_from_plain(key, sources): _from_plain(own, sources) for key, own in rest}
         case "tuple":
-            return tuple([_restored(one, sources) for one in rest])
+            return tuple([_from_plain(one, sources) for one in rest])
         case "frozenset":
-            return frozenset(_restored(one, sources) for one in rest)
+            return frozenset(_from_plain(one, sources) for one in rest)
     class_ = _class_named(name)
     if class_ is None:
         raise LookupError(f"no class `{name}`")
     if issubclass(class_, Enum):
         return class_[rest[0]]
-    made = class_(*[_restored(one, sources) for one in rest])
+    made = class_(*[_from_plain(one, sources) for one in rest])
     if isinstance(made, Source):
         sources.append(made)
     return made

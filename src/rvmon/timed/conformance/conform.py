@@ -29,7 +29,7 @@ from rvmon.timed.zones.dbm import Zone, constrain, cut, normalise
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.symbolic import Steps
-from rvmon.timed.zones.zone_unions import Piece
+from rvmon.timed.zones.zone_unions import Constraint
 from rvmon.trace.time import TICKS_PER_UNIT
 
 RESOLUTION = TICKS_PER_UNIT["ms"]
@@ -121,7 +121,7 @@ class _Quiet:
             if constrain(fresh, dim, 0, dim - 1, float(self.latest)):
                 yield move, state, normalise(fresh)
 
-    def goal(self, _site: State, _zone: Zone) -> Piece | None:
+    def goal(self, _site: State, _zone: Zone) -> Constraint | None:
         """Nothing: all states are wanted."""
         return None
 

@@ -32,7 +32,7 @@ from rvmon.timed.observation.observer import (
     is_passed,
 )
 from rvmon.timed.observation.outcome import Observation
-from rvmon.timed.observation.propositions import Letters, NotExpressibleError
+from rvmon.timed.observation.propositions import Labelling, NotExpressibleError
 from rvmon.timed.search.explore import explore
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.problem import UNLIMITED, Budget, Node, Watch
@@ -94,14 +94,14 @@ def _observe(
     factory = Factory()
     obligation = lower(requirement, factory)
     alphabet = alphabet_of(obligation.owed)
-    letters = Letters(signals_of(network), frozenset(labels_of(network)))
+    labelling = Labelling(signals_of(network), frozenset(labels_of(network)))
     trigger = obligation.trigger
     if trigger is None:
         raise NotExpressibleError("it is judged at the end of a trace")
     if not (trigger.op is StateOp.LEAF and isinstance(trigger.leaf, BoundAtom)):
-        letters.require(trigger)
+        labelling.require(trigger)
     for proposition in alphabet.propositions:
-        letters.require(proposition)
+        labelling.require(proposition)
     try:
         automaton = construct(factory.next(obligation.owed), alphabet, TableBudget())
     except DoesNotCloseError as error:
@@ -110,10 +110,10 @@ def _observe(
     ticks = [cut for place in automaton.locations for cuts in place.cuts for cut in cuts]
     if any(tick % unit > 1 for tick in ticks) and unit % TICKS_PER_UNIT["ms"] == 0:
         network = finer(network, unit // TICKS_PER_UNIT["ms"])
-    problem = Observed(network, obligation, requirement.pulse, automaton, letters)
+    problem = Observed(network, obligation, requirement.pulse, automaton, labelling)
     first: dict[str, _Node] = {}
 
-    def tell(node: _Node) -> None:
+    def visit(node: _Node) -> None:
         if node.site.phase is not Phase.IDLE:
             first.setdefault("triggered", node)
         if is_passed(node.site):
@@ -121,7 +121,7 @@ def _observe(
         elif is_failed(node.site):
             first.setdefault("failing", node)
 
-    explore(problem, meter, tell)
+    explore(problem, meter, visit)
     runs = {name: observed_run(network, problem, node) for name, node in first.items()}
     holds: bool | None = "failing" not in first
     remark = ""

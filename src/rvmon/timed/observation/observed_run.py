@@ -17,7 +17,7 @@ from rvmon.timed.runs.timing import TimedStep
 from rvmon.timed.search.problem import Node
 from rvmon.timed.search.witness import make_run
 from rvmon.timed.zones.dbm import STRICT
-from rvmon.timed.zones.zone_unions import Piece
+from rvmon.timed.zones.zone_unions import Constraint
 
 
 def observed_run(
@@ -44,14 +44,14 @@ def _step(
 ) -> PathStep:
     """One instant; `clock_of` says which step's clock each of the monitor's clocks is."""
     state, move = here.state, link.move
-    leave: list[Piece] = [invariant_of(state)]
+    leave: list[Constraint] = [invariant_of(state)]
     if here.phase is Phase.HELD:
         held = (*problem.held(here.location, here.region), (problem.since, 0, -STRICT))
         leave.append(_renamed(held, clock_of))
     if move is not None:
         leave.append(move.guard)
     for step in link.steps:
-        leave.append(_renamed(step.piece, clock_of))
+        leave.append(_renamed(step.constraint, clock_of))
         sources = [own if s == NOW else clock_of[problem.base + s] for s in step.sources]
         clock_of.update(enumerate(sources, start=problem.base))
     resets: tuple[tuple[int, float], ...] = ((own, 0.0),)
@@ -59,10 +59,10 @@ def _step(
         clock_of[problem.since] = own
         resets = (*move.resets, *resets)
     waits = state.delays and here.phase is not Phase.FRESH
-    bounds = tuple(bound for piece in leave for bound in piece)
+    bounds = tuple(bound for constraint in leave for bound in constraint)
     timed = TimedStep(waits, bounds, resets, invariant_of(behind.state))
     return PathStep(timed, move, behind.state)
 
 
-def _renamed(piece: Piece, clock_of: dict[int, int]) -> Piece:
-    return tuple((clock_of.get(x, x), clock_of.get(y, y), bound) for x, y, bound in piece)
+def _renamed(constraint: Constraint, clock_of: dict[int, int]) -> Constraint:
+    return tuple((clock_of.get(x, x), clock_of.get(y, y), bound) for x, y, bound in constraint)

@@ -22,11 +22,11 @@ from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.timed.conformance.conform import names_of
 from rvmon.timed.model.expressions import TRUE
 from rvmon.timed.model.network import Network
-from rvmon.timed.observation.propositions import Letters, NotExpressibleError
+from rvmon.timed.observation.propositions import Labelling, NotExpressibleError
 from rvmon.timed.zones.dbm import STRICT, Zone, cut, delay, normalise, reset, zero
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.symbolic import Steps, fire, settle_in
-from rvmon.timed.zones.zone_unions import Piece
+from rvmon.timed.zones.zone_unions import Constraint
 
 MOST_STEPS = 20
 """A monitor that still moves after so many steps at one instant is moved by time itself."""
@@ -61,7 +61,7 @@ class ObservedSite:
 class MonitorStep:
     """A step of the monitor: what must hold of its clocks, and where they come from after it."""
 
-    piece: Piece
+    constraint: Constraint
     sources: tuple[int, ...]
 
 
@@ -94,7 +94,7 @@ class Observed:
         obligation: trigger and what is owed.
         pulse: whether the trigger starts an attempt wherever it holds.
         automaton: of what is owed.
-        letters: values of the propositions.
+        labelling: values of the propositions.
 
     Attributes:
         steps: of the network.
@@ -111,11 +111,11 @@ class Observed:
         obligation: Obligation,
         pulse: bool,
         automaton: Automaton,
-        letters: Letters,
+        labelling: Labelling,
     ) -> None:
         self._network = network
         self._automaton = automaton
-        self._letters = letters
+        self._labelling = labelling
         self._trigger = obligation.trigger
         self._pulse = pulse
         clocks = max(1, automaton.clocks)
@@ -136,7 +136,7 @@ class Observed:
         for state, zone in self.steps.start():
             yield self._site(state, Phase.IDLE), zone
             if self._starts_at_once(state):
-                letter = self._letters.letter(self._automaton.alphabet, state, ())
+                letter = self._labelling.letter(self._automaton.alphabet, state, ())
                 for step, target in self._stepped(self._automaton.initial, letter):
                     yield self._site(state, Phase.FRESH, target), self._moved(zero(self.dim), step)
 
@@ -170,10 +170,10 @@ class Observed:
             if not self._starts(site.state, target, labels):
                 return
         location = self._automaton.initial if site.phase is Phase.IDLE else site.location
-        letter = self._letters.letter(self._automaton.alphabet, target, labels)
+        letter = self._labelling.letter(self._automaton.alphabet, target, labels)
         for step, reached in self._stepped(location, letter):
             now = zone[:]
-            if cut(now, self.dim, (*invariant, *step.piece)):
+            if cut(now, self.dim, (*invariant, *step.constraint)):
                 now = self._moved(now, step)
                 reset(now, self.dim, self.since, 0.0)
                 link = ObservedLink(move, (step,))
@@ -185,15 +185,15 @@ class Observed:
             return False
         if isinstance(trigger.leaf, BoundAtom):
             return trigger.leaf.bound is Bound.START
-        return self._letters.truth(trigger, state, ())
+        return self._labelling.truth(trigger, state, ())
 
     def _starts(self, before: State, after: State, labels: tuple[str, ...]) -> bool:
         trigger = self._trigger
         if trigger is None or isinstance(trigger.leaf, BoundAtom):
             return False
-        if not self._letters.truth(trigger, after, labels):
+        if not self._labelling.truth(trigger, after, labels):
             return False
-        return self._pulse or not self._letters.truth(trigger, before, ())
+        return self._pulse or not self._labelling.truth(trigger, before, ())
 
     # Time.
 
@@ -201,7 +201,7 @@ class Observed:
         self, site: ObservedSite, zone: Zone
     ) -> Iterator[tuple[ObservedLink, ObservedSite, Zone]]:
         """What the monitor does as time passes: just behind an action, or at the next bound."""
-        letter = self._letters.letter(self._automaton.alphabet, site.state, ())
+        letter = self._labelling.letter(self._automaton.alphabet, site.state, ())
         instant = zone[:]
         # The monitor steps behind the instant: some time must be able to pass.
         room = [(0, clock, ceil(bound) - STRICT) for clock, bound in site.state.invariant]
@@ -226,17 +226,17 @@ class Observed:
             raise NotExpressibleError("its monitor is moved by time itself")
         for region in self._regions(location):
             now = zone[:]
-            piece = self._just_behind(location, region)
-            if not cut(now, self.dim, piece):
+            constraint = self._just_behind(location, region)
+            if not cut(now, self.dim, constraint):
                 continue
             now = normalise(now)
             target, sources = self._edge(location, region, letter)
             if target < 0:
                 continue
             if target == location and sources == tuple(range(len(sources))):
-                yield (*done, MonitorStep(piece, sources)), location, region, now
+                yield (*done, MonitorStep(constraint, sources)), location, region, now
                 continue
-            step = MonitorStep(piece, sources)
+            step = MonitorStep(constraint, sources)
             yield from self._held_steps(target, letter, self._moved(now, step), (*done, step))
 
     def _settled(self, site: ObservedSite, zone: Zone) -> Zone | None:
@@ -245,8 +245,8 @@ class Observed:
         if site.location > PASSED:
             invariant = [(0, clock, bound) for clock, bound in site.state.invariant]
             delay(inside, self.dim)
-            piece = (*self.held(site.location, site.region), (self.since, 0, -STRICT))
-            if not cut(inside, self.dim, (*invariant, *piece)):
+            constraint = (*self.held(site.location, site.region), (self.since, 0, -STRICT))
+            if not cut(inside, self.dim, (*invariant, *constraint)):
                 return None
         return normalise(inside)
 
@@ -271,7 +271,7 @@ class Observed:
     def _regions(self, location: int) -> Iterator[tuple[int, ...]]:
         return product(*(range(len(cuts) + 1) for cuts in self._cuts[location]))
 
-    def _exact(self, location: int, region: tuple[int, ...]) -> Piece:
+    def _exact(self, location: int, region: tuple[int, ...]) -> Constraint:
         """The ages in a region."""
         atoms = []
         for clock, (cuts, place) in enumerate(zip(self._cuts[location], region, strict=True)):
@@ -284,17 +284,17 @@ class Observed:
                 atoms.append((0, index, high.number - (0.0 if high.behind else STRICT)))
         return tuple(atoms)
 
-    def _just_behind(self, location: int, region: tuple[int, ...]) -> Piece:
+    def _just_behind(self, location: int, region: tuple[int, ...]) -> Constraint:
         """The ages from which any delay, however short, leads into a region."""
         return self._between(location, region, at_low=0.0, at_high=STRICT)
 
-    def held(self, location: int, region: tuple[int, ...]) -> Piece:
+    def held(self, location: int, region: tuple[int, ...]) -> Constraint:
         """The ages that time passes through in a region, up to the next bound."""
         return self._between(location, region, at_low=STRICT, at_high=0.0)
 
     def _between(
         self, location: int, region: tuple[int, ...], *, at_low: float, at_high: float
-    ) -> Piece:
+    ) -> Constraint:
         atoms = []
         for clock, (cuts, place) in enumerate(zip(self._cuts[location], region, strict=True)):
             index = self.base + clock

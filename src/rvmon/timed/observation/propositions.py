@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import assert_never
 
 from rvmon.formula.alphabet import Alphabet
-from rvmon.formula.state import FALSE, TRUE, Lapsed, Lost, Missing, StateOp, Unborn
+from rvmon.formula.state import FALSE, TRUE, Lapsed, Lost, StateOp, Unborn
 from rvmon.formula.state import State as Proposition
 from rvmon.spec.checked.formula import (
     Compare,
@@ -36,7 +36,7 @@ class NotExpressibleError(Exception):
     """A requirement speaks of what the network does not have; the message says of what."""
 
 
-class Letters:
+class Labelling:
     """Values of propositions.
 
     Args:
@@ -73,7 +73,7 @@ class Letters:
                             pass
                         case _:
                             raise NotExpressibleError("it calculates with numbers")
-            case (StateOp.LEAF, Constant() | Unborn() | Missing() | Lost() | Lapsed()) | (
+            case (StateOp.LEAF, Constant() | Unborn() | Lost() | Lapsed()) | (
                 StateOp.SURE,
                 _,
             ):
@@ -107,7 +107,7 @@ class Letters:
         match proposition.leaf:
             case Constant(value=value):
                 return value
-            case Unborn() | Missing() | Lost() | Lapsed():  # nor is anything unborn
+            case Unborn() | Lost() | Lapsed():  # nor is anything unborn
                 return False
             case SignalAtom(name=name):
                 return bool(self._read(name, state))

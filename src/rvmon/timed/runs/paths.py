@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rvmon.timed.runs.timing import TimedStep
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.stay import Crossing, StaySite, Stride
-from rvmon.timed.zones.zone_unions import EVERYWHERE, Piece
+from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +26,13 @@ class PathStep:
     state: State
 
 
-def invariant_of(state: State) -> Piece:
+def invariant_of(state: State) -> Constraint:
     """A state's invariant as bounds."""
     return tuple((0, clock, bound) for clock, bound in state.invariant)
 
 
 def move_step(
-    state: State, move: Move, leave: Piece = EVERYWHERE, enter: Piece = EVERYWHERE
+    state: State, move: Move, leave: Constraint = EVERYWHERE, enter: Constraint = EVERYWHERE
 ) -> PathStep:
     """A move, with what else must hold before and after it."""
     target = move.target
@@ -45,7 +45,7 @@ def move_step(
     return PathStep(timed, move, target)
 
 
-def mark_step(state: State, holds: Piece, resets: Sequence[int] = ()) -> PathStep:
+def mark_step(state: State, holds: Constraint, resets: Sequence[int] = ()) -> PathStep:
     """An instant at which something holds, and some clocks of the query start."""
     leave = (*invariant_of(state), *holds)
     return PathStep(
@@ -76,6 +76,6 @@ def stride_path(start: StaySite, strides: Sequence[tuple[Stride, StaySite]]) -> 
     for stride, behind in strides:
         steps += crossing_path(site, stride.crossings)
         here = stride.crossings[-1].target if stride.crossings else site
-        steps.append(move_step(here.state, stride.move, here.piece, behind.piece))
+        steps.append(move_step(here.state, stride.move, here.constraint, behind.constraint))
         site = behind
     return steps

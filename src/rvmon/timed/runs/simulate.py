@@ -25,11 +25,11 @@ from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.successors import Space
 from rvmon.timed.zones.zone_unions import (
-    Piece,
-    PieceMaker,
+    Constraint,
+    ConstraintMaker,
+    constraint_maker,
     formula_bounds,
     has_paths,
-    piece_maker,
     speaks_of_deadlock,
 )
 
@@ -94,10 +94,10 @@ def estimate(
     check_start(network)
     sought, meets, horizon = _goal(query, until)
     space = Space(network, formula_bounds(sought, network))
-    pieces = piece_maker(sought)
+    constraints = constraint_maker(sought)
     random = Random(seed)  # noqa: S311 - repeatable, not secret
     found = sum(
-        _reaches(space, pieces, horizon * GRID, random, mean_wait * GRID) for _ in range(runs)
+        _reaches(space, constraints, horizon * GRID, random, mean_wait * GRID) for _ in range(runs)
     )
     successes = found if meets else runs - found
     low, high = exact_bounds(successes, runs, confidence)
@@ -121,7 +121,7 @@ def _goal(query: Query, until: int | None) -> tuple[Expression, bool, int]:
 
 
 def _reaches(
-    space: Space, pieces: PieceMaker, horizon: int, random: Random, mean_wait: float
+    space: Space, constraints: ConstraintMaker, horizon: int, random: Random, mean_wait: float
 ) -> bool:
     """Whether one random run meets a formula within some grid steps."""
     state = space.initial()
@@ -132,8 +132,8 @@ def _reaches(
         # If nothing is left to do, time passes as long as it may.
         most = _longest(state, clocks) if drawn is None else drawn[1]
         wait = int(min(most, horizon - now))
-        here = pieces(state.vector.locations, state.values)
-        if any(_window(piece, clocks, 0, wait) is not None for piece in here):
+        here = constraints(state.vector.locations, state.values)
+        if any(_window(constraint, clocks, 0, wait) is not None for constraint in here):
             return True
         now += wait
         if drawn is None or now >= horizon:
@@ -206,7 +206,9 @@ def _move_window(move: Move, clocks: list[int], longest: float) -> tuple[int, fl
     return _window(move.guard, clocks, 0, longest)
 
 
-def _window(atoms: Piece, clocks: list[int], low: int, high: float) -> tuple[int, float] | None:
+def _window(
+    atoms: Constraint, clocks: list[int], low: int, high: float
+) -> tuple[int, float] | None:
     """The delays in [low, high] after which all bounds hold; `None` if there are none."""
     for x, y, bound in atoms:
         if x == 0:

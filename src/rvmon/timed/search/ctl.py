@@ -20,13 +20,13 @@ from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.zones.dbm import Zone, cut, is_within, normalise
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.federation import before, piece_of, subtract_all, universe
+from rvmon.timed.zones.federation import before, constraint_of, subtract_all, universe
 from rvmon.timed.zones.successors import Space
 from rvmon.timed.zones.zone_unions import (
-    Piece,
-    PieceMaker,
+    Constraint,
+    ConstraintMaker,
+    constraint_maker,
     has_paths,
-    piece_maker,
     speaks_of_deadlock,
 )
 
@@ -60,16 +60,20 @@ class Satisfaction:
         self._dim = space.dim
         self._meter = meter
         self._into = _moves_into(space, meter)
-        self._makers: dict[Expression, PieceMaker] = {}
+        self._makers: dict[Expression, ConstraintMaker] = {}
         self._reaching: dict[Expression, dict[State, Federation]] = {}
 
     def of(self, formula: Expression, state: State) -> Federation:
         """The valuations of a state that satisfy its invariant and a decidable formula."""
         if not has_paths(formula):
             if formula not in self._makers:
-                self._makers[formula] = piece_maker(formula)
-            pieces = self._makers[formula](state.vector.locations, state.values)
-            return [zone for piece in pieces if (zone := self._zone(state, piece)) is not None]
+                self._makers[formula] = constraint_maker(formula)
+            constraints = self._makers[formula](state.vector.locations, state.values)
+            return [
+                zone
+                for constraint in constraints
+                if (zone := self._zone(state, constraint)) is not None
+            ]
         match formula:
             case BinaryOperation(BinaryOp.AND, left, right):
                 return self._both(self.of(left, state), self.of(right, state))
@@ -84,17 +88,17 @@ class Satisfaction:
             case _:
                 raise AssertionError(f"{formula} is not decided here")
 
-    def _zone(self, state: State, piece: Piece) -> Zone | None:
+    def _zone(self, state: State, constraint: Constraint) -> Zone | None:
         zone = universe(self._dim)
         invariant = [(0, clock, bound) for clock, bound in state.invariant]
-        return normalise(zone) if cut(zone, self._dim, (*invariant, *piece)) else None
+        return normalise(zone) if cut(zone, self._dim, (*invariant, *constraint)) else None
 
     def _both(self, left: Federation, right: Federation) -> Federation:
         return [
             normalise(zone)
             for one in left
             for other in right
-            if cut(zone := one[:], self._dim, piece_of(other, self._dim))
+            if cut(zone := one[:], self._dim, constraint_of(other, self._dim))
         ]
 
     def _can_reach(self, body: Expression) -> dict[State, Federation]:

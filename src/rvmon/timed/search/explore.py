@@ -10,20 +10,20 @@ from itertools import count
 from rvmon.timed.search.meter import Meter, paused_collector
 from rvmon.timed.search.problem import Found, LinkT, Node, Problem, SiteT
 from rvmon.timed.zones.dbm import CoverTest, Zone, cover_test, passes
-from rvmon.timed.zones.zone_unions import Piece
+from rvmon.timed.zones.zone_unions import Constraint
 
 
 def explore(
     problem: Problem[SiteT, LinkT],
     meter: Meter,
-    tell: Callable[[Node[SiteT, LinkT]], None] | None = None,
+    visit: Callable[[Node[SiteT, LinkT]], None] | None = None,
 ) -> Found[SiteT, LinkT]:
     """Search breadth first, so that what is found is reached in the fewest steps.
 
     Args:
         problem: what to search for.
         meter: counts the states that are kept.
-        tell: called with each node that is met, also if it is not kept.
+        visit: called with each node that is met, also if it is not kept.
 
     Source: Behrmann, Bengtsson, David, Larsen, Pettersson, Yi, UPPAAL Implementation Secrets, 2002
     (one list of passed and waiting states).
@@ -31,14 +31,14 @@ def explore(
     passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
     waiting: deque[Node[SiteT, LinkT]] = deque()
     dim = problem.dim
-    found: tuple[Node[SiteT, LinkT], Piece] | None = None
+    found: tuple[Node[SiteT, LinkT], Constraint] | None = None
 
     def meet(node: Node[SiteT, LinkT]) -> bool:
         """Keep a new node unless it is covered; False ends the search."""
         nonlocal found
         site, zone = node.site, node.zone
-        if tell is not None:
-            tell(node)
+        if visit is not None:
+            visit(node)
         nodes = passed.get(site)
         if nodes is None:
             passed[site] = [node]
@@ -54,9 +54,9 @@ def explore(
                 old.covered = passes(zone, old.test or _test_of(old, dim))
             nodes[:] = [old for old in nodes if not old.covered]
             nodes.append(node)
-        piece = problem.goal(site, zone)
-        if piece is not None:
-            found = node, piece
+        constraint = problem.goal(site, zone)
+        if constraint is not None:
+            found = node, constraint
         waiting.append(node)
         return meter.count(len(waiting)) and found is None
 
@@ -71,14 +71,14 @@ def explore(
                     going = False
                     break
     meter.stored += sum(map(len, passed.values()))
-    last, piece = found or (None, None)
-    return Found(last, piece)
+    last, constraint = found or (None, None)
+    return Found(last, constraint)
 
 
 def explore_best(
     problem: Problem[SiteT, LinkT],
     cost: Callable[[float, LinkT | None, Zone], float],
-    goal_cost: Callable[[float, Zone, Piece], float],
+    goal_cost: Callable[[float, Zone, Constraint], float],
     meter: Meter,
 ) -> Found[SiteT, LinkT]:
     """Search by increasing cost, so that what is found costs least.
@@ -93,15 +93,15 @@ def explore_best(
     passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
     dim = problem.dim
     order = count()
-    heap: list[tuple[float, int, Node[SiteT, LinkT], Piece | None]] = []
-    found: tuple[Node[SiteT, LinkT], Piece] | None = None
+    heap: list[tuple[float, int, Node[SiteT, LinkT], Constraint | None]] = []
+    found: tuple[Node[SiteT, LinkT], Constraint] | None = None
     with paused_collector():
         for site, zone in problem.start():
             heappush(heap, (cost(0.0, None, zone), next(order), Node(site, zone, None, None), None))
         while heap:
-            price, _, node, piece = heappop(heap)
-            if piece is not None:
-                found = node, piece
+            price, _, node, constraint = heappop(heap)
+            if constraint is not None:
+                found = node, constraint
                 break
             nodes = passed.setdefault(node.site, [])
             test = _test_of(node, dim)
@@ -110,16 +110,16 @@ def explore_best(
             nodes.append(node)
             if not meter.count(len(heap)):
                 break
-            piece = problem.goal(node.site, node.zone)
-            if piece is not None:
-                entry = goal_cost(price, node.zone, piece), next(order), node, piece
+            constraint = problem.goal(node.site, node.zone)
+            if constraint is not None:
+                entry = goal_cost(price, node.zone, constraint), next(order), node, constraint
                 heappush(heap, entry)
             for link, site, zone in problem.successors(node.site, node.zone):
                 after = Node(site, zone, node, link)
                 heappush(heap, (cost(price, link, zone), next(order), after, None))
     meter.stored += sum(map(len, passed.values()))
-    last, piece = found or (None, None)
-    return Found(last, piece)
+    last, constraint = found or (None, None)
+    return Found(last, constraint)
 
 
 def _test_of(node: Node[SiteT, LinkT], dim: int) -> CoverTest:

@@ -139,7 +139,7 @@ class Staying:
         start, improper = way[0].stand.site, None
         for here in self._inside.stands(way[-1].stand):
             site, crossings = here.site, here.crossings
-            if not is_time_bounded(site.state) and not any(x == 0 for x, _, _ in site.piece):
+            if not is_time_bounded(site.state) and not any(x == 0 for x, _, _ in site.constraint):
                 return Escape(start, _strides(way), crossings, Ending.IDLE)
             if improper is None and self.stuck(site, here.zone):
                 improper = Escape(start, _strides(way), crossings, Ending.TIME_LOCK)
@@ -157,7 +157,7 @@ class Staying:
             return stuck
         leaving: list[Zone] = []
         invariant = [(0, clock, bound) for clock, bound in state.invariant]
-        for x, y, bound in site.piece:
+        for x, y, bound in site.constraint:
             if x == 0:
                 beyond = universe(self._dim)
                 if cut(beyond, dim, [*invariant, (y, x, negated(bound))]):

@@ -11,9 +11,9 @@ from rvmon.timed.search.ctl import Satisfaction
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.zones.dbm import Zone
 from rvmon.timed.zones.discrete import State
-from rvmon.timed.zones.federation import piece_of
+from rvmon.timed.zones.federation import constraint_of
 from rvmon.timed.zones.symbolic import Steps, meets
-from rvmon.timed.zones.zone_unions import Piece, has_paths
+from rvmon.timed.zones.zone_unions import Constraint, has_paths
 
 
 class NestedReachability(Steps):
@@ -31,15 +31,15 @@ class NestedReachability(Steps):
         self._meter = meter
         self._satisfaction = Satisfaction(self.space, meter)
 
-    def goal(self, site: State, zone: Zone) -> Piece | None:
+    def goal(self, site: State, zone: Zone) -> Constraint | None:
         """A part of the zone where the formula holds."""
         parts = self._satisfaction.of(self._formula, site)
         if self._meter.stopped:
             return None  # what the backward search has not met yet may decide otherwise
         for part in parts:
-            piece = piece_of(part, self.dim)
-            if meets(zone, self.dim, piece):
-                return piece
+            constraint = constraint_of(part, self.dim)
+            if meets(zone, self.dim, constraint):
+                return constraint
         return None
 
 

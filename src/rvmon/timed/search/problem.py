@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 from rvmon.timed.zones.dbm import CoverTest, Zone
-from rvmon.timed.zones.zone_unions import Piece
+from rvmon.timed.zones.zone_unions import Constraint
 
 
 class Site(Protocol):
@@ -53,7 +53,7 @@ class Problem(Protocol[SiteT, LinkT_co]):
         """The next symbolic states, normalised, none of them empty."""
         ...
 
-    def goal(self, site: SiteT, zone: Zone) -> Piece | None:
+    def goal(self, site: SiteT, zone: Zone) -> Constraint | None:
         """A part of the zone that is sought; `None` if the symbolic state has none."""
         ...
 
@@ -139,4 +139,4 @@ class Found(Generic[SiteT, LinkT]):
     """The end of a search: what was sought and the part of its zone, or `None` twice."""
 
     node: Node[SiteT, LinkT] | None
-    piece: Piece | None
+    constraint: Constraint | None

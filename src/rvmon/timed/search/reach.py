@@ -11,9 +11,9 @@ from rvmon.timed.runs.run import Ending
 from rvmon.timed.zones.dbm import Zone, cut, normalise
 from rvmon.timed.zones.deadlock import Deadlocks, is_time_bounded
 from rvmon.timed.zones.discrete import State
-from rvmon.timed.zones.federation import piece_of, subtract_all, universe
+from rvmon.timed.zones.federation import constraint_of, subtract_all, universe
 from rvmon.timed.zones.symbolic import Steps, meets
-from rvmon.timed.zones.zone_unions import Piece, piece_maker
+from rvmon.timed.zones.zone_unions import Constraint, constraint_maker
 
 
 class Reachability(Steps):
@@ -43,17 +43,19 @@ class Reachability(Steps):
         if not timed and within is None:
             uppers = []
         super().__init__(network, formula, len(uppers), uppers)
-        self._pieces = piece_maker(formula)
-        self._due: Piece = () if within is None else ((0, self.timer, float(within)),)
-        self._goals: dict[State, list[Piece]] = {}
+        self._constraints = constraint_maker(formula)
+        self._due: Constraint = () if within is None else ((0, self.timer, float(within)),)
+        self._goals: dict[State, list[Constraint]] = {}
 
-    def goal(self, site: State, zone: Zone) -> Piece | None:
+    def goal(self, site: State, zone: Zone) -> Constraint | None:
         """The first piece of the formula that meets the zone."""
-        pieces = self._goals.get(site)
-        if pieces is None:
-            found = self._pieces(site.vector.locations, site.values)
-            pieces = self._goals[site] = [(*piece, *self._due) for piece in found]
-        return next((piece for piece in pieces if meets(zone, self.dim, piece)), None)
+        constraints = self._goals.get(site)
+        if constraints is None:
+            found = self._constraints(site.vector.locations, site.values)
+            constraints = self._goals[site] = [(*constraint, *self._due) for constraint in found]
+        return next(
+            (constraint for constraint in constraints if meets(zone, self.dim, constraint)), None
+        )
 
 
 class DeadlockReachability(Steps):
@@ -73,12 +75,12 @@ class DeadlockReachability(Steps):
         bounds = [] if within is None else [(timer, float(within))]
         uppers = [(clock, -bound) for clock, bound in bounds]
         super().__init__(network, formula, len(bounds), uppers, bounds, bisimilar=True)
-        self._due: Piece = tuple((0, clock, bound) for clock, bound in bounds)
+        self._due: Constraint = tuple((0, clock, bound) for clock, bound in bounds)
         self._deadlocks = Deadlocks(self.space)
-        self._if_dead = piece_maker(with_deadlock(formula, value=True))
-        self._if_alive = piece_maker(with_deadlock(formula, value=False))
+        self._if_dead = constraint_maker(with_deadlock(formula, value=True))
+        self._if_alive = constraint_maker(with_deadlock(formula, value=False))
 
-    def goal(self, site: State, zone: Zone) -> Piece | None:
+    def goal(self, site: State, zone: Zone) -> Constraint | None:
         """A part of the zone where the formula holds."""
         locations, values = site.vector.locations, site.values
         dead_pieces = self._if_dead(locations, values)
@@ -87,18 +89,18 @@ class DeadlockReachability(Steps):
             return None
         dead = self._deadlocks.dead(site, zone)
         alive = subtract_all([zone], dead, self.dim) if alive_pieces else []
-        for parts, pieces in ((dead, dead_pieces), (alive, alive_pieces)):
+        for parts, constraints in ((dead, dead_pieces), (alive, alive_pieces)):
             for part in parts:
-                for piece in pieces:
-                    due = (*piece, *self._due)
+                for constraint in constraints:
+                    due = (*constraint, *self._due)
                     if meets(part, self.dim, due):
-                        return (*due, *piece_of(part, self.dim))
+                        return (*due, *constraint_of(part, self.dim))
         return None
 
-    def ending(self, site: State, piece: Piece) -> Ending:
+    def ending(self, site: State, constraint: Constraint) -> Ending:
         """How a run ends that reaches a part of a state's valuations."""
         part = universe(self.dim)
-        cut(part, self.dim, piece)
+        cut(part, self.dim, constraint)
         if not self._deadlocks.dead(site, normalise(part)):
             return Ending.REACHED
         return Ending.TIME_LOCK if is_time_bounded(site) else Ending.DEADLOCK

@@ -15,7 +15,7 @@ from rvmon.timed.zones.dbm import STRICT, Zone, cut, reset, zero
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.stay import Crossing, Inside, StaySite
 from rvmon.timed.zones.symbolic import Steps, meets
-from rvmon.timed.zones.zone_unions import EVERYWHERE, Piece, piece_maker
+from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint, constraint_maker
 
 
 class UnboundedResponse(Steps):
@@ -45,25 +45,25 @@ class UnboundedResponse(Steps):
         proper_only: bool,
     ) -> None:
         super().__init__(network, BinaryOperation(BinaryOp.AND, left, right), bisimilar=True)
-        self.inside = Inside(self.space, piece_maker(normal_form(right, positive=False)))
+        self.inside = Inside(self.space, constraint_maker(normal_form(right, positive=False)))
         self.staying = Staying(self.inside, meter, proper_only=proper_only)
         self.escape: Escape | None = None
-        self._left = piece_maker(left)
+        self._left = constraint_maker(left)
 
-    def goal(self, site: State, zone: Zone) -> Piece | None:
+    def goal(self, site: State, zone: Zone) -> Constraint | None:
         """Where `left` holds in the zone, if `right` need never come from there."""
-        for piece in self._left(site.vector.locations, site.values):
+        for constraint in self._left(site.vector.locations, site.values):
             triggered = zone[:]
-            if cut(triggered, self.dim, piece):
+            if cut(triggered, self.dim, constraint):
                 for stand in self.inside.enter(site, triggered):
                     self.escape = self.staying.find(stand)
                     if self.escape is not None:
-                        return (*piece, *stand.site.piece)
+                        return (*constraint, *stand.site.constraint)
         return None
 
 
 BoundedSite = State | StaySite
-BoundedLink = Move | Crossing | Piece
+BoundedLink = Move | Crossing | Constraint
 """A move, a crossing, or the instant at which `left` held and the time began to count."""
 
 
@@ -87,9 +87,9 @@ class BoundedResponse:
         self.steps = Steps(network, both, observers=1)
         self.dim = self.steps.dim
         self.timer = self.dim - 1
-        pieces = piece_maker(normal_form(right, positive=False))
-        self.inside = Inside(self.steps.space, pieces, [(self.timer, float(bound))])
-        self._left = None if left is None else piece_maker(left)
+        constraints = constraint_maker(normal_form(right, positive=False))
+        self.inside = Inside(self.steps.space, constraints, [(self.timer, float(bound))])
+        self._left = None if left is None else constraint_maker(left)
         self._bound = bound
 
     def start(self) -> Iterator[tuple[BoundedSite, Zone]]:
@@ -116,25 +116,25 @@ class BoundedResponse:
             return
         yield from self.steps.successors(site, zone)
         assert self._left is not None  # noqa: S101 - else no site is a discrete state
-        for piece in self._left(site.vector.locations, site.values):
+        for constraint in self._left(site.vector.locations, site.values):
             triggered = zone[:]
-            if cut(triggered, self.dim, piece):
+            if cut(triggered, self.dim, constraint):
                 reset(triggered, self.dim, self.timer, 0.0)
                 for stand in self.inside.enter(site, triggered):
-                    yield (*piece, *stand.site.piece), stand.site, stand.zone
+                    yield (*constraint, *stand.site.constraint), stand.site, stand.zone
 
-    def goal(self, site: BoundedSite, zone: Zone) -> Piece | None:
+    def goal(self, site: BoundedSite, zone: Zone) -> Constraint | None:
         """Where the bound is over, or is just met while time goes on."""
         if not isinstance(site, StaySite):
             return None
-        late: Piece = (*site.piece, (self.timer, 0, -self._bound - STRICT))
+        late: Constraint = (*site.constraint, (self.timer, 0, -self._bound - STRICT))
         if meets(zone, self.dim, late):
             return late
-        if site.piece == EVERYWHERE or not site.state.delays:
+        if site.constraint == EVERYWHERE or not site.state.delays:
             return None
         # `right` comes as soon as the bound is over: too late, if time can go on at the bound.
-        due: Piece = (
-            *site.piece,
+        due: Constraint = (
+            *site.constraint,
             (self.timer, 0, -float(self._bound)),
             *((0, clock, _below(bound)) for clock, bound in site.state.invariant),
         )

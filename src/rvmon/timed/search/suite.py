@@ -25,7 +25,7 @@ from rvmon.timed.zones.dbm import Zone
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.symbolic import Steps
-from rvmon.timed.zones.zone_unions import Piece
+from rvmon.timed.zones.zone_unions import Constraint
 
 
 class Criterion(StrEnum):
@@ -107,7 +107,7 @@ class _Tour:
                     last = edge.automaton, edge.number
             yield move, _Site(state, last), fresh
 
-    def goal(self, _site: _Site, _zone: Zone) -> Piece | None:
+    def goal(self, _site: _Site, _zone: Zone) -> Constraint | None:
         return None
 
 
@@ -136,7 +136,7 @@ def build_suite(
     meter = Meter(budget, watch)
     ways: dict[Item, _Node] = {}
 
-    def tell(node: _Node) -> None:
+    def visit(node: _Node) -> None:
         for item in _items_at(node, criterion):
             ways.setdefault(item, node)
 
@@ -144,7 +144,7 @@ def build_suite(
     if criterion is Criterion.EDGE_PAIRS:
         watched = range(len(network.automata))
     for automaton in watched:
-        explore(_Tour(network, automaton), meter, tell)
+        explore(_Tour(network, automaton), meter, visit)
         if meter.stopped:
             break
     runs = tuple(_chosen(network, ways, criterion))

@@ -35,7 +35,12 @@ from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.stay import Inside
 from rvmon.timed.zones.symbolic import Steps, lowest
-from rvmon.timed.zones.zone_unions import Piece, has_paths, piece_maker, speaks_of_deadlock
+from rvmon.timed.zones.zone_unions import (
+    Constraint,
+    constraint_maker,
+    has_paths,
+    speaks_of_deadlock,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,14 +157,14 @@ def _reach(
     """
     network, meter = question.network, question.meter
     found = explore(Reachability(network, formula, within=within), meter)
-    if found.node is None or found.piece is None:
+    if found.node is None or found.constraint is None:
         return None, None
     best = None
     if question.policy is not Policy.SHORTEST:
         best = _best(question, formula, within)
-    if best is None or best.node is None or best.piece is None:
-        return _run_to(network, found.node, found.piece), Policy.SHORTEST
-    return _run_to(network, best.node, best.piece), question.policy
+    if best is None or best.node is None or best.constraint is None:
+        return _run_to(network, found.node, found.constraint), Policy.SHORTEST
+    return _run_to(network, best.node, best.constraint), question.policy
 
 
 def _best(question: _Question, formula: Expression, within: int | None) -> Found[State, Move]:
@@ -174,21 +179,21 @@ def _best(question: _Question, formula: Expression, within: int | None) -> Found
     return explore_best(
         problem,
         lambda _before, _move, zone: lowest(zone, dim, timer),
-        lambda _before, zone, piece: _earliest_in(zone, dim, piece, timer),
+        lambda _before, zone, constraint: _earliest_in(zone, dim, constraint, timer),
         question.meter,
     )
 
 
-def _run_to(network: Network, node: Node[State, Move], piece: Piece) -> Run:
+def _run_to(network: Network, node: Node[State, Move], constraint: Constraint) -> Run:
     steps = plain_path(node)
-    if piece:
-        steps.append(mark_step(node.site, piece))
+    if constraint:
+        steps.append(mark_step(node.site, constraint))
     return make_run(network, node.path()[0].site, steps)
 
 
-def _earliest_in(zone: Zone, dim: int, piece: Piece, timer: int) -> float:
+def _earliest_in(zone: Zone, dim: int, constraint: Constraint, timer: int) -> float:
     inside = zone[:]
-    cut(inside, dim, piece)
+    cut(inside, dim, constraint)
     return lowest(inside, dim, timer)
 
 
@@ -201,11 +206,11 @@ def _unlikeliness(before: float, move: Move | None, _zone: Zone) -> float:
 def _reach_deadlock(question: _Question, formula: Expression, within: int | None) -> Run | None:
     problem = DeadlockReachability(question.network, formula, within=within)
     found = explore(problem, question.meter)
-    if found.node is None or found.piece is None:
+    if found.node is None or found.constraint is None:
         return None
     last = found.node.site
-    steps = [*plain_path(found.node), mark_step(last, found.piece)]
-    start, ending = found.node.path()[0].site, problem.ending(last, found.piece)
+    steps = [*plain_path(found.node), mark_step(last, found.constraint)]
+    start, ending = found.node.path()[0].site, problem.ending(last, found.constraint)
     return make_run(question.network, start, steps, ending)
 
 
@@ -226,8 +231,8 @@ def _reach_nested(
             problem = NestedReachability(network, together(parts), meter)
             found = explore(problem, meter)
             run = None
-            if found.node is not None and found.piece is not None:
-                run = _run_to(network, found.node, found.piece)
+            if found.node is not None and found.constraint is not None:
+                run = _run_to(network, found.node, found.constraint)
         else:
             first = together(part for part in parts if part is not lasting)
             away = normal_form(lasting.body, positive=False)
@@ -250,7 +255,7 @@ def _avoidance(question: _Question, formula: Expression, bound: int | None) -> R
             return run
     for proper_only in (True, False):
         steps = Steps(network, formula)
-        inside = Inside(steps.space, piece_maker(formula))
+        inside = Inside(steps.space, constraint_maker(formula))
         staying = Staying(inside, meter, proper_only=proper_only)
         state = steps.space.initial()
         assert state is not None  # noqa: S101 - the network can start
@@ -276,8 +281,8 @@ def _unanswered(
     for proper_only in (True, False):
         problem = UnboundedResponse(network, left, right, meter, proper_only=proper_only)
         found = explore(problem, meter)
-        if found.node is not None and found.piece is not None and problem.escape is not None:
-            stem = [*plain_path(found.node), mark_step(found.node.site, found.piece)]
+        if found.node is not None and found.constraint is not None and problem.escape is not None:
+            stem = [*plain_path(found.node), mark_step(found.node.site, found.constraint)]
             start = found.node.path()[0].site
             return _escape_run(network, start, problem.escape, problem.staying, stem, problem.dim)
         if meter.stopped or not problem.staying.met_improper:
@@ -287,11 +292,11 @@ def _unanswered(
 
 def _late_run(network: Network, problem: BoundedResponse, meter: Meter) -> Run | None:
     found = explore(problem, meter)
-    if found.node is None or found.piece is None:
+    if found.node is None or found.constraint is None:
         return None
     steps = bounded_path(found.node, problem.timer)
     last = found.node.site
-    steps.append(mark_step(state_of(last), found.piece))
+    steps.append(mark_step(state_of(last), found.constraint))
     return make_run(network, state_of(found.node.path()[0].site), steps)
 
 

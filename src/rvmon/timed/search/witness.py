@@ -23,7 +23,7 @@ from rvmon.timed.search.problem import Node
 from rvmon.timed.search.respond import BoundedLink, BoundedSite
 from rvmon.timed.zones.dbm import Zone, cut, delay, normalise, reset, zero
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.federation import piece_of
+from rvmon.timed.zones.federation import constraint_of
 from rvmon.timed.zones.stay import Crossing, StaySite
 from rvmon.timed.zones.zone_unions import EVERYWHERE
 
@@ -51,8 +51,8 @@ def bounded_path(node: Node[BoundedSite, BoundedLink], timer: int) -> list[PathS
         here, link, behind = before.site, after.link, after.site
         match link:
             case Move():
-                leave = here.piece if isinstance(here, StaySite) else EVERYWHERE
-                enter = behind.piece if isinstance(behind, StaySite) else EVERYWHERE
+                leave = here.constraint if isinstance(here, StaySite) else EVERYWHERE
+                enter = behind.constraint if isinstance(behind, StaySite) else EVERYWHERE
                 steps.append(move_step(state_of(here), link, leave, enter))
             case Crossing():
                 assert isinstance(here, StaySite)  # noqa: S101 - crossings join pieces
@@ -82,9 +82,9 @@ def escape_path(
         zone = zone_after(steps, dim)
         if last.state.delays:
             delay(zone, dim)
-            cut(zone, dim, (*invariant_of(last.state), *last.piece))
+            cut(zone, dim, (*invariant_of(last.state), *last.constraint))
         stuck = staying.stuck(last, normalise(zone))
-        steps.append(mark_step(last.state, piece_of(stuck[0], dim)))
+        steps.append(mark_step(last.state, constraint_of(stuck[0], dim)))
     return steps
 
 

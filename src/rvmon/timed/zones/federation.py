@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from math import inf
 
 from rvmon.timed.zones.dbm import STRICT, Zone, constrain, normalise
-from rvmon.timed.zones.zone_unions import Piece
+from rvmon.timed.zones.zone_unions import Constraint
 
 
 def universe(dim: int) -> Zone:
@@ -62,7 +62,7 @@ def subtract_all(zones: Iterable[Zone], others: Sequence[Zone], dim: int) -> lis
     return left
 
 
-def piece_of(zone: Zone, dim: int) -> Piece:
+def constraint_of(zone: Zone, dim: int) -> Constraint:
     """A zone as a conjunction of bounds."""
     return tuple(
         (x, y, zone[x * dim + y])

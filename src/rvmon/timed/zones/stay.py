@@ -14,7 +14,7 @@ from rvmon.timed.zones.dbm import Zone, cut, delay, normalise
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.successors import Space
 from rvmon.timed.zones.symbolic import fire, settle_in
-from rvmon.timed.zones.zone_unions import EVERYWHERE, Piece, PieceMaker
+from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint, ConstraintMaker
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,7 +22,7 @@ class StaySite:
     """A discrete state and one piece of the formula; one object for each."""
 
     state: State
-    piece: Piece
+    constraint: Constraint
     uppers: Sequence[tuple[int, float]]
     lowers: Sequence[tuple[int, float]]
 
@@ -37,8 +37,8 @@ class Crossing:
         target: the site behind.
     """
 
-    leave: Piece
-    enter: Piece
+    leave: Constraint
+    enter: Constraint
     target: StaySite
 
 
@@ -64,15 +64,15 @@ class Inside:
 
     Args:
         space: the discrete states.
-        pieces: of the formula.
+        constraints: of the formula.
         lowers: bounds of further clocks that matter while inside.
     """
 
     def __init__(
-        self, space: Space, pieces: PieceMaker, lowers: Sequence[tuple[int, float]] = ()
+        self, space: Space, constraints: ConstraintMaker, lowers: Sequence[tuple[int, float]] = ()
     ) -> None:
         self.space = space
-        self._pieces = pieces
+        self._constraints = constraints
         self._lowers = tuple(lowers)
         self._sites: dict[State, list[StaySite]] = {}
         self._crossings: dict[StaySite, list[Crossing]] = {}
@@ -82,8 +82,8 @@ class Inside:
         sites = self._sites.get(state)
         if sites is None:
             sites = self._sites[state] = [
-                StaySite(state, piece, state.uppers, (*state.lowers, *self._lowers))
-                for piece in self._pieces(state.vector.locations, state.values)
+                StaySite(state, constraint, state.uppers, (*state.lowers, *self._lowers))
+                for constraint in self._constraints(state.vector.locations, state.values)
             ]
         return sites
 
@@ -98,15 +98,15 @@ class Inside:
         """The part of a zone in a piece, with the delays that stay in it; `None` if empty."""
         dim, state = self.space.dim, site.state
         inside = zone[:]
-        if site.piece == EVERYWHERE:
+        if site.constraint == EVERYWHERE:
             return normalise(inside) if settle_in(state, inside, dim) else None
         invariant = [(0, clock, bound) for clock, bound in state.invariant]
-        if not (cut(inside, dim, site.piece) and cut(inside, dim, invariant)):
+        if not (cut(inside, dim, site.constraint) and cut(inside, dim, invariant)):
             return None
         if state.delays:
             delay(inside, dim)
             # A piece is convex, so that who starts and ends a wait in it never left it.
-            if not (cut(inside, dim, invariant) and cut(inside, dim, site.piece)):
+            if not (cut(inside, dim, invariant) and cut(inside, dim, site.constraint)):
                 return None
         return normalise(inside)
 
@@ -145,7 +145,7 @@ class Inside:
         if not all(cut(moved, dim, atoms) for atoms in parts):
             return None
         delay(moved, dim)
-        if not (cut(moved, dim, invariant) and cut(moved, dim, crossing.target.piece)):
+        if not (cut(moved, dim, invariant) and cut(moved, dim, crossing.target.constraint)):
             return None
         return normalise(moved)
 
@@ -159,21 +159,21 @@ class Inside:
         crossings = self._crossings.get(site)
         if crossings is None:
             crossings = []
-            if site.state.delays and site.piece != EVERYWHERE:
+            if site.state.delays and site.constraint != EVERYWHERE:
                 for other in self.sites(site.state):
                     if other is not site:
                         # The last instant in the one may be missing, or the first in the other.
-                        crossings.append(Crossing(_until(site.piece), other.piece, other))
-                        crossings.append(Crossing(site.piece, _since(other.piece), other))
+                        crossings.append(Crossing(_until(site.constraint), other.constraint, other))
+                        crossings.append(Crossing(site.constraint, _since(other.constraint), other))
             self._crossings[site] = crossings
         return crossings
 
 
-def _until(piece: Piece) -> Piece:
+def _until(constraint: Constraint) -> Constraint:
     """A piece with the instants at which time leaves it."""
-    return tuple((x, y, float(ceil(b)) if x == 0 else b) for x, y, b in piece)
+    return tuple((x, y, float(ceil(b)) if x == 0 else b) for x, y, b in constraint)
 
 
-def _since(piece: Piece) -> Piece:
+def _since(constraint: Constraint) -> Constraint:
     """A piece with the instants behind which time enters it."""
-    return tuple((x, y, float(ceil(b)) if y == 0 else b) for x, y, b in piece)
+    return tuple((x, y, float(ceil(b)) if y == 0 else b) for x, y, b in constraint)

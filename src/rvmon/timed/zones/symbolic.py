@@ -9,7 +9,7 @@ from rvmon.timed.model.network import Network
 from rvmon.timed.zones.dbm import Zone, constrain, cut, delay_within, normalise, reset, zero
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import Piece, formula_bounds, has_strict_bounds
+from rvmon.timed.zones.zone_unions import Constraint, formula_bounds, has_strict_bounds
 
 
 class Steps:
@@ -86,9 +86,9 @@ def settle_in(state: State, zone: Zone, dim: int) -> bool:
     return all(constrain(zone, dim, 0, clock, bound) for clock, bound in state.invariant)
 
 
-def meets(zone: Zone, dim: int, piece: Piece) -> bool:
+def meets(zone: Zone, dim: int, constraint: Constraint) -> bool:
     """Whether some valuation of a zone lies in a piece."""
-    return not piece or cut(zone[:], dim, piece)
+    return not constraint or cut(zone[:], dim, constraint)
 
 
 def lowest(zone: Zone, dim: int, clock: int) -> float:

@@ -22,16 +22,16 @@ from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds
 from rvmon.timed.zones.compile import atoms_of
 from rvmon.timed.zones.dbm import Atom
 
-Piece = tuple[Atom, ...]
-"""Bounds that hold together; the empty one holds everywhere."""
+Constraint = tuple[Atom, ...]
+"""A convex piece of a union: bounds that hold together; the empty one holds everywhere."""
 
-PieceMaker = Callable[[Locations, Values], list[Piece]]
+ConstraintMaker = Callable[[Locations, Values], list[Constraint]]
 """The pieces of a formula in a discrete state; none: it holds nowhere there."""
 
-EVERYWHERE: Piece = ()
+EVERYWHERE: Constraint = ()
 
 
-def piece_maker(formula: Expression) -> PieceMaker:
+def constraint_maker(formula: Expression) -> ConstraintMaker:
     """Make a function that gives the pieces of a formula.
 
     Args:
@@ -45,31 +45,31 @@ def piece_maker(formula: Expression) -> PieceMaker:
             atoms = atoms_of((formula,), None)
             return lambda locations, values: [tuple(atoms(locations, values))]
         case BinaryOperation(BinaryOp.AND, left, right):
-            return _both(piece_maker(left), piece_maker(right))
+            return _both(constraint_maker(left), constraint_maker(right))
         case BinaryOperation(BinaryOp.OR, left, right):
-            return _either(piece_maker(left), piece_maker(right))
+            return _either(constraint_maker(left), constraint_maker(right))
         case _:
             raise AssertionError(f"{formula} is not normalised")
 
 
-def _both(left: PieceMaker, right: PieceMaker) -> PieceMaker:
-    def pieces(locations: Locations, values: Values) -> list[Piece]:
+def _both(left: ConstraintMaker, right: ConstraintMaker) -> ConstraintMaker:
+    def constraints(locations: Locations, values: Values) -> list[Constraint]:
         firsts = left(locations, values)
         seconds = right(locations, values) if firsts else []
         return [(*first, *second) for first in firsts for second in seconds]
 
-    return pieces
+    return constraints
 
 
-def _either(left: PieceMaker, right: PieceMaker) -> PieceMaker:
-    def pieces(locations: Locations, values: Values) -> list[Piece]:
+def _either(left: ConstraintMaker, right: ConstraintMaker) -> ConstraintMaker:
+    def constraints(locations: Locations, values: Values) -> list[Constraint]:
         firsts = left(locations, values)
         if EVERYWHERE in firsts:
             return [EVERYWHERE]
         seconds = right(locations, values)
         return [EVERYWHERE] if EVERYWHERE in seconds else [*firsts, *seconds]
 
-    return pieces
+    return constraints
 
 
 def compares_of(formula: Expression) -> Iterator[ClockCompare]:

@@ -5,12 +5,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from tests.tools.filled import BlockRecording
 
 import rvmon
-from rvmon.monitor import batch
-from rvmon.monitor.batch import evaluate_plain
 from rvmon.monitor.columns import drive
 from rvmon.monitor.columns.records import JudgedAttempts
+from rvmon.monitor.engines import auto
+from rvmon.readers.blocks import Block
+from rvmon.readers.source import Source
 
 SPEC = """
 spec watch "A base"
@@ -73,13 +75,10 @@ def test_blocks_of_any_size_say_what_a_monitor_says(time, few, monkeypatch):
     names = [name for name in columns if name != "t_ns"]
     for size in (7, 400, 5000):
         blocks = [
-            (columns["t_ns"][at : at + size], {n: columns[n][at : at + size] for n in names})
+            Block(columns["t_ns"][at : at + size], {n: columns[n][at : at + size] for n in names})
             for at in range(0, 1500, size)
         ]
-        report = evaluate_plain(
-            spec._compiled, names, lambda own=blocks: own, only=None, engine="auto", until=end
-        )
-        assert report is not None
+        report = spec.judge(Source(BlockRecording(blocks), end))
         assert isinstance(report.attempts, JudgedAttempts)
         assert [*report.attempts] == [*expected.attempts]
         assert report == expected
@@ -126,10 +125,10 @@ def test_whole_numbers_beyond_doubles_are_judged_one_by_one():
 def test_few_rows_are_judged_as_many_are():
     """The report is the same on both sides of the number from which on arrays are used."""
     spec = rvmon.loads(SPEC.format(time="held"))
-    for rows in (batch.FEW_ROWS - 1, batch.FEW_ROWS):
+    for rows in (auto.FEW_ROWS - 1, auto.FEW_ROWS):
         columns = recording(4, rows)
         report = spec.evaluate(columns, time="t_ns")
-        assert isinstance(report.attempts, JudgedAttempts) is (rows == batch.FEW_ROWS)
+        assert isinstance(report.attempts, JudgedAttempts) is (rows == auto.FEW_ROWS)
         assert report == of_a_monitor(spec, columns, int(columns["t_ns"][-1]))
 
 
@@ -186,13 +185,10 @@ def test_what_left_an_attempt_open_is_told_with_its_stretch(case, size):
     x = np.append([np.nan if value is None else value for value in values], np.full(1500, 5.0))
     columns = {"t_ns": t, "x": x, "e": t == 0}
     blocks = [
-        (t[at : at + size], {name: columns[name][at : at + size] for name in ("x", "e")})
+        Block(t[at : at + size], {name: columns[name][at : at + size] for name in ("x", "e")})
         for at in range(0, len(t), size)
     ]
-    report = evaluate_plain(
-        spec._compiled, ["x", "e"], lambda: blocks, only=None, engine="auto", until=None
-    )
-    assert report is not None
+    report = spec.judge(Source(BlockRecording(blocks)))
     assert isinstance(report.attempts, JudgedAttempts)
     assert report.attempts[0].reason == f"left open by the input: `x` {told}"
     assert report == of_a_monitor(spec, columns, int(t[-1]))
@@ -204,10 +200,10 @@ def test_each_stretch_of_excess_is_a_failure_in_any_blocks(rows):
     spec = rvmon.loads("spec s\nsignal v : real\nrequirement R1\n  always v <= 1\n")
     values = np.tile([0.0, 0.0, 2.0, 2.0, 0.0], 1000)
     times = np.arange(5000) * 1_000_000
-    blocks = [(times[at : at + rows], {"v": values[at : at + rows]}) for at in range(0, 5000, rows)]
-    report = evaluate_plain(
-        spec._compiled, ["v"], lambda: blocks, only=None, engine="auto", until=None
-    )
+    blocks = [
+        Block(times[at : at + rows], {"v": values[at : at + rows]}) for at in range(0, 5000, rows)
+    ]
+    report = spec.judge(Source(BlockRecording(blocks)))
     assert isinstance(report.attempts, JudgedAttempts)
     assert report.counts["R1"] == {"P": 1, "F": 1000, "I": 0}
     failed = [attempt for attempt in report.attempts if attempt.verdict == "F"]

@@ -9,6 +9,8 @@ from rvmon.timed.language.load import loads_network
 from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.verify import verify
 
+pytestmark = pytest.mark.law
+
 
 @pytest.mark.parametrize("first", range(0, 60, 6))
 def test_answers_agree_and_runs_are_runs(first):

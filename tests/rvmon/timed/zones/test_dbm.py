@@ -3,6 +3,7 @@
 from fractions import Fraction
 from itertools import product
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -19,6 +20,8 @@ from rvmon.timed.zones.dbm import (
     reset,
 )
 from rvmon.timed.zones.federation import before, subtract, universe
+
+pytestmark = pytest.mark.law
 
 repeatable = settings(deadline=None, derandomize=True)
 

@@ -1,0 +1,239 @@
+"""One function done on many tasks, in this process or in several; the results keep their order."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import threading
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from heapq import heappop, heappush
+from itertools import islice
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rvmon.errors import RvmonError, WorkerLostError
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+    from multiprocessing.process import BaseProcess
+
+_Task = TypeVar("_Task")
+_Result = TypeVar("_Result")
+
+MOST_TASKS = 256
+"""Tasks that a worker is given at a time, at most."""
+
+
+def execute(
+    tasks: Iterable[_Task],
+    begin: Callable[[], Callable[[_Task], _Result]],
+    *,
+    jobs: int,
+    what: str = "task",
+) -> Generator[_Result, None, None]:
+    """Do tasks, shared among processes; the results come in the order of the tasks.
+
+    The processes are begun, by the thread that asks for them, for the first result. They end with
+    the last result, with the iterator, by an interrupt, and with this process, however it ends.
+    Tasks go to them in chunks: of so many as take about 0.1 s, so that a task which takes longer
+    holds up no others.
+
+    Args:
+        tasks: taken from as processes have time; for several processes what can be pickled.
+        begin: called once in each process, before its first task; what it returns does a task.
+            Where processes are not forked, it is pickled, once for each.
+        jobs: processes at most; 1: this process does all.
+        what: the word for a task in messages.
+
+    Raises:
+        WorkerLostError: a process was ended from outside; the task that it had is named.
+        RvmonError: a task cannot be pickled, or no process be begun.
+        Exception: what `begin`, a task, or taking the next of `tasks` raised. As for the others,
+            the results of all tasks before have been given out.
+
+    >>> list(execute([1, 2, 3], lambda: abs, jobs=1))
+    [1, 2, 3]
+    """
+    if jobs > 1:
+        pool = _Pool(tasks, begin, jobs, what)
+        try:
+            yield from pool.results()
+        finally:
+            pool.end()
+        return
+    work = begin()
+    for task in tasks:
+        yield work(task)
+
+
+@dataclass(eq=False, slots=True)
+class _Worker:
+    """A process that works, seen from here.
+
+    Attributes:
+        process: itself.
+        connection: to it.
+        tasks: number and pickle of those that it has and did not answer, ascending.
+        given: tasks of its last chunk.
+        size: tasks of its next chunk.
+    """
+
+    process: BaseProcess
+    connection: Connection
+    tasks: deque[tuple[int, bytes]] = field(default_factory=deque)
+    given: int = 0
+    size: int = 1
+
+
+class _Pool:
+    """Workers, what they have, and what they have done; `execute` says what the arguments are."""
+
+    def __init__(
+        self,
+        tasks: Iterable[Any],
+        begin: Callable[[], Callable[[Any], Any]],
+        jobs: int,
+        what: str,
+    ) -> None:
+        import multiprocessing
+
+        self._tasks = iter(tasks)
+        self._begin = begin
+        self._jobs = jobs
+        self._what = what
+        self._context = multiprocessing.get_context()
+        self._workers: list[_Worker] = []
+        self._taken = 0
+        self._returned: list[tuple[int, bytes]] = []
+        self._done: dict[int, bytes | Exception] = {}
+
+    def end(self) -> None:
+        """End all processes at once, whatever they do."""
+        for worker in self._workers:
+            worker.process.kill()
+            worker.connection.close()
+        for worker in self._workers:
+            worker.process.join()
+
+    def results(self) -> Iterator[Any]:
+        """The results in order."""
+        from multiprocessing.connection import wait
+
+        number = 0
+        while True:
+            self._share()
+            if number in self._done:
+                result = self._done.pop(number)
+                if isinstance(result, Exception):
+                    raise result
+                yield pickle.loads(result)  # noqa: S301 - from a process that was begun here
+                number += 1
+                continue
+            busy: dict[Any, _Worker] = {one.connection: one for one in self._workers if one.tasks}
+            if not busy:
+                return
+            for connection in wait(busy):
+                self._take(busy[connection])
+
+    def _share(self) -> None:
+        """Give tasks to all workers that have none; if there are more, to further ones."""
+        resting = [one for one in self._workers if not one.tasks]
+        while resting or len(self._workers) < self._jobs:
+            chunk = list(islice(self._left(), resting[-1].size if resting else 1))
+            if not chunk:
+                return
+            worker = resting.pop() if resting else self._begun()
+            worker.tasks.extend(chunk)
+            worker.given = len(chunk)
+            with suppress(OSError):  # it was ended: no answer will say so
+                worker.connection.send([task for _, task in chunk])
+
+    def _begun(self) -> _Worker:
+        from rvmon.execute.worker import serve
+
+        # A signal at the death of the parent comes when its thread ends; the main one is the last.
+        forked = self._context.get_start_method() != "forkserver"
+        is_main = threading.current_thread() is threading.main_thread()
+        parent = os.getpid() if forked and is_main else None
+        here, there = self._context.Pipe()
+        arguments = (there, here, self._begin, parent)
+        process = self._context.Process(target=serve, args=arguments, daemon=True)
+        try:
+            with _without_interrupts():
+                process.start()
+        except OSError as error:
+            told = f"no process can be begun ({error.strerror}): use fewer (jobs)"
+            raise RvmonError(told) from None
+        there.close()
+        self._workers.append(_Worker(process, here))
+        return self._workers[-1]
+
+    def _left(self) -> Iterator[tuple[int, bytes]]:
+        """The tasks that no worker has, ascending."""
+        while self._returned:
+            yield heappop(self._returned)
+        try:
+            for task in self._tasks:
+                packed = self._packed(task)
+                self._taken += 1
+                yield self._taken - 1, packed
+        except Exception as error:  # noqa: BLE001 - raised in its turn
+            self._fail(self._taken, error)
+
+    def _packed(self, task: Any) -> bytes:
+        try:
+            return pickle.dumps(task)
+        except (pickle.PicklingError, TypeError, AttributeError) as error:
+            raise RvmonError(
+                f"{self._what} {self._taken + 1} cannot be given to another process ({error}): "
+                "use one process (jobs)"
+            ) from None
+
+    def _take(self, worker: _Worker) -> None:
+        """Take an answer of a worker, or that there will be none."""
+        number = worker.tasks[0][0]
+        try:
+            failed, is_last, result = worker.connection.recv()
+        except (EOFError, OSError):
+            told = (
+                f"the process that had {self._what} {number + 1} was ended from outside, as "
+                "systems do when memory runs out: use fewer processes (jobs)"
+            )
+            self._fail(number, WorkerLostError(told))
+            self._workers.remove(worker)
+            worker.process.join()
+            return
+        worker.tasks.popleft()
+        if failed:
+            self._fail(number, pickle.loads(result))  # noqa: S301 - as above
+        else:
+            self._done[number] = result
+        if is_last:
+            done = worker.given - len(worker.tasks)
+            worker.size = done if worker.tasks else min(2 * done, MOST_TASKS)
+            while worker.tasks:
+                heappush(self._returned, worker.tasks.pop())
+
+    def _fail(self, number: int, error: Exception) -> None:
+        """A task has no result: what comes behind it is not begun."""
+        self._done[number] = error
+        self._tasks = iter(())
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Processes that are begun here ignore Ctrl-C from their first instruction on: it waits.
+
+    It reaches all processes of a terminal, and this one decides.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    known = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, known)

@@ -1,0 +1,47 @@
+"""The engine `auto`: for each requirement the fastest that does not refuse it."""
+
+from __future__ import annotations
+
+from rvmon.monitor.columns.leaves import NotByColumnsError
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.engines.columns import judge_columns
+from rvmon.monitor.engines.python import generated_or_tables
+from rvmon.monitor.engines.registry import Asked
+from rvmon.monitor.engines.rows import columns_of, judge_columns_by_rows, judge_samples
+from rvmon.monitor.monitor import Monitor
+from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.source import Source
+from rvmon.verdict.report import Report
+
+FEW_ROWS = 1000
+"""So many rows are judged sooner one by one than by arrays."""
+
+
+class Auto:
+    """Judges everything that any engine judges with reasons."""
+
+    name = "auto"
+
+    def refuses(self, requirement: CompiledRequirement) -> None:
+        """Nothing."""
+
+    def online(self, compiled: CompiledSpec, asked: Asked) -> Monitor:
+        """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
+        return generated_or_tables(compiled, compiled.chosen(asked.only), self.name, asked)
+
+    def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+        """By arrays, else of columns the rows that matter, else each sample."""
+        try:
+            columns = columns_of(compiled, source, asked)
+            try:
+                if columns.rows is not None and columns.rows < FEW_ROWS:
+                    raise NotByColumnsError("the rows are few")
+                return judge_columns(compiled, columns, asked, source.end, beside=self)
+            except NotByColumnsError:
+                return judge_columns_by_rows(self, compiled, columns, asked, source.end)
+        except NotPlainError:
+            return judge_samples(self, compiled, source, asked)
+
+
+ENGINES = {"auto": Auto()}

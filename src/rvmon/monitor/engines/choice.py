@@ -1,0 +1,70 @@
+"""What `auto` takes for a requirement, and why: the fastest engine that does not refuse it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.engines import refusal
+from rvmon.monitor.engines.refusal import Refusal
+
+
+@dataclass(frozen=True, slots=True)
+class EngineChoice:
+    """What `auto` takes for a requirement.
+
+    Attributes:
+        online: the engine that judges it in a stream, and in recordings sample by sample.
+        recording: the engine that judges it in a recording of plain columns.
+        refused: by name of a faster engine, or of `c`, why not that.
+    """
+
+    online: str
+    recording: str
+    refused: Mapping[str, Refusal]
+
+
+def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineChoice]:
+    """What `auto` takes, by id.
+
+    Never `c`, which needs a compiler and gives no reasons: what refuses it is told for those who
+    may ask for it.
+
+    Args:
+        requirements: that are judged together.
+    """
+    return {one.requirement.id: _choice(one, len(requirements)) for one in requirements}
+
+
+def _choice(one: CompiledRequirement, count: int) -> EngineChoice:
+    online, refused = _online(one, count)
+    of_columns, of_c = refusal.of_columns(one), refusal.of_c(one)
+    told = {"columns": of_columns, **refused, "c": of_c}
+    return EngineChoice(
+        online,
+        "columns" if of_columns is None else online,
+        {name: reason for name, reason in told.items() if reason is not None},
+    )
+
+
+def judged_by(requirements: Sequence[CompiledRequirement]) -> str:
+    """The engines that `auto` takes in a stream, as reports say them.
+
+    Args:
+        requirements: that are judged together.
+    """
+    found = {_online(one, len(requirements))[0] for one in requirements}
+    return ", ".join(sorted(found, key=("python", "automaton", "network").index))
+
+
+def _online(one: CompiledRequirement, count: int) -> tuple[str, dict[str, Refusal]]:
+    """The engine, and why not a faster one."""
+    many = refusal.too_many(count) if count > refusal.MOST_GENERATED else None
+    of_python = refusal.of_generated(one) or many
+    if of_python is None:
+        return "python", {}
+    of_automaton = refusal.of_automaton(one)
+    if of_automaton is None:
+        return "automaton", {"python": of_python}
+    return "network", {"python": of_python, "automaton": of_automaton}

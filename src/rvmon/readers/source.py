@@ -1,0 +1,102 @@
+"""A finished trace as engines take it: samples, and columns or the reason why there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import chain, takewhile
+from typing import Any
+
+from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.trace.sample import Recording, Sample
+
+Fillable = Callable[[], frozenset[str]]
+"""Gives the names of which "no update" may be read as what was there before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """The columns of a recording.
+
+    Attributes:
+        names: declared ones.
+        rows: how many there are; `None` if nobody has counted.
+        read: gives the blocks, from the first on, at each call.
+    """
+
+    names: tuple[str, ...]
+    rows: int | None
+    read: Callable[[], Iterator[Block]]
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A finished trace, and how it is to be taken.
+
+    Attributes:
+        recording: gives samples; one that has columns has `blocks` as well, and `row_count` if it
+            knows that: see `rvmon.readers.recording.FileRecording`.
+        until: the end of the trace in ticks, if it is not its last sample.
+        is_cut: whether what comes after that end is left out.
+        row_by_row: why columns are not to be looked at; empty if they may be.
+        read: gives the samples of the recording.
+        is_alone: whether this process judges nothing else, so that what is imported for it counts.
+    """
+
+    recording: Recording
+    until: int | None = None
+    is_cut: bool = False
+    row_by_row: str = ""
+    read: Callable[[Any], Iterable[Sample]] = iter
+    is_alone: bool = False
+
+    @property
+    def names(self) -> frozenset[str] | None:
+        """The signals and events that have a source; `None`: all."""
+        return self.recording.names
+
+    @property
+    def end(self) -> int | None:
+        """The end of the trace in ticks; `None`: its last sample."""
+        return self.recording.end if self.until is None else self.until
+
+    def samples(self, *, ordered: bool) -> Iterator[Sample]:
+        """The samples from the first on.
+
+        Args:
+            ordered: whether what comes behind the first that is too late is too late as well: it is
+                not read, and may be broken.
+        """
+        until, samples = self.until, iter(self.read(self.recording))
+        if until is None or not self.is_cut:
+            return samples
+        if ordered:
+            return takewhile(lambda sample: sample.t <= until, samples)
+        return (sample for sample in samples if sample.t <= until)
+
+    def columns(self, fillable: Fillable) -> Columns:
+        """The columns; the first block is read.
+
+        Args:
+            fillable: of signals, and of events, which then do not occur.
+
+        Raises:
+            NotPlainError: there are none, or so far as one can see now; so does reading them.
+        """
+        if self.row_by_row:
+            raise NotPlainError(self.row_by_row)
+        blocks = getattr(self.recording, "blocks", None)
+        if blocks is None:
+            raise NotPlainError("its samples come one by one")
+
+        def read() -> Iterator[Block]:
+            found: Iterator[Block] = blocks(fillable, self.until if self.is_cut else None)
+            return found
+
+        begun = read()
+        first = next(begun, None)
+        if first is None:
+            raise NotPlainError("it has no rows")
+        ready = [chain([first], begun)]
+        rows = getattr(self.recording, "row_count", None)
+        return Columns(tuple(first.columns), rows, lambda: ready.pop() if ready else read())

@@ -1,0 +1,343 @@
+"""The state formulas and inputs of a generated monitor: what they are, and when they change."""
+
+from __future__ import annotations
+
+from heapq import heappop, heappush, heapreplace
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from rvmon.runtime.past import History, Since, beyond, doubt, within
+from rvmon.runtime.table import NEVER
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+FALSE, UNKNOWN, TRUE = 0, 1, 2
+LIMIT = 1 << 62
+BUSY = LIMIT + 1
+"""Stands for the instant after which samples are taken, while one is: none is after it."""
+MISSING = object()
+
+
+class Nodes:
+    """Values of state formulas; the generated part fills in the constants below.
+
+    Formulas that are only part of one other have no value of their own.
+
+    Args:
+        absent: the names without a source.
+
+    Attributes:
+        v: per node, its truth.
+        since: per node of a letter, the position from which on it has had its value.
+        until: per node of a letter and truth, the last position at which it had that before.
+        s: per signal, its value; `None` if it is unknown.
+        births: per signal, 0 before its first known value, 1 from then on, 2 after an update more,
+            where something depends on that.
+        o: per event, whether it occurs at this position.
+        p: per event, its payloads.
+        w: per node, what it remembers, taking the unknown for the worse.
+        b: the same, taking it for the better: the same object, if that is equal.
+        clerk: hears which signals are not known.
+        wakes: per node, when it changes by itself.
+        wake: before this instant, no sample coming, nothing happens; `LIMIT` at most.
+        queued: per node, the instant at which `timers` has it next.
+    """
+
+    __slots__ = (
+        "absent",
+        "b",
+        "before",
+        "births",
+        "c",
+        "clerk",
+        "expired",
+        "first",
+        "gathered",
+        "h",
+        "marked",
+        "momentary",
+        "o",
+        "origin",
+        "p",
+        "queued",
+        "s",
+        "silent",
+        "since",
+        "stale_at",
+        "timers",
+        "u",
+        "until",
+        "v",
+        "w",
+        "wake",
+        "wakes",
+    )
+
+    STATE: tuple[str, ...] = (
+        *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
+        *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired"),
+        *("timers", "births"),
+    )
+    VARIED = ("w", "b")
+
+    SIGNALS: tuple[str, ...] = ()
+    EVENTS: tuple[str, ...] = ()
+    GAP: int | None = 1
+    NODES = 0
+    KEPT = 0
+    """A bit for each node that has a value."""
+    EVALUATE: tuple[Callable[[Any, int], int] | None, ...] = ()
+    PARENTS: tuple[int, ...] = ()
+    """Per node, a bit for each node whose value depends on it."""
+    LETTERS: tuple[int, ...] = ()
+    """Per node, a bit for each requirement whose letter it is part of."""
+    TRIGGERS: tuple[int, ...] = ()
+    """Per node, a bit for each requirement that it triggers."""
+    READERS: Mapping[str, int]
+    """Per name, a bit for each leaf that reads it."""
+    MOMENTARY: tuple[tuple[int, tuple[str, ...]], ...] = ()
+    """The leaves that speak of one position, with the names of which one has to have a source."""
+    BEFORE: tuple[int, ...] = ()
+    """Per node, its value before the first position."""
+    MEMORY: tuple[int | None, ...] = ()
+    """Per node, what it remembers before the first position."""
+    MARKED: Mapping[int, tuple[int, int | None]]
+    """Per node that keeps stretches of time, its bounds."""
+    HISTORIES: tuple[int, ...] = ()
+
+    clerk: Any
+
+    def __init__(self, absent: frozenset[str] = frozenset()) -> None:
+        self.absent = absent
+
+    def clear(self) -> None:
+        """Know nothing."""
+        absent = self.absent
+        self.v = list(self.BEFORE)
+        self.since = [0] * self.NODES
+        self.until: list[int | None] = [None] * (3 * self.NODES)
+        self.s: list[Any] = [None] * len(self.SIGNALS)
+        self.last = (MISSING,) * len(self.SIGNALS)
+        self.first: list[int | None] = [None] * len(self.SIGNALS)
+        self.silent = [UNKNOWN if name in absent else FALSE for name in self.EVENTS]
+        self.o = list(self.silent)
+        self.p: list[list[Any]] = [[] for _ in self.EVENTS]
+        self.births = [0] * len(self.SIGNALS)
+        self.u: set[str] = set()
+        self.c: dict[int, int] = {}
+        self.h = [History() if index in self.HISTORIES else None for index in range(len(self.s))]
+        self.w = list(self.MEMORY)
+        self.b = list(self.MEMORY)
+        gap = self.GAP or 1
+        self.marked = {place: Since(low, high, gap) for place, (low, high) in self.MARKED.items()}
+        self.momentary = 0
+        for place, needs in self.MOMENTARY:
+            if not needs or not absent.issuperset(needs):
+                self.momentary |= 1 << place
+        self.origin: int | None = None
+        self.before = 0
+        self.gathered = False
+        self.wake = -LIMIT
+        self.wakes = [NEVER] * self.NODES
+        self.queued = [NEVER] * self.NODES
+        self.stale_at = [NEVER] * len(self.SIGNALS)
+        self.expired: dict[int, tuple[int, int]] = {}
+        self.timers: list[tuple[int, int]] = []
+
+    @property
+    def last(self) -> tuple[Any, ...]:
+        """Per signal, its value; `MISSING` if it is unknown: nothing that a sample brings is that.
+
+        Each is an attribute of the generated part, `last` and the number of the signal.
+        """
+        return tuple([getattr(self, f"last{signal}") for signal in range(len(self.SIGNALS))])
+
+    @last.setter
+    def last(self, values: Sequence[Any]) -> None:
+        for signal, value in enumerate(values):
+            setattr(self, f"last{signal}", value)
+
+    # What nodes call.
+
+    def within_(self, place: int, t: int, last: int, left: int, right: int, high: int) -> int:
+        """The value of a `since` with an upper bound, over what may be unknown."""
+        w, b = self.w, self.b
+        w[place], holds, wake = within(w[place], t, last, high, left == TRUE, right == TRUE)
+        b[place], may, other = within(b[place], t, last, high, left != FALSE, right != FALSE)
+        self.agree(place)
+        self.set_wake(place, min(wake, other))
+        return TRUE if holds else UNKNOWN if may else FALSE
+
+    def beyond_(self, place: int, t: int, last: int, left: int, right: int, low: int) -> int:
+        """The value of a `since` with a lower bound, over what may be unknown."""
+        w, b = self.w, self.b
+        w[place], holds, wake = beyond(w[place], t, last, low, left == TRUE, right == TRUE)
+        b[place], may, other = beyond(b[place], t, last, low, left != FALSE, right != FALSE)
+        self.agree(place)
+        self.set_wake(place, min(wake, other))
+        return TRUE if holds else UNKNOWN if may else FALSE
+
+    def agree(self, place: int) -> None:
+        """Have both readings of what a node remembers be one object if they are equal."""
+        worse, better = self.w[place], self.b[place]
+        if worse == better and worse.__class__ is better.__class__:
+            self.b[place] = worse
+
+    def elapsed_(self, place: int, t: int, duration: int) -> int:
+        """Whether so much time has passed since the first position."""
+        due = (self.origin or 0) + duration
+        self.set_wake(place, due if t < due else NEVER)
+        return FALSE if t < due else TRUE
+
+    def uncertain_(self, events: Sequence[int]) -> bool:
+        """Whether it is not known of some occurrence of these events, or what it says."""
+        return any(
+            self.silent[event] == UNKNOWN or any(one is None for one in self.p[event])
+            for event in events
+        )
+
+    def doubt_(self, place: int, t: int, now: int, pulse: bool) -> int:
+        """Whether a trigger may have been hidden at `t`, where its truth is `now`."""
+        found = doubt(self.w[place] or FALSE, now, self.v[place], pulse)
+        stays = doubt(now, now, found, pulse) == found
+        self.set_wake(place, NEVER if stays else t + (self.GAP or 1))
+        return found
+
+    def over_(self, events: Sequence[int], truth: Callable[[dict[int, Any]], int]) -> int:
+        """The truth of a comparison over all occurrences of the events whose fields it reads."""
+        found = FALSE
+        silent, occurred = self.silent, self.p
+        choices = [[None] if silent[event] == UNKNOWN else occurred[event] for event in events]
+        for payloads in product(*choices):
+            one = UNKNOWN if None in payloads else truth(dict(zip(events, payloads)))  # noqa: B905
+            if one > found:
+                found = one
+        return found
+
+    # What samples call.
+
+    def occur(self, event: int, value: Any) -> None:
+        """Take what a sample says of an event."""
+        self.gathered = True
+        payloads: tuple[Any, ...]
+        if value is True:
+            truth, payloads = TRUE, ({},)
+        elif value is None:
+            truth, payloads = UNKNOWN, (None,)
+        elif value is False:
+            truth, payloads = FALSE, ()
+        elif isinstance(value, (tuple, list)):
+            payloads = tuple(value)
+            truth = max([UNKNOWN if one is None else TRUE for one in payloads], default=FALSE)
+        else:
+            truth, payloads = TRUE, (value,)
+        self.p[event].extend(payloads)
+        if truth > self.o[event]:
+            self.o[event] = truth
+
+    def mark(self, t: int, signal: int, value: Any) -> None:
+        """Take the update of a signal that more is asked of than its value."""
+        self.gathered = True
+        self.u.add(self.SIGNALS[signal])
+        if self.births[signal] == 1:
+            self.births[signal] = 2
+        history = self.h[signal]
+        if history is not None:
+            changed = history.update(t, value)
+            self.c[signal] = max(changed, self.c.get(signal, FALSE))
+
+    def leave(self) -> None:
+        """Forget what occurred at the position."""
+        self.gathered = False
+        self.o[:] = self.silent
+        for payloads in self.p:
+            payloads.clear()
+        self.u.clear()
+        self.c.clear()
+
+    # Timers.
+
+    def set_stale(self, signal: int, t: int) -> None:
+        """Note when a signal that is not awaited to be so will be stale."""
+        heappush(self.timers, (t, self.NODES + signal))
+        self.stale_at[signal] = t
+        # The update may have changed no value: then nothing else has the timer seen to.
+        self.wake = min(self.wake, t)
+
+    def set_wake(self, place: int, t: int) -> None:
+        """Note when a node changes by itself."""
+        self.wakes[place] = t
+        if t < self.queued[place]:
+            self.queued[place] = t
+            heappush(self.timers, (t, place))
+
+    def found(self, signal: int, t: int) -> None:
+        """Note that a signal that was not known has a value."""
+        if self.first[signal] is None:
+            self.first[signal] = t
+        self.clerk.found(signal, t)
+
+    def ring(self, t: int) -> int:
+        """The leaves and operators that time alone makes change at `t`."""
+        dirty = 0
+        timers, wakes, queued = self.timers, self.wakes, self.queued
+        nodes = self.NODES
+        while timers and timers[0][0] <= t:
+            at, code = timers[0]
+            if code < nodes:
+                due = wakes[code]
+                if due <= t:
+                    heappop(timers)
+                    wakes[code] = queued[code] = NEVER
+                    dirty |= 1 << code
+                elif queued[code] != at:
+                    heappop(timers)
+                elif due < NEVER:
+                    heapreplace(timers, (due, code))
+                    queued[code] = due
+                else:
+                    heappop(timers)
+                    queued[code] = NEVER
+                continue
+            heappop(timers)
+            signal = code - self.NODES
+            actual = self.stale_at[signal]
+            if actual <= t:
+                if self.s[signal] is not None:
+                    self.clerk.lost(signal, actual, "stale")
+                self.s[signal] = None
+                setattr(self, f"last{signal}", MISSING)
+                self.stale_at[signal] = NEVER
+                count, first = self.expired.get(signal, (0, actual))
+                self.expired[signal] = (count + 1, first)
+                dirty |= self.READERS[self.SIGNALS[signal]]
+            elif actual < NEVER:
+                heappush(timers, (actual, code))
+        return dirty
+
+    def requeue(self, at: int, place: int) -> None:
+        """Put the timer of a node, taken from the queue, where it belongs by now."""
+        if self.queued[place] == at:
+            actual = self.queued[place] = self.wakes[place]
+            if actual < NEVER:
+                heappush(self.timers, (actual, place))
+
+    def next_timer(self) -> int:
+        """The next instant at which a node or signal changes by itself."""
+        timers = self.timers
+        while timers:
+            at, code = timers[0]
+            if code < self.NODES:
+                if self.wakes[code] == at:
+                    return at
+                heappop(timers)
+                self.requeue(at, code)
+            else:
+                actual = self.stale_at[code - self.NODES]
+                if actual == at:
+                    return at
+                heappop(timers)
+                if actual < NEVER:
+                    heappush(timers, (actual, code))
+        return NEVER

@@ -1,0 +1,276 @@
+"""Automata of generated monitors: tokens move by look-ups in tables."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    Token = tuple[int, tuple[int, ...]]
+
+NEVER = 1 << 63
+FALSE, UNKNOWN, TRUE = 0, 1, 2
+FAILED, PASSED = 0, 1
+NOW = -1
+
+
+class Table:
+    """A deterministic timed automaton.
+
+    A token is a location with, for each clock, the instant at which it was started. A row is a
+    location with a region for each clock.
+
+    Args:
+        initial: the location before the position of the trigger.
+        cuts: per location and clock, the ages at which it enters another region.
+        bases: per location, its first row.
+        strides: per location and clock, what a region adds to the row.
+        class_of: the class of each letter.
+        rows: per row and class the edge: its target, and for each clock of that the old clock it
+            is, or `NOW`; `None` where no run comes.
+        time_values: per row, the truth if time alone has come to it.
+        end_clauses: per location, when the rule for the end of a trace makes it true: one of these
+            lists of `(clock, least age, whether at the end or as far as time has come)`.
+    """
+
+    def __init__(
+        self,
+        initial: int,
+        cuts: Sequence[tuple[tuple[int, ...], ...]],
+        bases: Sequence[int],
+        strides: Sequence[tuple[int, ...]],
+        class_of: Sequence[int],
+        rows: Sequence[Sequence[Any]],
+        time_values: Sequence[int],
+        end_clauses: Sequence[Sequence[Sequence[tuple[int, int, bool]]]],
+    ) -> None:
+        self.start: Token = (initial, ())
+        self.cuts_of = cuts
+        self.bases = bases
+        self.strides = strides
+        self.class_of = class_of
+        self.rows = rows
+        self.time_values = time_values
+        self.end_clauses = end_clauses
+        self.kept = [tuple(range(count)) for count in range(1 + max(map(len, cuts)))]
+        self.bare: list[Token] = [(location, ()) for location in range(len(cuts))]
+        self.moves = moves_of(self) if len(self.kept) <= 2 else None
+
+    def row(self, token: Token, t: int) -> int:
+        """The row of a token at `t`."""
+        location, anchors = token
+        row = self.bases[location]
+        if anchors:
+            cuts = self.cuts_of[location]
+            strides = self.strides[location]
+            for clock, anchor in enumerate(anchors):
+                row += bisect_right(cuts[clock], t - anchor) * strides[clock]
+        return row
+
+    def step(self, token: Token, t: int, letter: int) -> Token:
+        """The token after a position at `t`."""
+        location, anchors = token
+        row = self.bases[location]
+        if anchors:
+            cuts = self.cuts_of[location]
+            strides = self.strides[location]
+            for clock, anchor in enumerate(anchors):
+                row += bisect_right(cuts[clock], t - anchor) * strides[clock]
+        target: int
+        target, sources = self.rows[row][self.class_of[letter]]
+        if not sources:
+            return self.bare[target]
+        return target, tuple([t if source < 0 else anchors[source] for source in sources])
+
+    def stays(self, token: Token, t: int, letter: int) -> bool:
+        """Whether a token that was stepped at `t` stays as it is under the same letter."""
+        location, anchors = token
+        edge = self.rows[self.row(token, t)][self.class_of[letter]]
+        return edge is not None and edge[0] == location and edge[1] == self.kept[len(anchors)]
+
+    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
+        """For each clock of a location the ages from which on it acts differently."""
+        return self.cuts_of[location]
+
+    def time_value(self, token: Token, t: int) -> int:
+        """The truth once time has come to `t` and no position came."""
+        return self.time_values[self.row(token, t)]
+
+    def holds_at_end(self, token: Token, end: int, reached: int) -> bool:
+        """Whether the rule for the end of a trace makes true what is owed."""
+        location, anchors = token
+        return any(
+            all(
+                clock < 0 or (end if at_end else reached) - anchors[clock] >= age
+                for clock, age, at_end in clause
+            )
+            for clause in self.end_clauses[location]
+        )
+
+
+BARE, FRESH, KEPT = 0, 1, 2
+"""How a token of one clock at most moves: to a location without a clock; to one whose clock is
+started now; to another location with its clock."""
+
+Move = Any
+"""Target, how the token moves, and whether the same letter would lead on from there (`None` if
+that depends on the age); `None` if it stays as it is."""
+
+
+def moves_of(table: Table) -> list[list[list[Move]]]:
+    """What each edge of an automaton with one clock at most does, worked out before.
+
+    Returns:
+        Per class of letters, location and region the move.
+    """
+    return [
+        [_moves(table, location, kind) for location in range(len(table.bases))]
+        for kind in range(len(table.rows[0]))
+    ]
+
+
+def _moves(table: Table, location: int, kind: int) -> list[Move]:
+    return [_move(table, location, kind, edge) for edge in _edges(table, location, kind)]
+
+
+def _move(table: Table, location: int, kind: int, edge: Any) -> Move:
+    if edge is None:  # no run comes here
+        return None
+    target, sources = edge
+    if target <= PASSED:
+        return target, BARE, False
+    if target == location and sources == table.kept[len(table.cuts_of[location])]:
+        return None
+    stays = (target, table.kept[len(table.cuts_of[target])])
+    loops = [edge == stays for edge in _edges(table, target, kind)]
+    if not sources:
+        return target, BARE, not loops[0]
+    if sources[0] < 0:
+        return target, FRESH, not loops[bisect_right(table.cuts_of[target][0], 0)]
+    return target, KEPT, not loops[0] if len(set(loops)) == 1 else None
+
+
+def _edges(table: Table, location: int, kind: int) -> list[Any]:
+    """The edges of a location under a letter, by region."""
+    cuts = table.cuts_of[location]
+    count = len(cuts[0]) + 1 if cuts else 1
+    stride = table.strides[location][0] if cuts else 0
+    return [table.rows[table.bases[location] + region * stride][kind] for region in range(count)]
+
+
+def letter_table(worse: Sequence[Sequence[int]], better: Sequence[Sequence[int]]) -> list[Any]:
+    """The letters of all values of some propositions, counted through in threes.
+
+    Args:
+        worse: per proposition what each of its values adds, the unknown taken for the worse.
+        better: the same, taken for the better.
+
+    >>> letter_table([(0, 0, 1)], [(0, 1, 1)])
+    [(0, 0), (0, 1), (1, 1)]
+    """
+    return [(sum(one), sum(other)) for one, other in zip(product(*worse), product(*better))]  # noqa: B905
+
+
+def next_cut(machine: Any, token: Token, t: int) -> int:
+    """The first instant after `t` at which a clock of the token enters another region."""
+    location, anchors = token
+    found = NEVER
+    if anchors:
+        cuts = machine.cuts(location)
+        for clock, anchor in enumerate(anchors):
+            for cut in cuts[clock]:
+                if anchor + cut > t:
+                    found = min(found, anchor + cut)
+                    break
+    return found
+
+
+def settle(machine: Any, token: Token, t: int, until: int) -> tuple[Token, int]:
+    """Let time pass from `t` to `until` without a position.
+
+    Returns the token and the instant of its decision, or the next at which it might be decided.
+    """
+    cut = next_cut(machine, token, t)
+    while cut <= until:
+        truth = machine.time_value(token, cut)
+        if truth != UNKNOWN:
+            return (PASSED if truth else FAILED, ()), cut
+        cut = next_cut(machine, token, cut)
+    return token, cut
+
+
+def run(
+    machine: Any, token: Token, letter: int, first: int, last: int, period: int
+) -> tuple[Token, int, bool]:
+    """Step a token through equal letters, jumping where it only loops.
+
+    Args:
+        machine: the automaton.
+        token: undecided; the last position before was `first - period`.
+        letter: at all these positions.
+        first: the first position.
+        last: the instant that time comes to; the positions are each `period` ticks up to it.
+        period: between two positions.
+
+    Returns:
+        The token; the instant of its decision, or the first after `last` at which it will not just
+        loop on; whether a clock moves along while it loops.
+    """
+    position = first
+    slides = False
+    while True:
+        if period > 1:
+            token, cut = settle(machine, token, position - period, min(position - 1, last))
+            if token[0] <= PASSED:
+                return token, cut, False
+        if position > last:
+            return token, position if period == 1 else min(position, cut), True
+        moved = machine.step(token, position, letter)
+        if moved[0] <= PASSED:
+            return moved, position, False
+        same = moved == token
+        loop = same or _loops(token, moved, period)
+        before, token = token, moved
+        if loop:
+            cut = (
+                next_cut(machine, token, position)
+                if same
+                else _kept_cut(machine, before, moved, position)
+            )
+            ahead = min(cut - 1 - position, last - position) // period * period
+            slides = not same
+            if ahead > 0:
+                if slides:
+                    token = _slide(before, token, ahead)
+                position += ahead
+            if cut > last:
+                return token, cut, slides or period > 1
+        position += period
+
+
+def _loops(before: Token, behind: Token, period: int) -> bool:
+    """Whether a step only looped: each clock was kept, or moved by a period."""
+    if before[0] != behind[0]:
+        return False
+    return all(new in (old, old + period) for old, new in zip(before[1], behind[1]))  # noqa: B905
+
+
+def _kept_cut(machine: Any, before: Token, behind: Token, t: int) -> int:
+    found = NEVER
+    cuts = machine.cuts(behind[0])
+    for clock, anchor in enumerate(behind[1]):
+        if anchor == before[1][clock]:
+            for cut in cuts[clock]:
+                if anchor + cut > t:
+                    found = min(found, anchor + cut)
+                    break
+    return found
+
+
+def _slide(before: Token, behind: Token, ticks: int) -> Token:
+    return behind[0], tuple(
+        [new if new == old else new + ticks for old, new in zip(before[1], behind[1])]  # noqa: B905
+    )

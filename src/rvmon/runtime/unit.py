@@ -1,0 +1,485 @@
+"""The clockwork of generated monitors: positions, the time between them, whom they concern."""
+
+from __future__ import annotations
+
+from heapq import heapify, heappop, heappush
+from typing import TYPE_CHECKING, Any
+
+from rvmon.runtime.nodes import LIMIT, Nodes
+from rvmon.runtime.table import NEVER
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from rvmon.runtime.rule import Rule
+
+
+class Unit(Nodes):
+    """A generated monitor without its generated part.
+
+    Args:
+        machines: per requirement, what judges its attempts.
+        absent: the names without a source.
+
+    Attributes:
+        began: the instant of the first sample; `None` before it.
+        after: samples have to be later than this instant.
+        news: whether something was decided since it was last set to `False`.
+        position: that the values are of.
+        dirty: the nodes that may have changed since.
+        fading: the nodes that speak of that position only.
+        restless: the requirements to be asked at the next position whatever changes.
+        repeating: the requirements that start an attempt at the next position if nothing changes.
+        asked: of what `triggers` may hold, what somebody asks for.
+        eyed: the requirements that have to see their triggers first.
+        failing: the requirements whose episode runs on after a failure.
+        resume_at: the next position at which one of them may go on though nothing changes.
+        awaited: the next position at which samples that were taken will show.
+        active: the requirements that have open attempts.
+        dues: when requirements are due; `due_at` says which entries still hold.
+    """
+
+    __slots__ = (
+        "active",
+        "after",
+        "asked",
+        "awaited",
+        "began",
+        "dirty",
+        "due_at",
+        "dues",
+        "eyed",
+        "fading",
+        "failing",
+        "machines",
+        "news",
+        "position",
+        "repeating",
+        "restless",
+        "resume_at",
+        "rules",
+    )
+
+    STATE = (
+        *Nodes.STATE,
+        *("began", "rules", "position", "after", "news", "dirty", "fading", "restless"),
+        *("repeating", "awaited", "dues", "due_at", "active"),
+        *("asked", "eyed", "failing", "resume_at"),
+    )
+
+    ABOVE: tuple[int, ...] = ()
+    """Per node, a bit for it and each that depends on it; left out where nobody asks."""
+    NOTED: tuple[Callable[..., tuple[Any, ...]], ...]
+    """Per requirement, where records are kept: what they note, from what was seen at the trigger,
+    the instant, the token before it, the rule, `v`, `since` and `until`. One flat tuple costs the
+    collector of garbage next to nothing."""
+    RULES: tuple[tuple[Any, ...], ...]
+    """Per rule its class, what gives its letters, and what else it takes. Rules judge requirements;
+    behind these stand those that judge attempts in doubt."""
+    HIDDEN_OF: tuple[int, ...] = ()
+    """For each of the latter, the requirement."""
+    TOLD: tuple[int, ...] = ()
+    """Per requirement the node that is true once its trigger was true or false; −1: always."""
+
+    step: Callable[[int, Mapping[str, Any]], Sequence[Any]]
+    """Take one sample; returns what it decided."""
+    take: Callable[[int, Mapping[str, Any]], None]
+    """Take the updates of a valid sample; time has come to `t` − 1 before."""
+    visit: Callable[[int], None]
+    """Move to the position at `t`."""
+
+    def __init__(self, machines: Sequence[Any], absent: frozenset[str] = frozenset()) -> None:
+        super().__init__(absent)
+        self.machines = machines
+
+    def restart(self, clerk: Any, clerks: Sequence[Any]) -> None:
+        """Begin a run.
+
+        Args:
+            clerk: takes samples that need a closer look, and tells of decisions.
+            clerks: per requirement, who makes attempts and hears of decisions.
+        """
+        self.clear()
+        self.clerk = clerk
+        self.began: int | None = None
+        self.rules = [self._rule(index, one) for index, one in enumerate(clerks)]
+        self.position = 0
+        self.after = -LIMIT
+        self.news = False
+        self.dirty = 0
+        self.fading = 0
+        self.restless = 0
+        self.repeating = 0
+        self.asked = (1 << len(self.rules)) - 1
+        self.eyed = 0
+        self.failing = 0
+        self.resume_at = NEVER
+        self.awaited = NEVER
+        self.dues: list[tuple[int, int]] = []
+        self.due_at = [NEVER] * len(self.rules)
+        self.active = 0
+
+    def _rule(self, index: int, clerk: Any) -> Rule:
+        class_, letters, *kind = self.RULES[index]
+        machine = self.machines[index]
+        made: Rule = class_(index, machine, letters, *kind, self.GAP, self.v, clerk)
+        return made
+
+    # Positions.
+
+    def enter(self, t: int) -> None:
+        """Go to just before the first position, at `t`, where all nodes are to be evaluated."""
+        if self.began is None:
+            self.began = t
+        self.origin = t
+        self.position = t - (self.GAP or 1)
+        self.since[:] = [t] * self.NODES
+        self.dirty = self.KEPT
+
+    def evaluate(self, t: int, dirty: int) -> tuple[int, int, int]:
+        """Evaluate nodes and what depends on them.
+
+        Returns the requirements of which the letter changed, those of which the trigger changed,
+        and the nodes to evaluate again at the next position.
+        """
+        letters = triggers = fading = 0
+        v, since, until = self.v, self.since, self.until
+        functions = self.EVALUATE
+        momentary = self.momentary
+        while dirty:
+            bit = dirty & -dirty
+            dirty ^= bit
+            place = bit.bit_length() - 1
+            new = functions[place](self, t)  # type: ignore[misc]
+            if new and bit & momentary:
+                fading |= bit
+            old = v[place]
+            if new != old:
+                own = self.LETTERS[place]
+                if own:
+                    until[3 * place + old] = self.before
+                    since[place] = t
+                    letters |= own
+                v[place] = new
+                dirty |= self.PARENTS[place]
+                triggers |= self.TRIGGERS[place]
+        return letters, triggers, fading
+
+    def meets(self, t: int, cone: int) -> bool:
+        """Have timers ring at `t`; whether what they may change is among some nodes.
+
+        Args:
+            t: the next position.
+            cone: a bit for each node, with all that depend on one of them.
+        """
+        due = self.dirty = self.dirty | self.ring(t)
+        while due:
+            bit = due & -due
+            due ^= bit
+            if self.ABOVE[bit.bit_length() - 1] & cone:
+                return True
+        return False
+
+    def conclude(self, t: int, letters: int, triggers: int) -> None:
+        """Have the position judged by those whom it concerns."""
+        self.awaited = NEVER
+        if triggers & self.eyed:
+            self.look(triggers & self.eyed)
+        letters = (letters | self.restless) & self.active
+        dues, due_at = self.dues, self.due_at
+        while dues and dues[0][0] <= t:
+            due, index = heappop(dues)
+            if due_at[index] == due:
+                due_at[index] = NEVER
+                letters |= 1 << index & self.active
+        rules = self.rules
+        while letters:
+            bit = letters & -letters
+            letters ^= bit
+            index = bit.bit_length() - 1
+            rule = rules[index]
+            rule.visit(t)
+            if (
+                rule.restless
+                or self.restless
+                or rule.due != due_at[index]
+                or not (rule.attempts or rule.runs)
+                or rule.failed_at is not None
+            ):
+                self.note(rule)
+        again = triggers >> len(rules)
+        triggers = triggers & (1 << len(rules)) - 1 | self.repeating
+        while triggers:
+            bit = triggers & -triggers
+            triggers ^= bit
+            index = bit.bit_length() - 1
+            rule = rules[index]
+            if rule.trigger < 0:
+                continue
+            if rule.starts(self.v[rule.trigger]):
+                self.begin(rule, t)
+            if rule.pulse:
+                self.repeating = self.repeating | bit if rule.repeats else self.repeating & ~bit
+        if again & self.failing or self.resume_at <= t:
+            self.go_on(t, again)
+        if self.gathered:
+            self.leave()
+
+    def begin(self, rule: Rule, t: int) -> None:
+        """Start an attempt at the position `t`."""
+        rule.begin(t, t)
+        self.note(rule)
+        if rule.episodic:
+            bit = 1 << rule.index
+            self.eyed = self.eyed | bit if rule.eyed else self.eyed & ~bit
+
+    def look(self, eyed: int) -> None:
+        """Have requirements see their triggers before their attempts do."""
+        while eyed:
+            bit = eyed & -eyed
+            eyed ^= bit
+            self.rules[bit.bit_length() - 1].look()
+
+    def go_on(self, t: int, again: int) -> None:
+        """Follow failures by other attempts at the position `t`, where it is time for that.
+
+        Args:
+            t: the position.
+            again: the requirements for which that may have changed.
+        """
+        asked = self.failing
+        if self.resume_at > t:
+            asked &= again
+        else:
+            self.resume_at = NEVER
+        while asked:
+            bit = asked & -asked
+            asked ^= bit
+            rule = self.rules[bit.bit_length() - 1]
+            failed_at = rule.failed_at
+            if failed_at is None:
+                self.follow(rule)
+            elif t <= failed_at:
+                self.await_next(failed_at)
+            elif rule.goes_on:
+                self.begin(rule, t)
+
+    def follow(self, rule: Rule) -> None:
+        """Note whether a requirement's episode runs on after a failure."""
+        bit = 1 << rule.index
+        if rule.failed_at is None:
+            self.failing &= ~bit
+            self.asked &= ~(bit << len(self.rules))
+            return
+        self.failing |= bit
+        self.asked |= bit << len(self.rules)
+        # Where it fails at once, something has to change first.
+        if rule.goes_on:
+            self.await_next(rule.failed_at)
+
+    def await_next(self, t: int) -> None:
+        """Have the first position behind `t` visited."""
+        gap = self.GAP
+        following = t + 1
+        if gap is not None:
+            late = max(t - self.position, 0)
+            following = self.position + (late // gap + 1) * gap
+        self.resume_at = min(self.resume_at, following)
+
+    def conclude_calmly(self, t: int, letters: int, triggers: int) -> None:
+        """As `conclude`, where all requirements are episodes that only letters decide."""
+        rules = self.rules
+        if triggers & self.eyed:
+            self.look(triggers & self.eyed)
+        letters &= self.active
+        while letters:
+            bit = letters & -letters
+            letters ^= bit
+            rule = rules[bit.bit_length() - 1]
+            rule.visit(t)
+            if not (rule.runs or rule.attempts):
+                self.active ^= bit
+            if rule.failed_at is not None:
+                self.follow(rule)
+        again = triggers >> len(rules)
+        triggers &= (1 << len(rules)) - 1
+        while triggers:
+            bit = triggers & -triggers
+            triggers ^= bit
+            rule = rules[bit.bit_length() - 1]
+            if rule.starts(self.v[rule.trigger]):
+                self.begin(rule, t)
+        if again & self.failing or self.resume_at <= t:
+            self.go_on(t, again)
+        if self.gathered:
+            self.leave()
+
+    def conclude_alone(self, t: int, letters: int, triggers: int) -> None:
+        """As `conclude_calmly`, where there is but one requirement."""
+        (rule,) = self.rules
+        if self.eyed and triggers & 1:
+            rule.look()
+        if letters and self.active:
+            rule.visit(t)
+            if not (rule.runs or rule.attempts):
+                self.active = 0
+            if rule.failed_at is not None:
+                self.follow(rule)
+        if triggers & 1 and rule.starts(self.v[rule.trigger]):
+            self.begin(rule, t)
+        if triggers >> 1 & self.failing or self.resume_at <= t:
+            self.go_on(t, triggers >> 1)
+        if self.gathered:
+            self.leave()
+
+    def set_alarm(self) -> None:
+        """Work out before when nothing happens; it may come to nothing at that instant."""
+        if self.origin is None:
+            return
+        wake = min(LIMIT, self.next_timer(), self.awaited, self.resume_at)
+        if self.dues:
+            wake = min(wake, self.dues[0][0])
+        if self.fading or self.repeating or (self.restless and self.GAP is None):
+            wake = min(wake, self.position + 1)
+        self.wake = wake
+
+    # Time.
+
+    def next_change(self) -> int:
+        """The first position after this one at which a value can change by time alone."""
+        if self.GAP is None or self.origin is None:
+            return NEVER
+        found = self.next_timer()
+        if self.fading:
+            found = min(found, self.position + self.GAP)
+        if found >= NEVER:
+            return NEVER
+        return self.position + -(-(found - self.position) // self.GAP) * self.GAP
+
+    def next_due(self) -> int:
+        """The next instant at which an attempt can be decided."""
+        dues = self.dues
+        while dues and self.due_at[dues[0][1]] != dues[0][0]:
+            heappop(dues)
+        return dues[0][0] if dues else NEVER
+
+    def next_position(self) -> int:
+        """The next position at which something can change without a further sample."""
+        found = min(self.awaited, self.next_change())
+        if self.GAP is not None:
+            found = min(found, self.resume_at)
+            if self.repeating:
+                found = min(found, self.position + self.GAP)
+        return found
+
+    def note(self, rule: Rule) -> None:
+        """Note when a requirement is due, and whether it has to be asked at the next position."""
+        bit = 1 << rule.index
+        if rule.attempts or rule.runs or rule.watches:
+            self.active |= bit
+        elif self.active & bit:
+            self.active ^= bit
+        if rule.restless:
+            self.restless |= bit
+        elif self.restless & bit:
+            self.restless ^= bit
+        if rule.failed_at is not None:
+            self.follow(rule)
+        due = rule.due
+        if due != self.due_at[rule.index]:
+            self.due_at[rule.index] = due
+            if due < NEVER:
+                heappush(self.dues, (due, rule.index))
+                if len(self.dues) > 64 + 8 * len(self.rules):
+                    self.dues = [(t, i) for i, t in enumerate(self.due_at) if t < NEVER]
+                    heapify(self.dues)
+
+    def through(self, limit: int) -> None:
+        """Let time pass up to `limit`, positions there included, without a further sample."""
+        if limit < self.wake or self.began is None:
+            return
+        while True:
+            stop = min(self.next_position() - 1, limit)
+            while (due := self.next_due()) <= stop:
+                rule = self.rules[self.dues[0][1]]
+                # What fails may be followed by another attempt at once.
+                rule.pass_to(due if rule.episodic else stop)
+                self.note(rule)
+                if self.GAP is not None:
+                    stop = min(stop, self.resume_at - 1)
+            position = self.next_position()
+            if position > limit:
+                break
+            self.visit(position)
+        self.set_alarm()
+
+    def sampled(self, t: int) -> None:
+        """Go on after the updates of a sample were taken, where not every instant is a position."""
+        gap = self.GAP or 1
+        if self.began is None:
+            self.began = t
+        self.awaited = -(-t // gap) * gap
+        if self.awaited == t:
+            self.visit(t)
+        else:
+            self.reach(t)
+        self.set_alarm()
+
+    def reach(self, t: int) -> None:
+        """Let time come to `t`, of which no position is known, from `t − 1`."""
+        due = []
+        while self.next_due() <= t:
+            _, index = heappop(self.dues)
+            self.due_at[index] = NEVER
+            due.append(self.rules[index])
+        for rule in due:
+            rule.reach(t)
+            self.note(rule)
+
+    def advance(self, t: int) -> None:
+        """Learn that no sample before `t` will come; `t` is later than all before."""
+        self.through(t - 1)
+        self.reach(t)
+        self.set_alarm()
+
+    def last_position(self, end: int) -> int:
+        """The last position at or before `end`, up to which time has come."""
+        if self.GAP is None:
+            return self.position
+        return self.position + (end - self.position) // self.GAP * self.GAP
+
+    def close(self, end: int, reached: int) -> None:
+        """Come to the end of the trace; time has come to `end` before."""
+        for rule in self.rules:
+            rule.pass_to(end)
+        for rule in self.rules:
+            if rule.trigger < 0 and self.origin is not None:
+                rule.begin(self.last_position(end), end)
+        for rule in self.rules:
+            rule.reach(reached)
+
+    def is_told(self, index: int) -> bool:
+        """Whether the trigger of a requirement was ever true or false."""
+        place = self.TOLD[index]
+        return self.origin is not None and (place < 0 or self.v[place] == 2)
+
+
+def closures(parents: Sequence[int]) -> tuple[int, ...]:
+    """Per node a bit for it and each that depends on it.
+
+    Args:
+        parents: per node a bit for each that depends on it directly; all of them stand behind it.
+
+    >>> closures([0b10, 0b100, 0])
+    (7, 6, 4)
+    """
+    found: list[int] = [0] * len(parents)
+    for place in reversed(range(len(parents))):
+        above = 1 << place
+        rest = parents[place]
+        while rest:
+            bit = rest & -rest
+            rest ^= bit
+            above |= found[bit.bit_length() - 1]
+        found[place] = above
+    return tuple(found)

@@ -1,0 +1,76 @@
+"""Seconds that the tests of each folder may take in all; the end of a run shows what they took."""
+
+from collections import Counter
+from pathlib import PurePosixPath
+
+import pytest
+
+BUDGETS = {
+    "src/handover": 2,
+    "src/rvmon": 15,
+    "tests": 2,
+    "tests/benchmarks": 15,
+    "tests/handover/campaign": 40,
+    "tests/handover/checker": 3,
+    "tests/handover/collector": 3,
+    "tests/handover/driver": 20,
+    "tests/handover/generator": 10,
+    "tests/handover/model": 10,
+    "tests/handover/robot": 5,
+    "tests/handover/world": 10,
+    "tests/rvmon": 20,
+    "tests/rvmon/analysis": 20,
+    "tests/rvmon/automaton": 15,
+    "tests/rvmon/cli": 40,
+    "tests/rvmon/codegen": 70,
+    "tests/rvmon/dataflow": 10,
+    "tests/rvmon/diagnostics": 2,
+    "tests/rvmon/explain": 30,
+    "tests/rvmon/export": 5,
+    "tests/rvmon/formula": 2,
+    "tests/rvmon/laws": 50,
+    "tests/rvmon/monitor": 60,
+    "tests/rvmon/readers": 10,
+    "tests/rvmon/report": 15,
+    "tests/rvmon/spec": 30,
+    "tests/rvmon/testing": 50,
+    "tests/rvmon/timed": 30,
+    "tests/rvmon/trace": 2,
+    "tests/rvmon/verdict": 3,
+}
+"""On two quiet cores, of which each has half of this to do. What is over its budget is shown, and
+fails nothing: a machine may be busy."""
+
+_DEPTH = 3
+
+
+def _folder(path: str) -> str:
+    """What a test's seconds count for: the folder of its file, or the package of its doctest."""
+    parts = PurePosixPath(path).parent.parts
+    return "/".join(parts[:2] if parts[0] == "src" else parts[:_DEPTH])
+
+
+class Budget:
+    """A plugin that adds up what the tests of each folder take, in whatever process they run."""
+
+    def __init__(self) -> None:
+        self._seconds: Counter[str] = Counter()
+        self._tests: Counter[str] = Counter()
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Count a test's set-up, call or tear-down."""
+        folder = _folder(report.nodeid.partition("::")[0])
+        self._seconds[folder] += report.duration
+        self._tests[folder] += report.when == "call"
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Show the sums of a run of several folders, the greatest first."""
+        if len(self._seconds) < 2:
+            return
+        terminalreporter.section("seconds per folder")
+        terminalreporter.line(f"{'folder':<32}{'tests':>8}{'seconds':>9}{'budget':>8}")
+        for folder, seconds in self._seconds.most_common():
+            budget = BUDGETS.get(folder)
+            over = budget is None or seconds > budget
+            line = f"{folder:<32}{self._tests[folder]:>8}{seconds:>9.1f}{budget or 'none':>8}"
+            terminalreporter.line(line + "  over budget" * over, red=over)

@@ -1,0 +1,53 @@
+"""Long work shows at a terminal how far it is."""
+
+import io
+from contextlib import redirect_stderr
+
+import pytest
+
+from rvmon.cli import main, progress
+
+
+class Screen(io.StringIO):
+    """A terminal."""
+
+    def isatty(self):
+        """It is one."""
+        return True
+
+
+@pytest.fixture
+def screen(tmp_path, monkeypatch):
+    """A terminal whose user has no patience, beside a specification and recordings."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.rv").write_text("spec s\nsignal p : bool\nrequirement R\n  always p\n")
+    for name in ("one", "two"):
+        rows = (f'{{"t": {number}, "p": true}}\n' for number in range(9000))
+        (tmp_path / f"{name}.jsonl").write_text("".join(rows))
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(progress, "PATIENCE_S", 0)
+    return Screen()
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_recordings_are_counted(screen, jobs):
+    """One bar for all, whoever judges them."""
+    with redirect_stderr(screen):
+        assert main(["run", "s.rv", "one.jsonl", "two.jsonl", "--jobs", jobs]) == 0
+    assert "recordings" in screen.getvalue()
+    assert "one.jsonl" not in screen.getvalue()
+
+
+def test_a_single_recording_shows_how_far_it_is_read(screen):
+    """By its name."""
+    with redirect_stderr(screen):
+        assert main(["run", "s.rv", "one.jsonl", "--robustness"]) == 0
+    assert "one.jsonl" in screen.getvalue()
+
+
+def test_short_work_and_files_show_no_bar(screen, monkeypatch):
+    """Nothing is in the way of what is told."""
+    monkeypatch.setattr(progress, "PATIENCE_S", 1e9)
+    with redirect_stderr(screen):
+        assert main(["run", "s.rv", "one.jsonl", "two.jsonl"]) == 0
+    assert screen.getvalue() == ""

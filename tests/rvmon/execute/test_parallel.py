@@ -1,0 +1,202 @@
+"""Tasks shared among processes: order, errors, lost workers, and that nothing lives on."""
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from functools import partial
+from itertools import count, islice
+from pathlib import Path
+
+import pytest
+
+import rvmon
+from rvmon.errors import RvmonError, SpecError, TraceError, WorkerLostError
+from rvmon.execute.parallel import execute
+
+pytestmark = pytest.mark.skipif(
+    multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
+)
+
+JOBS = pytest.mark.parametrize("jobs", [1, 2, 5])
+
+PARENT = """
+import multiprocessing, os, sys, time
+from functools import partial
+from rvmon.execute.interrupt import interrupted_by_sigterm
+from rvmon.execute.parallel import execute
+
+def told(number):
+    time.sleep(600 if number > 1 else 0.5)
+    return os.getpid()
+
+if __name__ == "__main__":
+    multiprocessing.set_start_method(sys.argv[1])
+    with interrupted_by_sigterm():
+        done = execute(range(9), partial(partial, told), jobs=2)
+        print(next(done), next(done), flush=True)
+        list(done)
+"""
+
+
+def doing(work):
+    """What `execute` wants: begun in a process, it gives what does a task."""
+    return partial(partial, work)
+
+
+def halved(number):
+    """Half of an even number; others are wrong, and some of them dearly so."""
+    if number == 13:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if number % 2:
+        raise TraceError(f"{number} is odd")
+    return number // 2
+
+
+def given(results):
+    """All results, and the error that came then."""
+    found = []
+    try:
+        found.extend(results)
+    except Exception as error:  # noqa: BLE001 - asserted by who asks
+        return found, error
+    return found, None
+
+
+@JOBS
+@pytest.mark.parametrize("size", [0, 1, 2, 1000])
+def test_results_come_in_the_order_of_the_tasks(jobs, size):
+    """Whoever does them, and however many there are."""
+    assert list(execute(range(size), doing(str), jobs=jobs)) == [*map(str, range(size))]
+
+
+@JOBS
+def test_slow_and_quick_tasks_keep_their_order(jobs):
+    """Where many quick ones are followed by a slow one, what it was given goes to others."""
+    tasks = [0.0] * 40 + [0.3] + [0.0] * 300 + [0.2] * 3 + [0.0] * 40
+
+    def slept(pair):
+        time.sleep(pair[1])
+        return pair[0]
+
+    numbers = [*range(len(tasks))]
+    assert list(execute(enumerate(tasks), lambda: slept, jobs=jobs)) == numbers
+
+
+@JOBS
+def test_work_begins_once_in_each_process(tmp_path, jobs):
+    """However many tasks there are."""
+
+    def begin():
+        with (tmp_path / str(os.getpid())).open("a") as file:
+            file.write("begun\n")
+        return str
+
+    list(execute(range(2000), begin, jobs=jobs))
+    begun = [path.read_text() for path in tmp_path.iterdir()]
+    assert begun == ["begun\n"] * len(begun)
+    assert 1 <= len(begun) <= jobs
+
+
+@JOBS
+def test_an_error_comes_in_its_turn(jobs):
+    """The results before it are given out, and it is what the task raised."""
+    found, error = given(execute([*range(0, 200, 2), 7, 8, 9], doing(halved), jobs=jobs))
+    assert found == [*range(100)]
+    assert type(error) is TraceError
+    assert str(error) == "7 is odd"
+
+
+@JOBS
+def test_an_error_of_the_tasks_themselves_comes_in_its_turn(jobs):
+    """As where a list of files cannot be read to its end."""
+
+    def tasks():
+        yield from range(0, 100, 2)
+        raise OSError("gone")
+
+    found, error = given(execute(tasks(), doing(halved), jobs=jobs))
+    assert found == [*range(50)]
+    assert isinstance(error, OSError)
+
+
+@JOBS
+def test_an_error_at_the_beginning_is_that_of_the_first_task(jobs):
+    """It keeps its kind, also one that is made of more than a text."""
+
+    def begin():
+        rvmon.loads("spec s\nrequirement R\n  always p\n")
+
+    found, error = given(execute(range(5), begin, jobs=jobs))
+    assert not found
+    assert isinstance(error, SpecError)
+    assert [diagnostic.code for diagnostic in error.diagnostics] == ["RV012"]
+
+
+def test_an_error_that_nobody_expected_says_where_it_happened():
+    """Elsewhere there is no traceback to look at."""
+    _, error = given(execute([1, 2], doing(len), jobs=2))
+    assert isinstance(error, TypeError)
+    assert "worker.py" in "".join(error.__notes__)
+
+
+def test_a_task_that_cannot_be_sent_is_named():
+    """The ones before it are done."""
+    tasks = [2, 4, threading.Lock(), 6]
+    found, error = given(execute(tasks, doing(halved), jobs=2, what="trace"))
+    assert found == [1, 2]
+    assert isinstance(error, RvmonError)
+    assert "trace 3 cannot be given to another process" in str(error)
+    assert "use one process (jobs)" in str(error)
+
+
+@pytest.mark.parametrize("jobs", [2, 5])
+def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
+    """All results before are given out; the error names the task and a mend."""
+    found, error = given(execute([*range(0, 200, 2), 13, 8], doing(halved), jobs=jobs, what="run"))
+    assert found == [*range(100)]
+    assert isinstance(error, WorkerLostError)
+    assert "the process that had run 101 was ended from outside" in str(error)
+    assert "memory runs out: use fewer processes (jobs)" in str(error)
+
+
+def test_tasks_without_end_are_taken_as_they_are_needed():
+    """Who has enough leaves, and nobody works on."""
+    done = execute(count(), doing(str), jobs=2)
+    assert [*islice(done, 100)] == [*map(str, range(100))]
+    done.close()
+    assert next(done, None) is None
+
+
+def test_two_executions_at_a_time_do_not_disturb_each_other():
+    """Also where one is left before its end."""
+    one, other = (execute(range(50), doing(str), jobs=2) for _ in range(2))
+    pairs = [*islice(zip(one, other, strict=True), 20)]
+    one.close()
+    assert pairs == [(str(k), str(k)) for k in range(20)]
+    assert [*other] == [str(k) for k in range(20, 50)]
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_no_worker_outlives_a_parent_that_is_killed(ends_with_its_parent, method, kind):
+    """However it ends, however workers were begun, and however long their tasks take."""
+    ends_with_its_parent(PARENT, [method], kind)
+
+
+def test_many_traces_are_judged_alike_by_processes(tmp_path: Path):
+    """The reports of `evaluate_many` in order; the error of a trace comes behind those before."""
+    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n")
+    paths = []
+    for number in range(60):
+        paths.append(tmp_path / f"{number}.csv")
+        paths[-1].write_text(f"t,p\n0,1\n1,{int(number % 7 != 3)}\n")
+    alone = [*spec.evaluate_many(paths)]
+    assert [*spec.evaluate_many(iter(paths), jobs=3)] == alone
+    paths[50].write_text("t,p\n0,maybe\n")
+    for jobs in (1, 3):
+        found, error = given(spec.evaluate_many(paths, jobs=jobs))
+        assert found == alone[:50]
+        assert isinstance(error, TraceError)
+        assert "50.csv" in str(error)
