@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from rvmon.spec.syntax.words import FUNCTIONS, INFIX_WORDS, RESERVED
+from rvmon.spec.checked.functions import FUNCTIONS
+from rvmon.spec.syntax.words import INFIX_WORDS, RESERVED
 
 ROOT = Path(__file__).parents[1]
 VSCODE = ROOT / "editors" / "vscode"

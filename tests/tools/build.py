@@ -105,7 +105,7 @@ def two(left: Formula, op: str, right: Formula, *interval: int | None) -> Formul
     >>> two(p, "U", q, 0, 3).interval
     Interval(low=0, high=3)
     """
-    found = BinaryOp(op)
+    found = BinaryOp.of(op)
     if found in _TEMPORAL:
         low, high = interval if interval else (0, None)
         return Binary(found, left, right, Interval(low or 0, high))

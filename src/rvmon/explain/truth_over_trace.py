@@ -17,7 +17,6 @@ from rvmon.formula.state import State
 from rvmon.monitor.instances import Instance
 from rvmon.spec.checked.formula import (
     Binary,
-    BinaryOp,
     Bound,
     BoundAtom,
     Formula,
@@ -25,6 +24,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.reading import read
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.spec.checked.tense import has_future
 from rvmon.trace.sample import Sample
@@ -117,95 +117,38 @@ class Eye:
     def _truth(self, formula: Formula) -> Truth:
         state = self.states.get(id(formula))
         if isinstance(state, bool):
-            whole: Spans = ((self.begin, FOREVER),) if state else ()
-            return Truth(whole, whole)
+            return self.constant(state)
         if state is not None:
             return self.log[state]
         match formula:
-            case Unary():
-                return self._unary(formula)
-            case Binary():
-                return self._binary(formula)
+            case Unary() | Binary():
+                return read(formula, self.truth, self)
             case _:
                 return Truth((), ((self.begin, FOREVER),))
 
-    def _not(self, truth: Truth) -> Truth:
-        return Truth(
-            outside(truth.may, self.begin, FOREVER), outside(truth.sure, self.begin, FOREVER)
-        )
+    # The operators that all others are made of.
 
-    def _unary(self, formula: Unary) -> Truth:
-        operand = self.truth(formula.operand)
-        window = formula.interval or Interval()
-        always = self.truth_of(True)
-        match formula.op:
-            case UnaryOp.NOT:
-                return self._not(operand)
-            case UnaryOp.EVENTUALLY:
-                return self._until(always, operand, window)
-            case UnaryOp.ALWAYS:
-                return self._not(self._until(always, self._not(operand), window))
-            case UnaryOp.NEXT:
-                return self._next(operand)
-            case UnaryOp.PREVIOUS:
-                return self._previous(operand)
-            case UnaryOp.ONCE:
-                return self._since(always, operand, window)
-            case UnaryOp.HISTORICALLY:
-                return self._historically(operand, window)
-            case UnaryOp.HELD:
-                elapsed: Spans = ((self.begin + (window.high or 0), FOREVER),)
-                whole = self._historically(operand, window)
-                return self._and(whole, Truth(elapsed, elapsed))
-            case UnaryOp.RISE:
-                return self._and(operand, self._not(self._previous(operand)))
-            case UnaryOp.FALL:
-                return self._and(self._not(operand), self._previous(operand))
-            case _:
-                assert_never(formula.op)
-
-    def truth_of(self, value: bool) -> Truth:
+    def constant(self, value: bool) -> Truth:
         """A constant."""
         whole: Spans = ((self.begin, FOREVER),) if value else ()
         return Truth(whole, whole)
 
-    def _binary(self, formula: Binary) -> Truth:
-        left, right = self.truth(formula.left), self.truth(formula.right)
-        window = formula.interval or Interval()
-        match formula.op:
-            case BinaryOp.AND:
-                return self._and(left, right)
-            case BinaryOp.OR:
-                return self._or(left, right)
-            case BinaryOp.IMPLIES:
-                return self._or(self._not(left), right)
-            case BinaryOp.IFF | BinaryOp.XOR:
-                other = right if formula.op is BinaryOp.IFF else self._not(right)
-                neither = self._and(self._not(left), self._not(other))
-                return self._or(self._and(left, other), neither)
-            case BinaryOp.UNTIL:
-                return self._until(left, right, window)
-            case BinaryOp.RELEASE:
-                return self._release(left, right, window)
-            case BinaryOp.WEAK_UNTIL:
-                return self._release(right, self._or(left, right), window)
-            case BinaryOp.STRONG_RELEASE:
-                return self._until(right, self._and(left, right), window)
-            case BinaryOp.SINCE:
-                return self._since(left, right, window)
-            case _:
-                assert_never(formula.op)
+    def no(self, truth: Truth) -> Truth:
+        """A negation."""
+        return Truth(
+            outside(truth.may, self.begin, FOREVER), outside(truth.sure, self.begin, FOREVER)
+        )
 
-    def _and(self, left: Truth, right: Truth) -> Truth:
+    def both(self, left: Truth, right: Truth) -> Truth:
+        """A conjunction."""
         return Truth(both(left.sure, right.sure), both(left.may, right.may))
 
-    def _or(self, left: Truth, right: Truth) -> Truth:
+    def either(self, left: Truth, right: Truth) -> Truth:
+        """A disjunction."""
         return Truth(union([*left.sure, *right.sure]), union([*left.may, *right.may]))
 
-    def _release(self, left: Truth, right: Truth, window: Interval) -> Truth:
-        return self._not(self._until(self._not(left), self._not(right), window))
-
-    def _until(self, left: Truth, right: Truth, window: Interval) -> Truth:
+    def until(self, left: Truth, right: Truth, window: Interval) -> Truth:
+        """Some position of the window."""
         sure = self._until_of(left.sure, right.sure, window.low, window.high)
         may = self._until_of(left.may, right.may, window.low, window.high)
         # A window that ends with the recording is not over: it may yet be met.
@@ -219,10 +162,8 @@ class Eye:
             return until(left, right, low, high)
         return self._lasting(until(left, self._at_positions(right), low, high))
 
-    def _historically(self, operand: Truth, window: Interval) -> Truth:
-        return self._not(self._since(self.truth_of(True), self._not(operand), window))
-
-    def _since(self, left: Truth, right: Truth, window: Interval) -> Truth:
+    def since(self, left: Truth, right: Truth, window: Interval) -> Truth:
+        """The same, backwards."""
         return Truth(
             self._since_of(left.sure, right.sure, window),
             self._since_of(left.may, right.may, window),
@@ -234,7 +175,8 @@ class Eye:
         met = self._at_positions(right)
         return self._lasting(since(left, met, window.low, window.high))
 
-    def _previous(self, operand: Truth) -> Truth:
+    def previous(self, operand: Truth) -> Truth:
+        """At the position before."""
         return Truth(self._previous_of(operand.sure), self._previous_of(operand.may))
 
     def _previous_of(self, spans: Spans) -> Spans:
@@ -248,7 +190,8 @@ class Eye:
         ]
         return union([*kept, *self._behind(spans)])
 
-    def _next(self, operand: Truth) -> Truth:
+    def next(self, operand: Truth) -> Truth:
+        """At the position after."""
         return Truth(self._next_of(operand.sure), self._next_of(operand.may))
 
     def _next_of(self, spans: Spans) -> Spans:

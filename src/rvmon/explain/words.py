@@ -21,7 +21,9 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
+from rvmon.spec.checked.tense import has_future
 from rvmon.spec.print.printer import format_duration, format_numeric
 
 _COMPARED = {
@@ -53,15 +55,6 @@ _AT_END = {
     EndPolicy.PASS: "What is undecided when the recording ends passes.",
     EndPolicy.FAIL: "What is undecided when the recording ends fails.",
 }
-_TEMPORAL = (
-    UnaryOp.NEXT,
-    UnaryOp.EVENTUALLY,
-    UnaryOp.ALWAYS,
-    BinaryOp.UNTIL,
-    BinaryOp.RELEASE,
-    BinaryOp.WEAK_UNTIL,
-    BinaryOp.STRONG_RELEASE,
-)
 
 
 def requirement_in_words(requirement: Requirement) -> list[str]:
@@ -99,18 +92,8 @@ def _starts(requirement: Requirement) -> str:
 
 def _owed(requirement: Requirement) -> str:
     text = in_words(requirement.consequent)
-    at_once = requirement.mode is Mode.UPON and not _is_temporal(requirement.consequent)
+    at_once = requirement.mode is Mode.UPON and not has_future(requirement.consequent)
     return f"at that very instant, {text}" if at_once else text
-
-
-def _is_temporal(formula: Formula) -> bool:
-    match formula:
-        case Unary(op=op, operand=operand):
-            return op in _TEMPORAL or _is_temporal(operand)
-        case Binary(op=op, left=left, right=right):
-            return op in _TEMPORAL or _is_temporal(left) or _is_temporal(right)
-        case _:
-            return False
 
 
 def in_words(formula: Formula, *, positive: bool = True) -> str:
@@ -135,50 +118,62 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
         case BoundAtom(bound=bound):
             what = "the first instant" if bound is Bound.START else "the last instant"
             return f"it is {'' if positive else 'not '}{what}"
-        case Unary():
-            return _unary(formula, positive)
-        case Binary():
-            return _binary(formula, positive)
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return in_words(operand, positive=not positive)
+        case Unary(op=UnaryOp.ONCE, operand=ProbeAtom(probe=Probe.UPDATED, name=name)) if (
+            length := _age(formula.interval)
+        ):
+            verb = "was updated in the last" if positive else "has not been updated for"
+            return f"{name} {verb} {length}"
+        case Binary(op=BinaryOp.AND | BinaryOp.OR as op):
+            word = "and" if (op is BinaryOp.AND) is positive else "or"
+            return _listed([_clause(part, positive) for part in _chain(formula, op)], word)
+        case Unary() | Binary():
+            return _by_entry(formula, positive)
         case _:
             assert_never(formula)
 
 
-def _unary(formula: Unary, positive: bool) -> str:
-    op, interval = formula.op, formula.interval or Interval()
-    operand = formula.operand
-    match op:
-        case UnaryOp.NOT:
-            return in_words(operand, positive=not positive)
-        case UnaryOp.NEXT:
-            return f"at the next sample, {_clause(operand, positive)}"
-        case UnaryOp.PREVIOUS:
-            before = f"at the sample before, {_clause(operand, True)}"
-            return before if positive else f"not so: {before}"
-        case UnaryOp.EVENTUALLY | UnaryOp.ALWAYS:
-            some = (op is UnaryOp.EVENTUALLY) is positive
-            return f"{_ahead(interval, some=some)}, {_clause(operand, positive)}"
-        case UnaryOp.ONCE if _is_age(operand, interval):
-            name = operand.name if isinstance(operand, ProbeAtom) else ""
-            span = format_duration(interval.high or 0)
-            verb = "was updated in the last" if positive else "has not been updated for"
-            return f"{name} {verb} {span}"
-        case UnaryOp.ONCE | UnaryOp.HISTORICALLY:
-            some = (op is UnaryOp.ONCE) is positive
-            return f"{_back(interval, some=some)}, {_clause(operand, positive)}"
-        case UnaryOp.RISE | UnaryOp.FALL:
-            begins = _begins(operand, op is UnaryOp.RISE)
-            return begins if positive else f"it is not the instant at which {begins}"
-        case UnaryOp.HELD:
-            so_long = f"for the last {format_duration(interval.high or 0)} without a break"
-            return f"{'' if positive else 'not '}{so_long}, {_clause(operand, True)}"
-        case _:
-            assert_never(op)
+def _by_entry(formula: Unary | Binary, positive: bool) -> str:
+    """An operator in the words of its entry."""
+    entry = formula.op.entry
+    said = entry.said if positive else entry.denied or f"not so: {entry.said}"
+    return said.format_map(_Parts(formula))
 
 
-def _is_age(operand: Formula, interval: Interval) -> bool:
-    """Whether `once` of an update speaks of the age of a signal."""
-    updated = isinstance(operand, ProbeAtom) and operand.probe is Probe.UPDATED
-    return updated and not interval.low and interval.high is not None
+class _Parts(dict[str, str]):
+    """What stands in the words of an operator; each part is made if it is asked for."""
+
+    def __init__(self, formula: Unary | Binary) -> None:
+        super().__init__()
+        self._formula = formula
+        self._interval = formula.interval or Interval()
+
+    def __missing__(self, part: str) -> str:
+        window = _back if self._formula.op.entry.tense is Tense.PAST else _ahead
+        match part:
+            case "some" | "all":
+                return window(self._interval, some=part == "some")
+            case "ago":
+                return _ago(self._interval)
+            case "length":
+                return format_duration(self._interval.high or 0)
+            case "begins" | "ends":
+                return _begins(self._operand("it"), part == "begins")
+            case _:
+                name = part.removeprefix("no_")
+                return _clause(self._operand(name), name == part)
+
+    def _operand(self, name: str) -> Formula:
+        operand: Formula = getattr(self._formula, "operand" if name == "it" else name)
+        return operand
+
+
+def _age(interval: Interval | None) -> str:
+    """The length of a window of `once` that an update makes an age; empty if it is none."""
+    if interval is None or interval.low or interval.high is None:
+        return ""
+    return format_duration(interval.high)
 
 
 def _begins(operand: Formula, positive: bool) -> str:
@@ -214,52 +209,10 @@ def _back(interval: Interval, *, some: bool) -> str:
     return f"at some time {window}" if some else f"all the time from {window}"
 
 
-def _binary(formula: Binary, positive: bool) -> str:
-    left, right = formula.left, formula.right
-    match formula.op:
-        case BinaryOp.AND | BinaryOp.OR:
-            word = "and" if (formula.op is BinaryOp.AND) is positive else "or"
-            parts = [_clause(part, positive) for part in _chain(formula, formula.op)]
-            return _listed(parts, word)
-        case BinaryOp.IMPLIES:
-            if positive:
-                return f"if {_clause(left, True)}, then {_clause(right, True)}"
-            return f"{_clause(left, True)} but {_clause(right, False)}"
-        case BinaryOp.IFF | BinaryOp.XOR:
-            same = (formula.op is BinaryOp.IFF) is positive
-            if same:
-                return f"{_clause(left, True)} exactly if {_clause(right, True)}"
-            return f"either {_clause(left, True)} or {_clause(right, True)}, not both"
-        case BinaryOp.SINCE:
-            since = f"{_clause(right, True)} {_ago(formula.interval)}and since then "
-            whole = f"{since}{_clause(left, True)}"
-            return whole if positive else f"not so: {whole}"
-        case _:
-            whole = _until(formula)
-            return whole if positive else f"not so: {whole}"
-
-
-def _ago(interval: Interval | None) -> str:
-    if interval is None or interval == Interval():
+def _ago(interval: Interval) -> str:
+    if interval == Interval():
         return "once "
     return f"({_back(interval, some=True)}) "
-
-
-def _until(formula: Binary) -> str:
-    left, right = _clause(formula.left, True), _clause(formula.right, True)
-    when = _ahead(formula.interval or Interval(), some=True)
-    keep = _ahead(formula.interval or Interval(), some=False)
-    match formula.op:
-        case BinaryOp.UNTIL:
-            return f"{when}, {right}; and until then {left}"
-        case BinaryOp.WEAK_UNTIL:
-            return f"{keep}, {left}; until {right}, if that comes earlier"
-        case BinaryOp.RELEASE:
-            return f"{keep}, {right}; up to and at the instant when {left}, if that comes earlier"
-        case BinaryOp.STRONG_RELEASE:
-            return f"{when}, {left}; until then and at that instant {right}"
-        case op:
-            raise AssertionError(f"{op} was told above")
 
 
 def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:

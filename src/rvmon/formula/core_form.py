@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import assert_never
 
 from rvmon.formula.core import Core, Sense
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.obligation import Origin
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, State
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
+    Constant,
     Formula,
     Interval,
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Tense
+from rvmon.spec.checked.reading import rewritten
 from rvmon.spec.checked.tense import has_future
 
 
@@ -38,6 +40,7 @@ class Lowering:
         self.reader = Reader(factory, period)
         self.favour = favour
         self.origins: dict[Core, Origin] = {}
+        self._made_up: dict[int, Formula] = {}
 
     def state(self, formula: Formula, positive: bool) -> State:
         """A state formula that is owed, or whose negation is."""
@@ -55,12 +58,16 @@ class Lowering:
 
     def core(self, formula: Formula, positive: bool) -> Core:
         """A formula, or its negation, in negation normal form."""
-        if has_future(formula):
+        if isinstance(formula, Constant):
+            return self.factory.constant(formula.value is positive)
+        made_up = id(formula) in self._made_up
+        if has_future(formula) or (made_up and _is_connective(formula)):
             made = self._core_future(formula, positive)
         else:
             sense = Sense.TRUE if positive else Sense.FALSE
             made = self.factory.literal(self.state(formula, positive), sense)
-        self.origins.setdefault(made, Origin(formula, positive))
+        if not made_up or _is_step(formula):
+            self.origins.setdefault(made, Origin(formula, positive))
         return made
 
     def _core_future(self, formula: Formula, positive: bool) -> Core:
@@ -69,96 +76,50 @@ class Lowering:
                 return self.core(operand, not positive)
             case Unary(op=UnaryOp.NEXT, operand=operand):
                 return self.factory.next(self.core(operand, positive))
-            case Unary(op=UnaryOp.EVENTUALLY, operand=operand, interval=interval):
-                ends = (self.factory.constant(positive), self.core(operand, positive))
+            case Unary(op=UnaryOp.PREVIOUS, operand=operand):
+                return self.factory.core_previous(self.core(operand, positive), first=not positive)
+            case Binary(op=BinaryOp.AND, left=left, right=right):
+                return self._both(left, right, positive, positive)
+            case Binary(op=BinaryOp.OR, left=left, right=right):
+                return self._both(left, right, positive, not positive)
+            case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
+                ends = (self.core(left, positive), self.core(right, positive))
                 return self._until(*ends, interval, positive)
-            case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=interval):
-                ends = (self.factory.constant(not positive), self.core(operand, positive))
-                return self._until(*ends, interval, not positive)
-            case Unary(op=op, operand=operand, interval=interval):
-                return self._core_past(op, operand, interval, positive)
-            case Binary(op=op, left=left, right=right, interval=interval):
-                return self._core_binary(op, left, right, interval, positive)
+            case Binary(op=BinaryOp.SINCE, left=left, right=right, interval=interval):
+                ends = (self.core(left, positive), self.core(right, positive))
+                return self._since(*ends, interval, not positive)
+            case Unary() | Binary():
+                return self._core_future(self._told(formula), positive)
             case _:
                 raise AssertionError("only operators have something of the future below them")
 
-    def _core_past(
-        self, op: UnaryOp, operand: Formula, interval: Interval | None, positive: bool
-    ) -> Core:
-        """An operator of the past over something of the future."""
-        factory = self.factory
-        match op:
-            case UnaryOp.PREVIOUS:
-                return factory.core_previous(self.core(operand, positive), first=not positive)
-            case UnaryOp.ONCE | UnaryOp.HISTORICALLY:
-                dual = positive is (op is UnaryOp.HISTORICALLY)
-                ends = (factory.constant(not dual), self.core(operand, positive))
-                return self._core_since(*ends, interval, dual)
-            case UnaryOp.HELD:
-                whole = self._core_past(UnaryOp.HISTORICALLY, operand, interval, positive)
-                elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
-                literal = factory.literal(elapsed, Sense.TRUE if positive else Sense.FALSE)
-                return (factory.all_of if positive else factory.any_of)([whole, literal])
-            case UnaryOp.RISE | UnaryOp.FALL:
-                rising = op is UnaryOp.RISE
-                now = self.core(operand, positive is rising)
-                then = self.core(operand, positive is not rising)
-                # Nothing is before the first position: `previous φ` is false there.
-                before = factory.core_previous(then, first=positive is rising)
-                previous = Unary(UnaryOp.PREVIOUS, operand)
-                self.origins.setdefault(before, Origin(previous, positive is not rising))
-                return (factory.all_of if positive else factory.any_of)([now, before])
-            case _:
-                raise AssertionError("other operators were sorted out")
+    def _told(self, formula: Unary | Binary) -> Formula:
+        """The formula in other operators; what is made up for that stands nowhere in the spec."""
+        told = rewritten(formula)
+        own = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
+        waiting = [told]
+        while waiting:
+            node = waiting.pop()
+            if all(node is not operand for operand in own):
+                self._made_up[id(node)] = node
+                if isinstance(node, Unary):
+                    waiting.append(node.operand)
+                elif isinstance(node, Binary):
+                    waiting += (node.left, node.right)
+        return told
 
-    def _core_since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
+    def _since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
         return self.factory.core_since(left, right, low, high, dual=dual)
-
-    def _core_binary(
-        self, op: BinaryOp, left: Formula, right: Formula, interval: Interval | None, positive: bool
-    ) -> Core:
-        match op:
-            case BinaryOp.AND:
-                return self._both(left, positive, right, positive, positive)
-            case BinaryOp.OR:
-                return self._both(left, positive, right, positive, not positive)
-            case BinaryOp.IMPLIES:
-                return self._both(left, not positive, right, positive, not positive)
-            case BinaryOp.IFF | BinaryOp.XOR:
-                same = op is BinaryOp.IFF
-                first = self._both(left, positive, right, positive is same, positive)
-                second = self._both(left, not positive, right, positive is not same, positive)
-                join = self.factory.any_of if positive else self.factory.all_of
-                return join([first, second])
-            case BinaryOp.UNTIL | BinaryOp.RELEASE:
-                ends = (self.core(left, positive), self.core(right, positive))
-                return self._until(*ends, interval, positive is (op is BinaryOp.UNTIL))
-            case BinaryOp.WEAK_UNTIL:  # ψ R (φ or ψ)
-                either = self._both(left, positive, right, positive, not positive)
-                return self._until(self.core(right, positive), either, interval, not positive)
-            case BinaryOp.STRONG_RELEASE:  # ψ U (φ and ψ)
-                both = self._both(left, positive, right, positive, positive)
-                return self._until(self.core(right, positive), both, interval, positive)
-            case BinaryOp.SINCE:
-                ends = (self.core(left, positive), self.core(right, positive))
-                return self._core_since(*ends, interval, not positive)
-            case _:
-                assert_never(op)
 
     def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
         make = self.factory.until if positive else self.factory.release
         return make(left, right, low, high)
 
-    def _both(
-        self, left: Formula, left_sign: bool, right: Formula, right_sign: bool, conjunction: bool
-    ) -> Core:
-        """Both operands or one of them, each with its sign; state formulas become one."""
-        args = [
-            *flattened(left, left_sign, conjunction),
-            *flattened(right, right_sign, conjunction),
-        ]
+    def _both(self, left: Formula, right: Formula, sign: bool, conjunction: bool) -> Core:
+        """Both operands or one of them, with a sign; state formulas become one."""
+        args = [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
         return self.join_signed(args, conjunction)
 
     def join_signed(
@@ -179,6 +140,15 @@ class Lowering:
                 self.origins.setdefault(literal, Origin(_spelled(present, conjunction), True))
             parts.append(literal)
         return (factory.all_of if conjunction else factory.any_of)(parts)
+
+
+def _is_connective(formula: Formula) -> bool:
+    return isinstance(formula, Unary | Binary) and formula.op.entry.tense is Tense.PRESENT
+
+
+def _is_step(formula: Formula) -> bool:
+    """Whether people are told of it although they wrote `rise` or `fall`."""
+    return isinstance(formula, Unary) and formula.op is UnaryOp.PREVIOUS
 
 
 def flattened(formula: Formula, sign: bool, conjunction: bool) -> list[tuple[Formula, bool]]:

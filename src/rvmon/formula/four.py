@@ -30,6 +30,8 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Reading, Tense
+from rvmon.spec.checked.reading import read, rewritten
 
 
 class Four:
@@ -88,7 +90,7 @@ def _same(state: State) -> Callable[[int], State]:
     return lambda _: state
 
 
-class Reader:
+class Reader(Reading[Four]):
     """Makes formulas of the present and past into state formulas.
 
     Args:
@@ -101,39 +103,47 @@ class Reader:
     def __init__(self, factory: Factory, period: int | None) -> None:
         self.factory = factory
         self.period = period
+        self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
         """A formula whose propositions, not the whole, are taken for `unborn` where they are not.
 
         A proposition is an atom or an operator of the past.
         """
+        key = id(formula), unborn
+        if key not in self._literals:  # what `<->` is told in has each operand twice
+            self._literals[key] = formula, self._literal(formula, unborn)
+        return self._literals[key][1]
+
+    def _literal(self, formula: Formula, unborn: int) -> State:
         factory = self.factory
         match formula:
             case Unary(op=UnaryOp.NOT, operand=operand):
                 return factory.negation(self.literal(operand, TRUE - unborn))
-            case Binary(op=BinaryOp.AND | BinaryOp.OR | BinaryOp.IMPLIES as op):
-                left = formula.left
-                if op is BinaryOp.IMPLIES:
-                    left = Unary(UnaryOp.NOT, left)
+            case Binary(op=BinaryOp.AND | BinaryOp.OR as op, left=left, right=right):
                 join = factory.state_all if op is BinaryOp.AND else factory.state_any
-                return join([self.literal(left, unborn), self.literal(formula.right, unborn)])
-            case Binary(op=BinaryOp.IFF | BinaryOp.XOR):
-                return self.literal(_expanded(formula), unborn)
+                return join([self.literal(left, unborn), self.literal(right, unborn)])
+            case Binary(op=op) if op.entry.tense is Tense.PRESENT:
+                return self.literal(rewritten(formula), unborn)
             case _:
                 return self.four(formula).read(unborn)
 
     def four(self, formula: Formula) -> Four:
         """A formula with its four values."""
         match formula:
-            case Unary(op=op, operand=operand, interval=interval):
-                return self._unary(op, self.four(operand), interval)
-            case Binary(op=BinaryOp.IFF | BinaryOp.XOR):
-                return self.four(_expanded(formula))
-            case Binary(op=op, left=left, right=right, interval=interval):
-                return self._binary(op, self.four(left), self.four(right), interval)
+            # The instant before and a whole stretch have births of their own.
+            case Unary(op=UnaryOp.RISE, operand=operand):
+                arg = self.four(operand)
+                return self._all([arg, self.no(self._before(arg))])
+            case Unary(op=UnaryOp.FALL, operand=operand):
+                arg = self.four(operand)
+                return self._all([self.no(arg), self._before(arg)])
+            case Unary(op=UnaryOp.HELD, operand=operand, interval=interval):
+                return self._held(self.four(operand), interval)
+            case Unary() | Binary():
+                return read(formula, self.four, self)
             case Constant(value=value):
-                constant = self.factory.state_true if value else self.factory.state_false
-                return Four(self.factory, _same(constant), mortal=False)
+                return self.constant(value)
             case _:
                 return self._atom(formula)
 
@@ -152,46 +162,15 @@ class Reader:
             unborn=unborn,
         )
 
-    def _unary(self, op: UnaryOp, arg: Four, interval: Interval | None) -> Four:
-        match op:
-            case UnaryOp.NOT:
-                return self._not(arg)
-            case UnaryOp.PREVIOUS:
-                return self._previous(arg)
-            case UnaryOp.ONCE:
-                return self._since(self._constant(True), arg, interval)
-            case UnaryOp.HISTORICALLY:
-                return self._not(self._since(self._constant(True), self._not(arg), interval))
-            case UnaryOp.RISE:
-                before = self._not(self._settled(self._previous(arg)))
-                return self._all([arg, before])
-            case UnaryOp.FALL:
-                return self._all([self._not(arg), self._settled(self._previous(arg))])
-            case UnaryOp.HELD:
-                return self._held(arg, interval)
-            case UnaryOp.NEXT | UnaryOp.EVENTUALLY | UnaryOp.ALWAYS:
-                raise AssertionError("future operators were sorted out")
-            case _:
-                assert_never(op)
+    # The operators that all others are made of.
 
-    def _binary(self, op: BinaryOp, left: Four, right: Four, interval: Interval | None) -> Four:
-        match op:
-            case BinaryOp.AND:
-                return self._all([left, right])
-            case BinaryOp.OR:
-                return self._any([left, right])
-            case BinaryOp.IMPLIES:
-                return self._any([self._not(left), right])
-            case BinaryOp.SINCE:
-                return self._since(left, right, interval)
-            case _:
-                raise AssertionError("other operators were sorted out")
-
-    def _constant(self, value: bool) -> Four:
+    def constant(self, value: bool) -> Four:
+        """A constant."""
         state = self.factory.state_true if value else self.factory.state_false
         return Four(self.factory, _same(state), mortal=False)
 
-    def _not(self, arg: Four) -> Four:
+    def no(self, arg: Four) -> Four:
+        """Not born where its operand is not."""
         if arg.negated is not None:
             return arg.negated
         negation = self.factory.negation
@@ -205,12 +184,17 @@ class Reader:
         made.negated = arg
         return made
 
-    def _settled(self, arg: Four) -> Four:
-        """FALSE where it is not born, as what lies before the trace."""
-        return Four(self.factory, _same(arg.read(FALSE)), mortal=False)
+    def both(self, left: Four, right: Four) -> Four:
+        """Not born where no operand is."""
+        return self._all([left, right])
 
-    def _any(self, args: Sequence[Four]) -> Four:
-        return self._not(self._all([self._not(arg) for arg in args]))
+    def next(self, _: Four) -> Four:
+        """It does not occur."""
+        raise AssertionError("future operators were sorted out")
+
+    def until(self, *_: object) -> Four:
+        """It does not occur."""
+        raise AssertionError("future operators were sorted out")
 
     def _all(self, args: Sequence[Four]) -> Four:
         factory = self.factory
@@ -242,12 +226,12 @@ class Reader:
             states.append(factory.leaf(Unborn(tuple(sorted(signals.items())))))
         return factory.state_any(states)
 
-    def _since(self, left: Four, right: Four, interval: Interval | None) -> Four:
+    def since(self, left: Four, right: Four, interval: Interval) -> Four:
         """Positions at which an operand is not born are passed over."""
         factory = self.factory
         low, high = self._window(interval)
         if high is not None and low > high:
-            return self._constant(False)
+            return self.constant(False)
         value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
         if not right.mortal:
             return Four(factory, _same(value), mortal=False)
@@ -271,12 +255,17 @@ class Reader:
 
         return Four(factory, read, unborn=unborn)
 
-    def _previous(self, arg: Four) -> Four:
+    def previous(self, arg: Four) -> Four:
+        """Not born where its operand was not."""
         factory = self.factory
         value = factory.previous(arg.read(FALSE))
         if not arg.mortal:
             return Four(factory, _same(value), mortal=False)
         return self._besides(value, factory.previous(arg.unborn))
+
+    def _before(self, arg: Four) -> Four:
+        """What it was at the position before: false if not born, as what lies before the trace."""
+        return Four(self.factory, _same(self.previous(arg).read(FALSE)), mortal=False)
 
     def _held(self, arg: Four, interval: Interval | None) -> Four:
         """As long as it must have held, it must have been born."""
@@ -309,16 +298,6 @@ class Reader:
             low = -(-low // self.period) * self.period
             high = None if high is None else high // self.period * self.period
         return low, high
-
-
-def _expanded(formula: Binary) -> Formula:
-    """`a <-> b` as `(a & b) | (!a & !b)`, `a xor b` as `(a & !b) | (!a & b)`."""
-    left, right = formula.left, formula.right
-    not_left, not_right = Unary(UnaryOp.NOT, left), Unary(UnaryOp.NOT, right)
-    if formula.op is BinaryOp.XOR:
-        right, not_right = not_right, right
-    both = Binary(BinaryOp.AND, left, right)
-    return Binary(BinaryOp.OR, both, Binary(BinaryOp.AND, not_left, not_right))
 
 
 def without_span(atom: Atom) -> Shown:

@@ -30,6 +30,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
+from rvmon.spec.checked.operators import Tense, Window
 from rvmon.testing.dice import Dice, chance, pick, weighted
 from rvmon.testing.vocabulary import (
     BOOLS,
@@ -158,27 +159,30 @@ def _probe(dice: Dice, shape: Shape) -> Formula:
     return ProbeAtom(probe, pick(dice, names))
 
 
-_CONNECTIVES = (
-    (6, BinaryOp.AND),
-    (6, BinaryOp.OR),
-    (3, BinaryOp.IMPLIES),
-    (1, BinaryOp.IFF),
-    (1, BinaryOp.XOR),
-)
-_FUTURE_UNARY = ((3, UnaryOp.EVENTUALLY), (3, UnaryOp.ALWAYS))
-_FUTURE_BINARY = (
-    (4, BinaryOp.UNTIL),
-    (2, BinaryOp.RELEASE),
-    (2, BinaryOp.WEAK_UNTIL),
-    (2, BinaryOp.STRONG_RELEASE),
-)
-_PAST_UNARY = (
-    (3, UnaryOp.ONCE),
-    (3, UnaryOp.HISTORICALLY),
-    (2, UnaryOp.RISE),
-    (2, UnaryOp.FALL),
-    (2, UnaryOp.HELD),
-)
+_LIKELY: dict[UnaryOp | BinaryOp, int] = {
+    BinaryOp.AND: 6,
+    BinaryOp.OR: 6,
+    BinaryOp.IFF: 1,
+    BinaryOp.XOR: 1,
+    BinaryOp.UNTIL: 4,
+    BinaryOp.IMPLIES: 3,
+    UnaryOp.EVENTUALLY: 3,
+    UnaryOp.ALWAYS: 3,
+    UnaryOp.ONCE: 3,
+    UnaryOp.HISTORICALLY: 3,
+}
+"""How often an operator comes among those of its kind, if not 2 times."""
+
+_STEPS = (UnaryOp.NOT, UnaryOp.NEXT, UnaryOp.PREVIOUS)
+
+
+def _unary_of(tense: Tense) -> tuple[tuple[int, UnaryOp], ...]:
+    found = (op for op in UnaryOp if op.entry.tense is tense and op not in _STEPS)
+    return tuple((_LIKELY.get(op, 2), op) for op in found)
+
+
+def _binary_of(tense: Tense) -> tuple[tuple[int, BinaryOp], ...]:
+    return tuple((_LIKELY.get(op, 2), op) for op in BinaryOp if op.entry.tense is tense)
 
 
 def consequent(dice: Dice, shape: Shape, depth: int) -> Formula:
@@ -213,7 +217,7 @@ def formula(dice: Dice, shape: Shape, depth: int) -> Formula:
         case "not":
             return Unary(UnaryOp.NOT, formula(dice, shape, depth - 1))
         case "connective":
-            return _two(dice, shape, depth, weighted(dice, _CONNECTIVES), None)
+            return _binary(dice, shape, depth, Tense.PRESENT)
         case "future unary":
             return _future_unary(dice, shape, depth)
         case "future binary":
@@ -223,34 +227,39 @@ def formula(dice: Dice, shape: Shape, depth: int) -> Formula:
         case "past unary":
             return past_unary(dice, below, depth)
         case "since":
-            return _two(dice, below, depth, BinaryOp.SINCE, interval(dice, shape))
+            return _binary(dice, below, depth, Tense.PAST)
         case _:
             return Unary(UnaryOp.PREVIOUS, formula(dice, below, depth - 1))
 
 
-def _two(dice: Dice, shape: Shape, depth: int, op: BinaryOp, window: Interval | None) -> Formula:
-    left = formula(dice, shape, dice.randint(0, depth - 1))
-    return Binary(op, left, formula(dice, shape, depth - 1), window)
-
-
 def _future_unary(dice: Dice, shape: Shape, depth: int) -> Formula:
-    op = weighted(dice, _FUTURE_UNARY)
+    op = weighted(dice, _unary_of(Tense.FUTURE))
     window = interval(dice, shape)
     return Unary(op, formula(dice, shape, depth - 1), window)
 
 
 def _future_binary(dice: Dice, shape: Shape, depth: int) -> Formula:
-    op = weighted(dice, _FUTURE_BINARY)
-    from_zero = op in (BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE)
-    return _two(dice, shape, depth, op, interval(dice, shape, from_zero=from_zero))
+    return _binary(dice, shape, depth, Tense.FUTURE)
+
+
+def _binary(dice: Dice, shape: Shape, depth: int, tense: Tense) -> Formula:
+    ops = _binary_of(tense)
+    op = weighted(dice, ops) if len(ops) > 1 else ops[0][1]
+    window = None
+    if op.entry.window is not Window.NONE:
+        window = interval(dice, shape, from_zero=op.entry.window is Window.FROM_NOW)
+    left = formula(dice, shape, dice.randint(0, depth - 1))
+    return Binary(op, left, formula(dice, shape, depth - 1), window)
 
 
 def past_unary(dice: Dice, shape: Shape, depth: int) -> Formula:
     """A random unary past operator over a formula one less deep."""
-    op = weighted(dice, _PAST_UNARY)
+    op = weighted(dice, _unary_of(Tense.PAST))
     operand = formula(dice, shape, depth - 1)
-    if op is UnaryOp.HELD:
-        return Unary(op, operand, Interval(0, dice.randint(0, shape.longest)))
-    if op in (UnaryOp.RISE, UnaryOp.FALL):
-        return Unary(op, operand)
-    return Unary(op, operand, interval(dice, shape))
+    match op.entry.window:
+        case Window.LENGTH:
+            return Unary(op, operand, Interval(0, dice.randint(0, shape.longest)))
+        case Window.NONE:
+            return Unary(op, operand)
+        case _:
+            return Unary(op, operand, interval(dice, shape))

@@ -23,7 +23,6 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     SignalValue,
     Unary,
-    UnaryOp,
     UpdateValue,
 )
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement, Signal, TimeModel
@@ -32,7 +31,6 @@ from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 
 _INFIX = (NumericOp.ADD, NumericOp.SUB, NumericOp.MUL, NumericOp.DIV)
-_CALLED = (UnaryOp.RISE, UnaryOp.FALL)
 
 
 def show_case(case: Case) -> str:
@@ -86,6 +84,7 @@ def _requirement(requirement: Requirement) -> Iterator[str]:
 def show(formula: Formula) -> str:
     """A formula as text, with every bracket.
 
+    >>> from rvmon.spec.checked.formula import UnaryOp
     >>> show(Unary(UnaryOp.EVENTUALLY, SignalAtom("p"), Interval(0, 3)))
     '(F[0 ns, 3 ns] p)'
     """
@@ -100,11 +99,9 @@ def show(formula: Formula) -> str:
             return f"{probe.value}({name})"
         case BoundAtom(bound=bound):
             return bound.value
-        case Unary(op=UnaryOp.HELD, operand=operand, interval=interval):
-            high = 0 if interval is None else interval.high
-            return f"held({show(operand)}, {high} ns)"
-        case Unary(op=op, operand=operand) if op in _CALLED:
-            return f"{op.value}({show(operand)})"
+        case Unary(op=op, operand=operand, interval=interval) if op.entry.called:
+            length = "" if interval is None else f", {interval.high} ns"
+            return f"{op.value}({show(operand)}{length})"
         case Unary(op=op, operand=operand, interval=interval):
             return f"({op.value}{_window(interval)} {show(operand)})"
         case Binary(op=op, left=left, right=right, interval=interval):

@@ -1,4 +1,8 @@
-"""The truth of formulas after a prefix, straight from their definitions."""
+"""The truth of formulas after a prefix, straight from their definitions.
+
+Operators are read here as SEMANTICS says, not by their entries: those are to be found right by it.
+So are they in `walk`, `ready` and `pulse` beside it.
+"""
 
 from __future__ import annotations
 

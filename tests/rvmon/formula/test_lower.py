@@ -18,6 +18,7 @@ from tests.tools.build import (
     x,
 )
 
+import rvmon
 from rvmon.formula.core import Literal, Release, Sense, Since, Until
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
@@ -101,3 +102,14 @@ def test_a_trigger_that_speaks_of_the_future_is_refused():
     with pytest.raises(UnmonitorableError):
         owed(p, upon=once(eventually(p, 0, 2), 0, 3))
     assert isinstance(owed(once(eventually(p, 0, 2), 0, 3), upon=e), Since)
+
+
+def test_nested_equivalences_take_no_time():
+    """What stands for `<->` has each operand twice; yet each is read once."""
+    nested = "p"
+    for _ in range(30):
+        nested = f"(q <-> {nested})"
+    head = "spec s\nsignal p, q : bool\nrequirement R\n  upon"
+    spec = rvmon.loads(f"{head} {nested} then {nested}\n")
+    run = [(0, {"p": False, "q": False}), (10, {"p": True})]
+    assert spec.evaluate(run).verdicts == {"R": rvmon.Verdict.PASS}

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from rvmon.errors import SpecError
+from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
 from rvmon.spec.rules.findings import MOST
@@ -13,7 +14,7 @@ from rvmon.spec.rules.goals import MOST_COMBINATIONS
 from rvmon.spec.syntax.effort import DEEPEST, LARGEST
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.units import unit_table
-from rvmon.spec.syntax.words import CLAUSE_WORDS, FUNCTIONS, INFIX_WORDS, ITEM_WORDS, RESERVED
+from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, ITEM_WORDS, RESERVED
 
 DOCS = Path(__file__).parents[3] / "docs" / "reference"
 PAGE = (DOCS / "language.md").read_text(encoding="utf-8")
@@ -37,7 +38,7 @@ OPEN = ("NAME", "CALL", "NUMBER", "UNIT", "STRING", *grammar().ignore_tokens)
 
 def grammar_words():
     """All words of the language: those in the grammar's terminals, and those that are no names."""
-    yield from RESERVED | INFIX_WORDS | CLAUSE_WORDS | FUNCTIONS
+    yield from RESERVED | INFIX_WORDS | CLAUSE_WORDS | FUNCTIONS.keys()
     for terminal in grammar().terminals:
         if terminal.name not in OPEN:
             pattern = terminal.pattern.value.replace(r"\s", " ").replace(r"\w", " ")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import product
 from math import prod
 
@@ -23,6 +23,8 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
+from rvmon.spec.checked.operators import Connectives, Tense
+from rvmon.spec.checked.reading import read
 from rvmon.spec.checked.tense import end_part, future_part
 from rvmon.spec.rules import goals as rules
 from rvmon.spec.rules import names as name_rules
@@ -234,13 +236,17 @@ def _combinations(
     )
 
 
-_CONNECTIVES: dict[BinaryOp, Callable[[bool, bool], bool]] = {
-    BinaryOp.AND: lambda left, right: left and right,
-    BinaryOp.OR: lambda left, right: left or right,
-    BinaryOp.IMPLIES: lambda left, right: not left or right,
-    BinaryOp.IFF: lambda left, right: left == right,
-    BinaryOp.XOR: lambda left, right: left != right,
-}
+class _Booleans(Connectives[bool]):
+    """Connectives of what is known."""
+
+    def constant(self, value: bool) -> bool:
+        return value
+
+    def no(self, operand: bool) -> bool:
+        return not operand
+
+    def both(self, left: bool, right: bool) -> bool:
+        return left and right
 
 
 def _about_bins(formula: Formula, bins: Mapping[str, Sequence[str]]) -> bool:
@@ -256,7 +262,8 @@ def _about_bins(formula: Formula, bins: Mapping[str, Sequence[str]]) -> bool:
         case Unary(op=UnaryOp.NOT, operand=operand):
             return _about_bins(operand, bins)
         case Binary(op=op, left=left, right=right):
-            return op in _CONNECTIVES and _about_bins(left, bins) and _about_bins(right, bins)
+            present = op.entry.tense is Tense.PRESENT
+            return present and _about_bins(left, bins) and _about_bins(right, bins)
         case _:
             return False
 
@@ -272,9 +279,7 @@ def _holds(formula: Formula, combination: Mapping[str, str]) -> bool:
             ]
             first, second = (n.value if isinstance(n, Literal) else n for n in names)
             return (first == second) is (op is CompareOp.EQ)
-        case Unary(operand=operand):
-            return not _holds(operand, combination)
-        case Binary(op=op, left=left, right=right):
-            return _CONNECTIVES[op](_holds(left, combination), _holds(right, combination))
+        case Unary() | Binary():
+            return read(formula, lambda part: _holds(part, combination), _Booleans())
         case _:
             return False

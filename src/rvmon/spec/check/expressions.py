@@ -15,7 +15,6 @@ from rvmon.spec.check.table import Table, close_name, close_unit
 from rvmon.spec.check.values import EVERYWHERE, Closure, Quantity, Scope, Value
 from rvmon.spec.checked.formula import (
     Binary,
-    BinaryOp,
     BoundAtom,
     Constant,
     EventAtom,
@@ -26,8 +25,8 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Tense, Window
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.spec.checked.tense import FUTURE
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import time as time_rules
@@ -51,14 +50,12 @@ from rvmon.spec.syntax.expressions import (
     Prefix,
     Quantified,
     Truth,
-    Window,
 )
+from rvmon.spec.syntax.expressions import Window as WindowSyntax
 from rvmon.spec.syntax.items import ConstItem, DefineItem
 from rvmon.spec.syntax.unit import PLAIN
 from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
 from rvmon.trace.schema import Kind
-
-_TEMPORAL = FUTURE | {BinaryOp.SINCE}
 
 
 class Checker:
@@ -297,11 +294,11 @@ class Checker:
         return Unary(prefix.op, formula_of(operand, prefix.operand.span), interval, prefix.span)
 
     def _interval_of(
-        self, op: UnaryOp, window: Window | None, span: Span, scope: Scope
+        self, op: UnaryOp, window: WindowSyntax | None, span: Span, scope: Scope
     ) -> Interval | None:
-        if op is UnaryOp.NOT:
+        if op.entry.tense is Tense.PRESENT:
             return None
-        if op in (UnaryOp.NEXT, UnaryOp.PREVIOUS):
+        if op.entry.window is Window.NONE:
             if self.table.time is TimeModel.HELD:
                 raise Refusal(time_rules.step_in_held_time(span.text, span))
             if window is not None:
@@ -312,10 +309,10 @@ class Checker:
     def _infix(self, infix: Infix, scope: Scope) -> Formula:
         operands = [self.value(side, scope) for side in (infix.left, infix.right)]
         interval = None
-        if infix.op in _TEMPORAL:
+        if infix.op.entry.window is not Window.NONE:
             interval = self.interval(infix.window, scope)
-            weak = infix.op in (BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE)
-            if weak and interval.low > 0 and infix.window is not None:
+            from_now = infix.op.entry.window is Window.FROM_NOW
+            if from_now and interval.low > 0 and infix.window is not None:
                 raise Refusal(time_rules.late_weak_window(infix.op_span.text, infix.window.span))
         left, right = operands
         if left is None or right is None:
@@ -323,7 +320,7 @@ class Checker:
         sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
         return Binary(infix.op, *sides, interval, infix.span)
 
-    def interval(self, window: Window | None, scope: Scope) -> Interval:
+    def interval(self, window: WindowSyntax | None, scope: Scope) -> Interval:
         """The window in ticks; none is from 0 on.
 
         Raises:

@@ -18,6 +18,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
+from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal, Reported
@@ -25,23 +26,9 @@ from rvmon.spec.syntax.expressions import Call, Name
 from rvmon.spec.syntax.mends import NEVER
 from rvmon.spec.syntax.unit import PLAIN
 from rvmon.spec.syntax.units import parse_unit, quotient
-from rvmon.spec.syntax.words import FUNCTIONS
 from rvmon.trace.schema import Kind
 
-_ARGUMENTS = {
-    "rise": 1,
-    "fall": 1,
-    "held": 2,
-    "known": 1,
-    "updated": 1,
-    "changed": 1,
-    "age": 1,
-    "prev": 1,
-    "delta": 1,
-    "rate": 1,
-    **{op.value: op.entry.least for op in NumericOp if op.entry.most is not None},
-}
-"""How many arguments a function takes; those that are not here take two or more."""
+_COUNTS = ("no argument", "one argument", "two arguments")
 
 
 def applied(operands: Operands, call: Call, scope: Scope) -> Value:
@@ -52,62 +39,53 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
         Reported: an argument is wrong.
     """
     name = call.function.text
-    if name not in FUNCTIONS:
+    function = FUNCTIONS.get(name)
+    if function is None:
         if name in operands.table.doubtful:
             raise Reported
         raise Refusal(_unknown(operands, call))
-    _check_count(call)
-    match name:
-        case "rise" | "fall":
-            return Unary(UnaryOp(name), operands.formula(call.args[0], scope), None, call.span)
-        case "held":
+    _check_count(call, function)
+    match function.means:
+        case UnaryOp() as op:
             operand = operands.formula(call.args[0], scope)
-            ticks = operands.duration(call.args[1], scope)
-            return Unary(UnaryOp.HELD, operand, Interval(0, ticks), call.span)
-        case "known" | "changed":
-            signal, _ = _named(operands, call, scope, events=False)
-            return ProbeAtom(Probe(name), signal, call.span)
-        case "updated":
-            return ProbeAtom(
-                Probe.UPDATED, _named(operands, call, scope, events=True)[0], call.span
-            )
-        case "age":
-            return Age(_named(operands, call, scope, events=True)[0])
-        case "prev" | "delta" | "rate":
-            return _of_updates(operands, call, scope)
-        case _:
+            lengths = [operands.duration(arg, scope) for arg in call.args[1:]]
+            return Unary(op, operand, Interval(0, *lengths) if lengths else None, call.span)
+        case Probe() as probe:
+            return ProbeAtom(probe, _named(operands, call, scope, function)[0], call.span)
+        case UpdateFunction() as of_updates:
+            return _of_updates(operands, of_updates, _named(operands, call, scope, function))
+        case NumericOp() as op:
             quantities = operands.quantities(call.args, scope)
             placed = zip(quantities, (arg.span for arg in call.args), strict=True)
-            return arithmetic(NumericOp.of(name), list(placed), call.span)
+            return arithmetic(op, list(placed), call.span)
+        case None:
+            return Age(_named(operands, call, scope, function)[0])
 
 
-def _check_count(call: Call) -> None:
-    name, given = call.function.text, len(call.args)
-    wanted = _ARGUMENTS.get(name)
-    if wanted is None:
-        if given < 2:
-            raise Refusal(rules.argument_count(call.span, name, "two or more arguments", given))
-    elif given != wanted:
-        takes = "one argument" if wanted == 1 else "two arguments"
-        raise Refusal(rules.argument_count(call.span, name, takes, given))
+def _check_count(call: Call, function: Function) -> None:
+    wanted, given = len(function.arguments), len(call.args)
+    if given < wanted or (given > wanted and not function.more):
+        takes = _COUNTS[wanted] if wanted < len(_COUNTS) else f"{wanted} arguments"
+        takes = f"{takes.removesuffix(' arguments')} or more arguments" if function.more else takes
+        raise Refusal(rules.argument_count(call.span, function.name, takes, given))
 
 
-def _named(operands: Operands, call: Call, scope: Scope, *, events: bool) -> tuple[str, Span]:
+def _named(operands: Operands, call: Call, scope: Scope, function: Function) -> tuple[str, Span]:
     """The only argument, which has to be the name of a signal (or of an event)."""
-    needed = "the name of a signal or event" if events else "the name of a signal"
+    events = function.arguments[0] is Argument.SOURCE
     name, inner = operands.peeled(call.args[0], scope)
     if isinstance(name, Name) and name.text not in inner.names:
         table = operands.table
         if name.text in table.signals or (events and name.text in table.events):
             return name.text, name.span
         operands.values((name,), inner)
-    raise Refusal(rules.argument_kind(call.args[0].span, call.function.text, needed))
+    needed = function.arguments[0].value
+    raise Refusal(rules.argument_kind(call.args[0].span, function.name, needed))
 
 
-def _of_updates(operands: Operands, call: Call, scope: Scope) -> Quantity:
-    name, span = _named(operands, call, scope, events=False)
+def _of_updates(operands: Operands, function: UpdateFunction, named: tuple[str, Span]) -> Quantity:
+    name, span = named
     signal = operands.table.signals[name]
-    function = UpdateFunction(call.function.text)
     if function is not UpdateFunction.PREV and signal.type.kind in (Kind.BOOL, Kind.LABEL):
         raise Refusal(rules.argument_kind(span, function, "a signal with numbers"))
     unit = operands.table.units.get(name, PLAIN)

@@ -25,18 +25,6 @@ from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules.rule import Refusal
 
-_UNARY_DUAL = {
-    UnaryOp.EVENTUALLY: UnaryOp.ALWAYS,
-    UnaryOp.ALWAYS: UnaryOp.EVENTUALLY,
-    UnaryOp.NEXT: UnaryOp.NEXT,
-}
-_BINARY_DUAL = {
-    BinaryOp.UNTIL: BinaryOp.RELEASE,
-    BinaryOp.RELEASE: BinaryOp.UNTIL,
-    BinaryOp.WEAK_UNTIL: BinaryOp.STRONG_RELEASE,
-    BinaryOp.STRONG_RELEASE: BinaryOp.WEAK_UNTIL,
-}
-
 
 def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
     """The formula that a run fulfils if and only if it is one of a system with the property.
@@ -114,7 +102,7 @@ class _Linear:
         span = state.span or self.place
         if state.universal is not positive:
             raise Refusal(rules.some_path(span))
-        op = state.op if positive else _UNARY_DUAL[state.op]
+        op = state.op if positive else UnaryOp.of(state.op.entry.dual)
         if op is UnaryOp.NEXT and self.time is TimeModel.HELD:
             raise Refusal(time_rules.step_in_held_time("next", span))
         if op is UnaryOp.EVENTUALLY and not _is_present(state.operand):
@@ -125,7 +113,7 @@ class _Linear:
         span = state.span or self.place
         if state.universal is not positive:
             raise Refusal(rules.some_path(span))
-        op = state.op if positive else _BINARY_DUAL[state.op]
+        op = state.op if positive else BinaryOp.of(state.op.entry.dual)
         left, right = state.left, state.right
         if op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
             # Where the right one comes has to be seen at once: p and φ until not p and ψ.

@@ -16,6 +16,7 @@ from rvmon.spec.checked.ctl import (
     StateNot,
 )
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.tense import FUTURE, subformulas
 from rvmon.spec.rules import properties as rules
 from rvmon.spec.rules.rule import Refusal, Reported
@@ -30,8 +31,6 @@ from rvmon.spec.syntax.expressions import (
     Quantified,
 )
 from rvmon.spec.syntax.walk import expressions_in
-
-_CONNECTIVES = (BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.IMPLIES, BinaryOp.IFF)
 
 
 def checked_property(checker: Checker, name: str, expression: Expression) -> Property | None:
@@ -97,7 +96,7 @@ def _connected(checker: Checker, expression: Expression, foreign: frozenset[str]
     match expression:
         case Prefix(op=UnaryOp.NOT, operand=operand):
             return StateNot(_state(checker, operand, foreign), span)
-        case Infix(op=op, left=left, right=right) if op in _CONNECTIVES:
+        case Infix(op=op, left=left, right=right) if op.entry.tense is Tense.PRESENT:
             return StateBinary(op, *_both(checker, left, right, foreign), span)
         case Prefix() | Infix():
             raise Refusal(rules.bare_time(expression.op_span))
@@ -138,7 +137,5 @@ def _needs_splitting(expression: Expression, foreign: frozenset[str]) -> bool:
 
 def _refuse_bare_time(formula: Formula, expression: Expression) -> None:
     for part in subformulas(formula):
-        connective = isinstance(part, Binary) and part.op in _CONNECTIVES
-        negation = isinstance(part, Unary) and part.op is UnaryOp.NOT
-        if isinstance(part, Unary | Binary) and not connective and not negation:
+        if isinstance(part, Unary | Binary) and part.op.entry.tense is not Tense.PRESENT:
             raise Refusal(rules.bare_time(part.span or expression.span))

@@ -21,6 +21,8 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Tense
+from rvmon.spec.checked.reading import rewritten
 from rvmon.spec.checked.tense import has_future
 
 _ALL = Interval()
@@ -70,6 +72,7 @@ def _until_closed(formula: Formula, closing: Formula) -> Formula:
     """
     if not has_future(formula):
         return formula
+    # People read what comes of it: these have shorter forms than what they are made of.
     match formula:
         case Unary(op=op, operand=operand, interval=interval, span=span):
             inner = _until_closed(operand, closing)
@@ -82,6 +85,8 @@ def _until_closed(formula: Formula, closing: Formula) -> Formula:
                     return Binary(BinaryOp.RELEASE, closing, excused, interval, span)
                 case UnaryOp.NEXT:
                     return Unary(op, _and(inner, _not(closing)), None, span)
+                case _ if op.entry.tense is Tense.FUTURE:
+                    return _until_closed(rewritten(formula), closing)
                 case _:
                     return Unary(op, inner, interval, span)
         case Binary(op=op, interval=interval, span=span):
@@ -96,6 +101,8 @@ def _until_closed(formula: Formula, closing: Formula) -> Formula:
                     right = _or(right, closing)
                 case BinaryOp.STRONG_RELEASE:
                     right = _and(right, _not(closing))
+                case _ if op.entry.tense is Tense.FUTURE:
+                    return _until_closed(rewritten(formula), closing)
             return Binary(op, left, right, interval, span)
         case _:
             return formula

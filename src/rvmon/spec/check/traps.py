@@ -25,7 +25,6 @@ from rvmon.spec.rules import traps as rules
 from rvmon.spec.syntax.items import LetClause
 
 _FIRST = "at the first instant"
-_STEPS = frozenset((UnaryOp.RISE, UnaryOp.FALL))
 
 
 def traps_at_trigger(
@@ -63,7 +62,7 @@ def traps_at_start(
         place = part.span or span
         if truth_at(part, {}) is not None:
             continue
-        if always and isinstance(part, Unary) and part.op in _STEPS:
+        if always and isinstance(part, Unary) and part.op.entry.pulse:
             mend = "an edge is one instant: say what follows it, `upon … then …`"
             when = "at the second instant at the latest" if part.op is UnaryOp.RISE else _FIRST
             yield rules.false_at_first(place, when, mend)
@@ -166,5 +165,5 @@ def _reach(part: Formula) -> int:
 def _operand(formula: Formula) -> str:
     """A formula as it stands beside an operator of time."""
     text = format_formula(formula)
-    is_call = isinstance(formula, Unary) and formula.op in (_STEPS | {UnaryOp.HELD})
+    is_call = isinstance(formula, Unary) and formula.op.entry.called
     return text if is_call or isinstance(formula, Atom) else f"({text})"

@@ -9,22 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked.arithmetic import NumericOp
-
-if TYPE_CHECKING:
-    pass
-
-
-@dataclass(frozen=True, slots=True)
-class Interval:
-    """The closed interval `[low, high]` of durations in ticks; `high` is `None` if unbounded."""
-
-    low: int = 0
-    high: int | None = None
-
+from rvmon.spec.checked.operators import BinaryOp as BinaryOp
+from rvmon.spec.checked.operators import Interval as Interval
+from rvmon.spec.checked.operators import UnaryOp as UnaryOp
 
 # Numeric (and label) expressions, evaluated in Python floats, ints or strings.
 
@@ -166,36 +156,6 @@ class BoundAtom:
 
     bound: Bound
     span: Span | None = None
-
-
-class UnaryOp(StrEnum):
-    """Unary operators; those of time but `X Y rise fall` carry an interval (`held` is [0, D])."""
-
-    NOT = "!"
-    NEXT = "X"
-    EVENTUALLY = "F"
-    ALWAYS = "G"
-    PREVIOUS = "Y"
-    ONCE = "O"
-    HISTORICALLY = "H"
-    RISE = "rise"
-    FALL = "fall"
-    HELD = "held"
-
-
-class BinaryOp(StrEnum):
-    """Binary operators; those of time carry an interval."""
-
-    AND = "and"
-    OR = "or"
-    IMPLIES = "->"
-    IFF = "<->"
-    XOR = "xor"
-    UNTIL = "U"
-    RELEASE = "R"
-    WEAK_UNTIL = "W"
-    STRONG_RELEASE = "M"
-    SINCE = "S"
 
 
 @dataclass(frozen=True, slots=True)

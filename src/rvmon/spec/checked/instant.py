@@ -6,7 +6,6 @@ from collections.abc import Hashable, Mapping
 
 from rvmon.spec.checked.formula import (
     Binary,
-    BinaryOp,
     Bound,
     BoundAtom,
     Compare,
@@ -20,6 +19,8 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.operators import Reading
+from rvmon.spec.checked.reading import read
 from rvmon.spec.checked.tense import fields_in
 
 Facts = Mapping[Hashable, bool]
@@ -33,38 +34,62 @@ _OPPOSITE = {
     CompareOp.GT: CompareOp.LE,
     CompareOp.NE: CompareOp.EQ,
 }
-_WHOLE = Interval()
 
 
 def facts_of(formula: Formula, truth: bool = True) -> dict[Hashable, bool]:
     """What has to be so where a formula of the present and past is true, or false.
 
+    >>> from rvmon.spec.checked.formula import BinaryOp
     >>> facts_of(Binary(BinaryOp.AND, EventAtom("e"), Unary(UnaryOp.NOT, SignalAtom("p"))))
     {'e': True, 'p': False}
     """
+    return dict(_both_facts(formula)[0 if truth else 1])
+
+
+Both = tuple[dict[Hashable, bool], dict[Hashable, bool]]
+"""What has to be so where a formula is true, and where it is false."""
+
+
+class _Facts(Reading[Both]):
+    """The facts of operators; of what looks elsewhere there are none."""
+
+    def constant(self, _: bool) -> Both:
+        return {}, {}
+
+    def no(self, operand: Both) -> Both:
+        return operand[1], operand[0]
+
+    def both(self, left: Both, right: Both) -> Both:
+        shared = {key: truth for key, truth in left[1].items() if right[1].get(key) is truth}
+        return {**left[0], **right[0]}, shared
+
+    def next(self, _: Both) -> Both:
+        return {}, {}
+
+    def previous(self, _: Both) -> Both:
+        return {}, {}
+
+    def until(self, *_: object) -> Both:
+        return {}, {}
+
+    def since(self, *_: object) -> Both:
+        return {}, {}
+
+
+def _both_facts(formula: Formula) -> Both:
     match formula:
         case Constant():
-            return {}
-        case Unary(op=UnaryOp.NOT, operand=operand):
-            return facts_of(operand, not truth)
-        case Unary(op=UnaryOp.RISE | UnaryOp.HELD, operand=operand) if truth:
-            return facts_of(operand)
-        case Unary(op=UnaryOp.FALL, operand=operand) if truth:
-            return facts_of(operand, False)
-        case Binary(op=BinaryOp.AND | BinaryOp.OR as op, left=left, right=right):
-            sides = facts_of(left, truth), facts_of(right, truth)
-            return _joined(*sides, all_hold=truth is (op is BinaryOp.AND))
-        case Binary(op=BinaryOp.IMPLIES, left=left, right=right):
-            sides = facts_of(left, not truth), facts_of(right, truth)
-            return _joined(*sides, all_hold=not truth)
+            return {}, {}
+        case Unary(op=UnaryOp.HELD, operand=operand):  # it says more than its parts: also here
+            return _both_facts(operand)[0], {}
         case Unary() | Binary():
-            return {}
+            return read(formula, _both_facts, _Facts())
         case Compare():
             key, same = _compared(formula)
-            occurring: dict[Hashable, bool] = dict.fromkeys(_events(formula) if truth else (), True)
-            return {key: truth is same, **occurring}
+            return {key: same, **dict.fromkeys(_events(formula), True)}, {key: not same}
         case _:
-            return {_key(formula): truth}
+            key = _key(formula)
+            return {key: True}, {key: False}
 
 
 def truth_at(formula: Formula, facts: Facts) -> bool | None:
@@ -85,96 +110,44 @@ def truth_at(formula: Formula, facts: Facts) -> bool | None:
             return None if known is None else known is same
         case SignalAtom() | EventAtom() | ProbeAtom() | BoundAtom():
             return facts.get(_key(formula))
-        case Unary(op=op, operand=operand, interval=interval):
-            return _unary(op, truth_at(operand, facts), interval or _WHOLE, facts)
-        case Binary(op=op, left=left, right=right, interval=interval):
-            sides = truth_at(left, facts), truth_at(right, facts)
-            return _binary(op, *sides, interval or _WHOLE, facts)
+        case Unary() | Binary():
+            return read(formula, lambda part: truth_at(part, facts), _Here(facts))
 
 
-def _unary(op: UnaryOp, here: bool | None, window: Interval, facts: Facts) -> bool | None:
-    first = facts.get(Bound.START) is True
-    match op:
-        case UnaryOp.NOT:
-            return None if here is None else not here
-        case UnaryOp.EVENTUALLY:
-            return True if here and not window.low else None
-        case UnaryOp.ALWAYS:
-            return False if here is False and not window.low else None
-        case UnaryOp.ONCE:
-            if window.low:
-                return False if first else None
-            return here if first or here else None
-        case UnaryOp.HISTORICALLY:
-            if window.low:
-                return True if first else None
-            return here if first or here is False else None
-        case UnaryOp.RISE:
-            return here if first or here is False else None
-        case UnaryOp.FALL:
-            return False if first or here else None
-        case UnaryOp.HELD:
-            return False if here is False or (first and window.high) else None
-        case UnaryOp.PREVIOUS:
-            return False if first else None
-        case UnaryOp.NEXT:
-            return None
+class _Here(Reading[bool | None]):
+    """Operators by what their operands are now; what else they look at is not known."""
 
+    def __init__(self, facts: Facts) -> None:
+        self._first = facts.get(Bound.START) is True
 
-def _binary(
-    op: BinaryOp, left: bool | None, right: bool | None, window: Interval, facts: Facts
-) -> bool | None:
-    match op:
-        case BinaryOp.AND:
-            return _both(left, right)
-        case BinaryOp.OR:
-            return _either(left, right)
-        case BinaryOp.IMPLIES:
-            return _either(_not(left), right)
-        case BinaryOp.IFF | BinaryOp.XOR:
-            if left is None or right is None:
-                return None
-            return (left is right) is (op is BinaryOp.IFF)
-        case BinaryOp.SINCE if facts.get(Bound.START):
+    def constant(self, value: bool) -> bool | None:
+        return value
+
+    def no(self, operand: bool | None) -> bool | None:
+        return None if operand is None else not operand
+
+    def both(self, left: bool | None, right: bool | None) -> bool | None:
+        if left is False or right is False:
+            return False
+        return True if left and right else None
+
+    def next(self, _: bool | None) -> bool | None:
+        return None
+
+    def previous(self, _: bool | None) -> bool | None:
+        return False if self._first else None
+
+    def until(self, left: bool | None, right: bool | None, window: Interval) -> bool | None:
+        """The right side may come later."""
+        if not window.low and right is not False:
+            return right
+        return False if left is False else None
+
+    def since(self, left: bool | None, right: bool | None, window: Interval) -> bool | None:
+        """There is nothing before the first instant."""
+        if self._first:
             return False if window.low else right
-        case BinaryOp.SINCE | BinaryOp.UNTIL:
-            return _until(left, right, window.low)
-        case BinaryOp.RELEASE:
-            return _not(_until(_not(left), _not(right), window.low))
-        case BinaryOp.WEAK_UNTIL:
-            return _not(_until(_not(right), _not(_either(left, right)), window.low))
-        case BinaryOp.STRONG_RELEASE:
-            return _until(right, _both(left, right), window.low)
-
-
-def _until(left: bool | None, right: bool | None, low: int) -> bool | None:
-    """Of `left U right` by what both are now; the right side may come later."""
-    if not low and right is not False:
-        return right
-    return False if left is False else None
-
-
-def _joined(
-    one: dict[Hashable, bool], other: dict[Hashable, bool], *, all_hold: bool
-) -> dict[Hashable, bool]:
-    """The facts of two formulas, both of which hold, or one of them."""
-    if all_hold:
-        return {**one, **other}
-    return {key: truth for key, truth in one.items() if other.get(key) is truth}
-
-
-def _not(one: bool | None) -> bool | None:
-    return None if one is None else not one
-
-
-def _both(one: bool | None, other: bool | None) -> bool | None:
-    if one is False or other is False:
-        return False
-    return True if one and other else None
-
-
-def _either(one: bool | None, other: bool | None) -> bool | None:
-    return _not(_both(_not(one), _not(other)))
+        return self.until(left, right, window)
 
 
 def _compared(formula: Compare) -> tuple[Hashable, bool]:

@@ -16,6 +16,7 @@ from rvmon.diagnostics import diagnostic, span
 from rvmon.diagnostics.span import Source
 from rvmon.spec.checked import formula, specification
 from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.operators import BinaryOp, Interval, UnaryOp
 from rvmon.trace import schema
 
 
@@ -27,7 +28,8 @@ def _class_named(name: str) -> type | None:
 @cache
 def _classes() -> Mapping[str, type]:
     modules = (formula, specification, span, diagnostic, schema)
-    return {"NumericOp": NumericOp, **dict(_own_classes(*modules))}
+    own = {one.__name__: one for one in (NumericOp, UnaryOp, BinaryOp, Interval)}
+    return {**own, **dict(_own_classes(*modules))}
 
 
 @cache

@@ -21,37 +21,12 @@ from rvmon.spec.checked.formula import (
     ProbeAtom,
     SignalAtom,
     Unary,
-    UnaryOp,
 )
+from rvmon.spec.checked.operators import OPERATORS, Connectives, Tense
+from rvmon.spec.checked.reading import read
 
-FUTURE: frozenset[UnaryOp | BinaryOp] = frozenset(
-    {
-        UnaryOp.NEXT,
-        UnaryOp.EVENTUALLY,
-        UnaryOp.ALWAYS,
-        BinaryOp.UNTIL,
-        BinaryOp.RELEASE,
-        BinaryOp.WEAK_UNTIL,
-        BinaryOp.STRONG_RELEASE,
-    }
-)
+FUTURE = frozenset(op for op in OPERATORS if op.entry.tense is Tense.FUTURE)
 """The operators that look ahead."""
-
-PAST: frozenset[UnaryOp | BinaryOp] = frozenset(
-    {
-        UnaryOp.PREVIOUS,
-        UnaryOp.ONCE,
-        UnaryOp.HISTORICALLY,
-        UnaryOp.RISE,
-        UnaryOp.FALL,
-        UnaryOp.HELD,
-        BinaryOp.SINCE,
-    }
-)
-"""The operators that look back."""
-
-_TIMELESS = frozenset((UnaryOp.NOT, UnaryOp.RISE, UnaryOp.FALL))
-_CONNECTIVES = frozenset((BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES, BinaryOp.IFF, BinaryOp.XOR))
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:
@@ -98,7 +73,7 @@ def end_part(formula: Formula) -> Formula | None:
 def is_timeless(formula: Formula) -> bool:
     """Whether no operator of time occurs, neither of the future nor of the past."""
     return all(
-        part.op in (_TIMELESS | _CONNECTIVES)
+        part.op.entry.tense is Tense.PRESENT or part.op.entry.pulse
         for part in subformulas(formula)
         if isinstance(part, Unary | Binary)
     )
@@ -107,6 +82,7 @@ def is_timeless(formula: Formula) -> bool:
 def is_pulse(formula: Formula) -> bool:
     """Whether the negation normal form of a trigger is a pulse.
 
+    >>> from rvmon.spec.checked.formula import BinaryOp, UnaryOp
     >>> is_pulse(Binary(BinaryOp.AND, EventAtom("sensed"), SignalAtom("ready")))
     True
     >>> is_pulse(Unary(UnaryOp.NOT, EventAtom("sensed")))
@@ -115,11 +91,30 @@ def is_pulse(formula: Formula) -> bool:
     return _pulses(formula)[0]
 
 
-def _pulses(formula: Formula) -> tuple[bool, bool]:
-    """Whether the formula is a pulse, and whether its negation is."""
+Pulses = tuple[bool, bool]
+"""Whether a formula is a pulse, and whether its negation is."""
+
+
+class _Pulsing(Connectives[Pulses]):
+    """Of a conjunction either has to be a pulse, of a disjunction both."""
+
+    def constant(self, value: bool) -> Pulses:
+        return not value, value
+
+    def no(self, operand: Pulses) -> Pulses:
+        return operand[1], operand[0]
+
+    def both(self, left: Pulses, right: Pulses) -> Pulses:
+        return left[0] or right[0], left[1] and right[1]
+
+
+_PULSING = _Pulsing()
+
+
+def _pulses(formula: Formula) -> Pulses:
     match formula:
         case Constant(value=value):
-            return not value, value
+            return _PULSING.constant(value)
         case EventAtom():
             return True, False
         case Compare(left=left, right=right):
@@ -128,33 +123,12 @@ def _pulses(formula: Formula) -> tuple[bool, bool]:
             return probe is not Probe.KNOWN, False
         case SignalAtom() | BoundAtom():
             return False, False
-        case Unary(op=UnaryOp.NOT, operand=operand):
-            positive, negative = _pulses(operand)
-            return negative, positive
-        case Unary(op=op):
-            return op in (UnaryOp.RISE, UnaryOp.FALL), False
-        case Binary(op=op, left=left, right=right):
-            return _joined(op, _pulses(left), _pulses(right))
+        case Unary(op=op) | Binary(op=op) if op.entry.tense is not Tense.PRESENT:
+            return op.entry.pulse, False
+        case Unary() | Binary():
+            return read(formula, _pulses, _PULSING)
         case _:
             assert_never(formula)
-
-
-def _joined(op: BinaryOp, left: tuple[bool, bool], right: tuple[bool, bool]) -> tuple[bool, bool]:
-    """Of a conjunction either has to be a pulse, of a disjunction both."""
-    (a, not_a), (b, not_b) = left, right
-    match op:
-        case BinaryOp.AND:
-            return a or b, not_a and not_b
-        case BinaryOp.OR:
-            return a and b, not_a or not_b
-        case BinaryOp.IMPLIES:
-            return not_a and b, a or not_b
-        case BinaryOp.IFF:
-            return (a or b) and (not_a or not_b), (not_a and not_b) or (a and b)
-        case BinaryOp.XOR:
-            return (a or not_b) and (not_a or b), (not_a and b) or (a and not_b)
-        case _:
-            return False, False
 
 
 def mixed_disjunction(trigger: Formula) -> tuple[Formula, Formula] | None:

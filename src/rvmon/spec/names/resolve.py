@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeVar, assert_never
 
+from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.names.resolved import Declared, DeclaredEvent, DeclaredSignal, ResolvedSpec
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules.findings import Findings
@@ -26,7 +27,6 @@ from rvmon.spec.syntax.items import (
     SignalItem,
     TimeItem,
 )
-from rvmon.spec.syntax.words import FUNCTIONS
 
 _K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 

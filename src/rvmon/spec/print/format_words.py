@@ -7,30 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from rvmon.spec.checked.operators import OPERATORS
 from rvmon.spec.syntax.parse import grammar
+from rvmon.spec.syntax.words import OPERATOR_TERMINALS
 
-_WORDS = {
-    "NOT": "not",
-    "AND": "and",
-    "OR": "or",
-    "IMPLIES": "->",
-    "IFF": "<->",
-}
 _OPERATORS = {
-    "F": "eventually",
-    "G": "always",
-    "X": "next",
-    "Y": "previous",
-    "O": "once",
-    "H": "historically",
-    "U": "until",
-    "S": "since",
-    "W": "unless",
-    "weak until": "unless",
+    **{text: op.entry.word for op in OPERATORS for text in op.spellings},
     "∞": "inf",
     "=": "==",
 }
-_REWRITTEN = ("TEMPORAL", "INFIX", "INFINITE", "COMPARE")
+_REWRITTEN = (*OPERATOR_TERMINALS, "NOT", "INFINITE", "COMPARE")
 _NUMBER = re.compile(r"(\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)[ \t]*(.*)", re.DOTALL)
 _COMMENT = re.compile(r"#[^\n]*")
 
@@ -86,8 +72,6 @@ def _comments(gap: str) -> list[str]:
 
 
 def _canonical(kind: str, text: str) -> str:
-    if kind in _WORDS:
-        return _WORDS[kind]
     if kind == "STRING":
         return text
     if kind == "NUMBER":

@@ -27,44 +27,10 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     UpdateValue,
 )
+from rvmon.spec.checked.operators import PREFIXED, Window
 from rvmon.spec.syntax.words import RESERVED
 from rvmon.trace.time import TICKS_PER_UNIT
 
-_PREFIX = {
-    UnaryOp.NOT: "not",
-    UnaryOp.NEXT: "next",
-    UnaryOp.EVENTUALLY: "eventually",
-    UnaryOp.ALWAYS: "always",
-    UnaryOp.PREVIOUS: "previous",
-    UnaryOp.ONCE: "once",
-    UnaryOp.HISTORICALLY: "historically",
-}
-_INFIX = {
-    BinaryOp.AND: "and",
-    BinaryOp.OR: "or",
-    BinaryOp.XOR: "xor",
-    BinaryOp.IMPLIES: "->",
-    BinaryOp.IFF: "<->",
-    BinaryOp.UNTIL: "until",
-    BinaryOp.RELEASE: "R",
-    BinaryOp.WEAK_UNTIL: "unless",
-    BinaryOp.STRONG_RELEASE: "M",
-    BinaryOp.SINCE: "since",
-}
-_LEVEL = {
-    BinaryOp.IFF: 0,
-    BinaryOp.IMPLIES: 1,
-    BinaryOp.OR: 2,
-    BinaryOp.XOR: 3,
-    BinaryOp.AND: 4,
-    BinaryOp.UNTIL: 5,
-    BinaryOp.RELEASE: 5,
-    BinaryOp.WEAK_UNTIL: 5,
-    BinaryOp.STRONG_RELEASE: 5,
-    BinaryOp.SINCE: 5,
-}
-_UNARY_LEVEL = 6
-_CHAINED = (BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.IFF)
 _SUM, _PRODUCT, _NEGATIVE, _OPERAND = 0, 1, 2, 3
 _ARITHMETIC = {
     NumericOp.ADD: _SUM,
@@ -127,21 +93,19 @@ def _formula(formula: Formula, level: int) -> str:
             return _unary(formula)
         case Binary(op=op):
             text = _binary(formula)
-            return f"({text})" if _LEVEL[op] < level else text
+            return f"({text})" if op.entry.level < level else text
         case _:
             assert_never(formula)
 
 
 def _unary(formula: Unary) -> str:
-    match formula.op:
-        case UnaryOp.RISE | UnaryOp.FALL:
-            return f"{formula.op}({_formula(formula.operand, 0)})"
-        case UnaryOp.HELD:
-            length = (formula.interval or Interval()).high or 0
-            return f"held({_formula(formula.operand, 0)}, {format_duration(length)})"
-        case op:
-            operand = _formula(formula.operand, _UNARY_LEVEL)
-            return f"{_operator(op, formula.interval)} {operand}"
+    op = formula.op
+    if not op.entry.called:
+        return f"{_operator(op, formula.interval)} {_formula(formula.operand, PREFIXED)}"
+    length = ""
+    if op.entry.window is Window.LENGTH:
+        length = f", {format_duration((formula.interval or Interval()).high or 0)}"
+    return f"{op.entry.word}({_formula(formula.operand, 0)}{length})"
 
 
 def _operator(op: UnaryOp, interval: Interval | None) -> str:
@@ -150,7 +114,7 @@ def _operator(op: UnaryOp, interval: Interval | None) -> str:
             return f"within {format_duration(interval.high)}"
         if op is UnaryOp.ALWAYS:
             return f"for {format_duration(interval.high)}"
-    return _PREFIX[op] + _window(interval)
+    return op.entry.word + _window(interval)
 
 
 def _window(interval: Interval | None) -> str:
@@ -164,16 +128,16 @@ def _window(interval: Interval | None) -> str:
 
 def _binary(formula: Binary) -> str:
     op = formula.op
-    level = _LEVEL[op]
-    if op in _CHAINED:
+    level = op.entry.level
+    if op.entry.chained:
         operands = _chain(formula, op)
         texts = [_left(operand, level + 1) for operand in operands[:-1]]
-        return f" {_INFIX[op]} ".join((*texts, _formula(operands[-1], level + 1)))
+        return f" {op.entry.word} ".join((*texts, _formula(operands[-1], level + 1)))
     right = formula.right
     same = isinstance(right, Binary) and right.op is op
     right_level = level if same else level + 1
     left = _left(formula.left, level + 1)
-    return f"{left} {_INFIX[op]}{_window(formula.interval)} {_formula(right, right_level)}"
+    return f"{left} {op.entry.word}{_window(formula.interval)} {_formula(right, right_level)}"
 
 
 def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:
@@ -196,11 +160,11 @@ def _left(formula: Formula, level: int) -> str:
         match edge:
             case Unary(op=UnaryOp.NOT, operand=operand):
                 edge = operand
-            case Binary(op=op, right=right) if _LEVEL[op] >= level:
+            case Binary(op=op, right=right) if op.entry.level >= level:
                 edge = right
             case _:
                 break
-    prefixed = isinstance(edge, Unary) and edge.op in _PREFIX and edge.op is not UnaryOp.NOT
+    prefixed = isinstance(edge, Unary) and not edge.op.entry.called
     return f"({_formula(formula, 0)})" if prefixed else _formula(formula, level)
 
 

@@ -39,26 +39,6 @@ from rvmon.spec.syntax.expressions import (
     Window,
 )
 
-_PREFIX = {
-    "next": UnaryOp.NEXT,
-    "eventually": UnaryOp.EVENTUALLY,
-    "always": UnaryOp.ALWAYS,
-    "previous": UnaryOp.PREVIOUS,
-    "once": UnaryOp.ONCE,
-    "historically": UnaryOp.HISTORICALLY,
-}
-_INFIX = {
-    "until": BinaryOp.UNTIL,
-    "since": BinaryOp.SINCE,
-    "unless": BinaryOp.WEAK_UNTIL,
-    "implies": BinaryOp.IMPLIES,
-}
-_CHAIN = {
-    "AND": BinaryOp.AND,
-    "OR": BinaryOp.OR,
-    "XOR": BinaryOp.XOR,
-    "IFF": BinaryOp.IFF,
-}
 _T = TypeVar("_T")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
 _LARGEST = 400
@@ -145,7 +125,7 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         token, *window, operand = children
         if token.type == "IMMEDIATELY":
             return Immediately(operand, self.span(meta))
-        op = UnaryOp.NOT if token.type == "NOT" else _PREFIX.get(token) or UnaryOp(str(token))
+        op = UnaryOp.of(token)
         return Prefix(op, operand, first_of(window), self.span(token), self.span(meta))
 
     def bounded(self, meta: Meta, children: Children) -> Prefix:
@@ -170,17 +150,11 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         right = self._balanced(operands[middle:], tokens[middle:])
         token = tokens[middle - 1]
         span = left.span.to(right.span)
-        return Infix(_CHAIN[token.type], left, right, None, self.span(token), span)
+        return Infix(BinaryOp.of(token), left, right, None, self.span(token), span)
 
     def infix(self, meta: Meta, children: Children) -> Infix:
         left, token, *window, right = children
-        words = " ".join(token.split())
-        if token.type == "IMPLIES":
-            op = BinaryOp.IMPLIES
-        elif words == "weak until":
-            op = BinaryOp.WEAK_UNTIL
-        else:
-            op = _INFIX.get(words) or BinaryOp(words)
+        op = BinaryOp.of(" ".join(token.split()))
         self._check_reach(left, right)
         if token.type == "INFIX" and isinstance(right, Infix) and right.op is not op:
             self.findings.append(rules.mixed_chain(self.span(token), right.op_span))
@@ -208,7 +182,7 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         if reaching:
             op = UnaryOp.ALWAYS if token[1] == "[" else UnaryOp.EVENTUALLY
         else:
-            op = UnaryOp(token[1])
+            op = UnaryOp.of(token[1])
         spans = self.span(token), self.span(meta)
         return Path(token[0] == "A", op, operand, first_of(window), reaching, *spans)
 

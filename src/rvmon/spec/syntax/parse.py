@@ -24,7 +24,7 @@ from rvmon.spec.syntax.grammar_cache import parser_of
 from rvmon.spec.syntax.items import Item, ParsedSpec
 from rvmon.spec.syntax.split import split_items
 from rvmon.spec.syntax.units import compound_pattern
-from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
+from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, OPERATOR_TERMINALS, RESERVED
 
 DEEPEST = 100
 """Expressions nested more deeply are refused."""
@@ -120,6 +120,11 @@ def grammar_text() -> str:
         "UNIT": rf"(?!({_any(NOT_UNITS)}){end}){word}",
         "COMPOUND": compound_pattern(NOT_UNITS).replace("/", r"\/"),
     }
+    for terminal, spellings in OPERATOR_TERMINALS.items():
+        fillings[terminal] = "|".join(
+            re.escape(one).replace(r"\ ", r"\s+") + (end if one[-1].isalpha() else "")
+            for one in sorted(spellings, key=len, reverse=True)
+        )
     for key, pattern in fillings.items():
         text = text.replace(f"@{key}@", pattern)
     return text

@@ -1,8 +1,8 @@
-"""The words of the language: which are never names, and which functions are built in."""
+"""The words of the language: which are never names."""
 
 from __future__ import annotations
 
-from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.operators import PREFIXED, BinaryOp, UnaryOp
 
 ITEM_WORDS = (
     "spec",
@@ -20,20 +20,29 @@ ITEM_WORDS = (
 )
 """Words that start an item; besides, `max delay` does."""
 
+_PREFIXES = [op for op in UnaryOp if op.entry.level == PREFIXED and op is not UnaryOp.NOT]
+_INFIXES = [op for op in BinaryOp if op.entry.level == BinaryOp.UNTIL.entry.level]
+OPERATOR_TERMINALS = {
+    **{op.name: op.spellings for op in BinaryOp if op not in _INFIXES},
+    "TEMPORAL": tuple(text for op in _PREFIXES for text in op.spellings),
+    "INFIX": tuple(text for op in _INFIXES for text in op.spellings),
+}
+"""The terminals of the grammar that stand for operators, and all ways to write them."""
+
 _TEMPORAL_WORDS = (
-    *("not", "next", "eventually", "always", "previous", "once", "historically"),
+    *OPERATOR_TERMINALS["TEMPORAL"],
     *("within", "for", "immediately"),
-    *("F", "G", "X", "Y", "O", "H", "A", "E", "AG", "AF", "AX", "EG", "EF", "EX"),
+    *("A", "E", "AG", "AF", "AX", "EG", "EF", "EX"),
 )
 _OTHER_WORDS = (
-    *("upon", "whenever", "then", "and", "or", "xor", "implies", "iff"),
-    *("start", "end", "true", "false"),
+    *("upon", "whenever", "then", "not", "start", "end", "true", "false"),
+    *(text for op in BinaryOp if op not in _INFIXES for text in op.spellings if text.isalpha()),
 )
 
 RESERVED = frozenset((*ITEM_WORDS, *_TEMPORAL_WORDS, *_OTHER_WORDS))
 """Words that are never names, unless quoted."""
 
-INFIX_WORDS = frozenset(("until", "since", "unless", "weak", "U", "W", "R", "M", "S"))
+INFIX_WORDS = frozenset(" ".join(OPERATOR_TERMINALS["INFIX"]).split())
 """Operators between formulas; where an operand stands they are names."""
 
 CLAUSE_WORDS = frozenset(
@@ -46,9 +55,3 @@ CLAUSE_WORDS = frozenset(
 
 NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output", "stale"))
 """Words that do not count as the unit of a number before them."""
-
-FORMULA_FUNCTIONS = ("rise", "fall", "changed", "held", "known", "updated")
-OPERATIONS = tuple(op.value for op in NumericOp if op.is_function)
-NUMBER_FUNCTIONS = ("age", *OPERATIONS, "prev", "delta", "rate")
-FUNCTIONS = frozenset((*FORMULA_FUNCTIONS, *NUMBER_FUNCTIONS))
-"""Functions that are built in."""

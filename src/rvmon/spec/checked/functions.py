@@ -1,0 +1,79 @@
+"""The functions of the language: one entry for each, which parser, checker and documentation read.
+
+Those that are operators of formulas or operations on numbers have the rest in their own entries.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import Probe, UpdateFunction
+from rvmon.spec.checked.operators import UnaryOp, Window
+
+
+class Argument(Enum):
+    """What an argument has to be."""
+
+    FORMULA = "a formula"
+    DURATION = "a duration"
+    NUMBER = "a number"
+    SIGNAL = "the name of a signal"
+    SOURCE = "the name of a signal or event"
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function.
+
+    Attributes:
+        name: of it.
+        means: what a call becomes; `None`: an age, which stands in comparisons only.
+        arguments: of a call.
+        more: whether further arguments like the last may follow.
+        doc: its value in a few words.
+    """
+
+    name: str
+    means: UnaryOp | Probe | UpdateFunction | NumericOp | None
+    arguments: tuple[Argument, ...]
+    doc: str
+    more: bool = False
+
+
+_OF_UPDATES = (
+    Function("changed", Probe.CHANGED, (Argument.SIGNAL,), "x is updated with another value"),
+    Function("known", Probe.KNOWN, (Argument.SIGNAL,), "x has a value that is known"),
+    Function("updated", Probe.UPDATED, (Argument.SOURCE,), "x is updated, with any value"),
+    Function(
+        *("age", None, (Argument.SOURCE,)),
+        "the time since the last update of x, beside a duration",
+    ),
+    Function(
+        *("prev", UpdateFunction.PREV, (Argument.SIGNAL,)), "the value of x before its last update"
+    ),
+    Function(
+        *("delta", UpdateFunction.DELTA, (Argument.SIGNAL,)),
+        "the difference between the last two values of x",
+    ),
+    Function("rate", UpdateFunction.RATE, (Argument.SIGNAL,), "that difference per second"),
+)
+
+
+def _all() -> Iterator[Function]:
+    for op in UnaryOp:
+        if op.entry.called:
+            length = (Argument.DURATION,) if op.entry.window is Window.LENGTH else ()
+            yield Function(op.entry.word, op, (Argument.FORMULA, *length), op.entry.doc)
+    yield from _OF_UPDATES
+    for operation in NumericOp:
+        if operation.is_function:
+            entry = operation.entry
+            numbers = (Argument.NUMBER,) * entry.least
+            yield Function(operation.value, operation, numbers, entry.doc, entry.most is None)
+
+
+FUNCTIONS = {function.name: function for function in _all()}
+"""All of them, by name."""

@@ -1,0 +1,334 @@
+"""The operators of formulas: one entry for each, which all readers of formulas use.
+
+What an operator means is told by its entry in terms of those of `Reading`, so that whoever reads
+formulas gives a meaning to these few and has all others. A new operator that is made of known ones
+is one entry here. `rise`, `fall` and `held` mean a little more where something is not born yet: see
+`formula/four.py`. The oracle has readings of its own, of which this is to be found right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum, StrEnum, auto
+from typing import Any, Protocol, Self, TypeVar
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """The closed interval `[low, high]` of durations in ticks; `high` is `None` if unbounded."""
+
+    low: int = 0
+    high: int | None = None
+
+
+class Connectives(Protocol[T]):
+    """A reading of the connectives that all others are made of."""
+
+    def constant(self, value: bool, /) -> T:
+        """`true` or `false`."""
+
+    def no(self, operand: T, /) -> T:
+        """`not`."""
+
+    def both(self, left: T, right: T, /) -> T:
+        """`and`."""
+
+    def either(self, left: T, right: T, /) -> T:
+        """`or`: the dual of `both`."""
+        return self.no(self.both(self.no(left), self.no(right)))
+
+
+class Reading(Connectives[T], Protocol[T]):
+    """A reading of the operators, of time too, that all others are made of."""
+
+    def next(self, operand: T, /) -> T:
+        """`next`."""
+
+    def previous(self, operand: T, /) -> T:
+        """`previous`."""
+
+    def until(self, left: T, right: T, window: Interval, /) -> T:
+        """`until`."""
+
+    def since(self, left: T, right: T, window: Interval, /) -> T:
+        """`since`."""
+
+
+class Tense(Enum):
+    """Which instants an operator speaks of."""
+
+    PRESENT = auto()
+    PAST = auto()
+    FUTURE = auto()
+
+
+class Window(Enum):
+    """Which interval an operator takes."""
+
+    NONE = auto()
+    ANY = auto()
+    FROM_NOW = auto()
+    """From 0 on: the usual definitions differ for others."""
+    LENGTH = auto()
+    """`[0, D]`, written as an argument D."""
+
+
+PREFIXED, CALLED = 6, 7
+"""How tightly prefixes bind, and what is written as a call."""
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """What is to be known of an operator.
+
+    Attributes:
+        sign: of it.
+        word: as it is printed.
+        tense: of it.
+        window: the interval that it takes.
+        level: how tightly it binds, from 0.
+        meaning: in a `Reading`, of that, its operands and the interval.
+        said: it as an English clause; `{left}` and `{right}` (`{it}`) are its operands,
+            `{no_left}` and so on what they are if they do not hold; `{some}` and `{all}` tell of
+            its interval. Empty: `explain/words.py` says it in a way of its own.
+        denied: its negation; empty: "not so" before `said`.
+        doc: its value in a few words.
+        dual: the sign of the operator that is `not φ` of the negations of its operands.
+        chained: whether it is associative and written in chains without brackets.
+        pulse: whether it is true at single instants only.
+        also: other ways to write it, beside its word and sign.
+    """
+
+    sign: str
+    word: str
+    tense: Tense
+    window: Window
+    level: int
+    meaning: Callable[..., Any]
+    said: str
+    denied: str
+    doc: str
+    dual: str = ""
+    chained: bool = False
+    pulse: bool = False
+    also: tuple[str, ...] = ()
+
+    @property
+    def called(self) -> bool:
+        """Whether it is written as a function."""
+        return self.level == CALLED
+
+
+class _Sign(StrEnum):
+    """Operators by their signs."""
+
+    entry: Operator
+
+    def __new__(cls, entry: Operator) -> _Sign:
+        """A member: its sign, with its entry."""
+        made = str.__new__(cls, entry.sign)
+        made._value_ = entry.sign
+        made.entry = entry
+        return made
+
+    @classmethod
+    def of(cls, text: str) -> Self:
+        """The one that is written so."""
+        return next(one for one in cls if text in one.spellings)
+
+    @property
+    def spellings(self) -> tuple[str, ...]:
+        """All ways to write it, the printed one first."""
+        return tuple(dict.fromkeys((self.entry.word, self.value, *self.entry.also)))
+
+
+def _eventually(reading: Reading[T], it: T, window: Interval) -> T:
+    return reading.until(reading.constant(True), it, window)
+
+
+def _once(reading: Reading[T], it: T, window: Interval) -> T:
+    return reading.since(reading.constant(True), it, window)
+
+
+def _historically(reading: Reading[T], it: T, window: Interval) -> T:
+    return reading.no(_once(reading, reading.no(it), window))
+
+
+def _held(reading: Reading[T], it: T, window: Interval) -> T:
+    """What is before the first instant has not held."""
+    begun = _once(reading, reading.constant(True), Interval(window.high or 0, None))
+    return reading.both(_historically(reading, it, window), begun)
+
+
+def _release(reading: Reading[T], left: T, right: T, window: Interval) -> T:
+    return reading.no(reading.until(reading.no(left), reading.no(right), window))
+
+
+def _same(reading: Reading[T], left: T, right: T, _: Interval) -> T:
+    neither = reading.both(reading.no(left), reading.no(right))
+    return reading.either(reading.both(left, right), neither)
+
+
+class UnaryOp(_Sign):
+    """Unary operators; those of time but `X Y rise fall` carry an interval (`held` is [0, D]).
+
+    >>> UnaryOp.of("eventually")
+    <UnaryOp.EVENTUALLY: 'F'>
+    """
+
+    NOT = Operator(
+        *("!", "not", Tense.PRESENT, Window.NONE, PREFIXED),
+        lambda reading, it, _: reading.no(it),
+        *("", ""),
+        "φ does not hold",
+    )
+    NEXT = Operator(
+        *("X", "next", Tense.FUTURE, Window.NONE, PREFIXED),
+        lambda reading, it, _: reading.next(it),
+        *("at the next sample, {it}", "at the next sample, {no_it}"),
+        "φ at the position after; not in `time held`",
+        dual="X",
+    )
+    EVENTUALLY = Operator(
+        *("F", "eventually", Tense.FUTURE, Window.ANY, PREFIXED, _eventually),
+        *("{some}, {it}", "{all}, {no_it}"),
+        "φ at some instant from now on",
+        dual="G",
+    )
+    ALWAYS = Operator(
+        *("G", "always", Tense.FUTURE, Window.ANY, PREFIXED),
+        lambda reading, it, window: reading.no(_eventually(reading, reading.no(it), window)),
+        *("{all}, {it}", "{some}, {no_it}"),
+        "φ at all instants from now on",
+        dual="F",
+    )
+    PREVIOUS = Operator(
+        *("Y", "previous", Tense.PAST, Window.NONE, PREFIXED),
+        lambda reading, it, _: reading.previous(it),
+        *("at the sample before, {it}", ""),
+        "φ at the position before, false at the first; not in `time held`",
+    )
+    ONCE = Operator(
+        *("O", "once", Tense.PAST, Window.ANY, PREFIXED, _once),
+        *("{some}, {it}", "{all}, {no_it}"),
+        "φ at some instant up to now",
+        dual="H",
+    )
+    HISTORICALLY = Operator(
+        *("H", "historically", Tense.PAST, Window.ANY, PREFIXED, _historically),
+        *("{all}, {it}", "{some}, {no_it}"),
+        "φ at all instants up to now",
+        dual="O",
+    )
+    RISE = Operator(
+        *("rise", "rise", Tense.PAST, Window.NONE, CALLED),
+        lambda reading, it, _: reading.both(it, reading.no(reading.previous(it))),
+        *("{begins}", "it is not the instant at which {begins}"),
+        "φ holds and did not right before",
+        pulse=True,
+    )
+    FALL = Operator(
+        *("fall", "fall", Tense.PAST, Window.NONE, CALLED),
+        lambda reading, it, _: reading.both(reading.no(it), reading.previous(it)),
+        *("{ends}", "it is not the instant at which {ends}"),
+        "φ does not hold and did right before",
+        pulse=True,
+    )
+    HELD = Operator(
+        *("held", "held", Tense.PAST, Window.LENGTH, CALLED, _held),
+        "for the last {length} without a break, {it}",
+        "not for the last {length} without a break, {it}",
+        "φ has held for D, all within the run",
+    )
+
+
+class BinaryOp(_Sign):
+    """Binary operators; those of time carry an interval.
+
+    >>> BinaryOp.of("weak until").entry.word
+    'unless'
+    """
+
+    AND = Operator(
+        *("and", "and", Tense.PRESENT, Window.NONE, 4),
+        lambda reading, left, right, _: reading.both(left, right),
+        *("", ""),
+        "both hold",
+        chained=True,
+        also=("&", "&&"),
+    )
+    OR = Operator(
+        *("or", "or", Tense.PRESENT, Window.NONE, 2),
+        lambda reading, left, right, _: reading.either(left, right),
+        *("", ""),
+        "one holds, or both",
+        chained=True,
+        also=("|", "||"),
+    )
+    IMPLIES = Operator(
+        *("->", "->", Tense.PRESENT, Window.NONE, 1),
+        lambda reading, left, right, _: reading.either(reading.no(left), right),
+        *("if {left}, then {right}", "{left} but {no_right}"),
+        "ψ holds if φ does; groups to the right",
+        also=("implies",),
+    )
+    IFF = Operator(
+        *("<->", "<->", Tense.PRESENT, Window.NONE, 0, _same),
+        *("{left} exactly if {right}", "either {left} or {right}, not both"),
+        "both hold, or none",
+        chained=True,
+        also=("iff",),
+    )
+    XOR = Operator(
+        *("xor", "xor", Tense.PRESENT, Window.NONE, 3),
+        lambda reading, left, right, window: _same(reading, left, reading.no(right), window),
+        *("either {left} or {right}, not both", "{left} exactly if {right}"),
+        "one holds and not the other",
+        chained=True,
+    )
+    UNTIL = Operator(
+        *("U", "until", Tense.FUTURE, Window.ANY, 5),
+        lambda reading, left, right, window: reading.until(left, right, window),
+        *("{some}, {right}; and until then {left}", ""),
+        "ψ at some instant from now on, φ at all before it",
+        dual="R",
+    )
+    RELEASE = Operator(
+        *("R", "R", Tense.FUTURE, Window.ANY, 5, _release),
+        "{all}, {right}; up to and at the instant when {left}, if that comes earlier",
+        "",
+        "ψ at all instants up to and at one at which φ holds, if there is one",
+        dual="U",
+    )
+    WEAK_UNTIL = Operator(
+        *("W", "unless", Tense.FUTURE, Window.FROM_NOW, 5),
+        lambda reading, left, right, window: _release(
+            reading, right, reading.either(left, right), window
+        ),
+        *("{all}, {left}; until {right}, if that comes earlier", ""),
+        "as `until`, but ψ need not come",
+        dual="M",
+        also=("weak until",),
+    )
+    STRONG_RELEASE = Operator(
+        *("M", "M", Tense.FUTURE, Window.FROM_NOW, 5),
+        lambda reading, left, right, window: reading.until(
+            right, reading.both(left, right), window
+        ),
+        *("{some}, {left}; until then and at that instant {right}", ""),
+        "as `R`, but φ has to come",
+        dual="W",
+    )
+    SINCE = Operator(
+        *("S", "since", Tense.PAST, Window.ANY, 5),
+        lambda reading, left, right, window: reading.since(left, right, window),
+        *("{right} {ago}and since then {left}", ""),
+        "ψ at some instant up to now, φ at all after it",
+    )
+
+
+OPERATORS: tuple[UnaryOp | BinaryOp, ...] = (*UnaryOp, *BinaryOp)
+"""All of them."""

@@ -1,0 +1,83 @@
+"""Operators read by those that they are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from rvmon.diagnostics.span import Span
+from rvmon.spec.checked.formula import Binary, Constant, Formula, Unary
+from rvmon.spec.checked.operators import BinaryOp, Connectives, Interval, UnaryOp
+
+T = TypeVar("T")
+
+
+def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectives[T]) -> T:
+    """What the outermost operator of a formula makes of its operands.
+
+    Args:
+        formula: any.
+        of: what an operand is; each is asked for once.
+        reading: a `Reading`, unless the operator is a connective.
+    """
+    operands = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
+    window = formula.interval or Interval()
+    found: T = formula.op.entry.meaning(reading, *map(of, operands), window)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Formulas:
+    """The reading of operators as formulas of `not and or X U Y S`.
+
+    Attributes:
+        span: the place that they have.
+    """
+
+    span: Span | None = None
+
+    def constant(self, value: bool) -> Formula:
+        """A constant."""
+        return Constant(value, self.span)
+
+    def no(self, operand: Formula) -> Formula:
+        """`not operand`."""
+        return Unary(UnaryOp.NOT, operand, None, operand.span)
+
+    def both(self, left: Formula, right: Formula) -> Formula:
+        """`left and right`."""
+        return Binary(BinaryOp.AND, left, right, None, self.span)
+
+    def either(self, left: Formula, right: Formula) -> Formula:
+        """`left or right`."""
+        return Binary(BinaryOp.OR, left, right, None, self.span)
+
+    def next(self, operand: Formula) -> Formula:
+        """`next operand`."""
+        return Unary(UnaryOp.NEXT, operand, None, self.span)
+
+    def previous(self, operand: Formula) -> Formula:
+        """`previous operand`."""
+        return Unary(UnaryOp.PREVIOUS, operand, None, self.span)
+
+    def until(self, left: Formula, right: Formula, window: Interval) -> Formula:
+        """`left until right`."""
+        return Binary(BinaryOp.UNTIL, left, right, window, self.span)
+
+    def since(self, left: Formula, right: Formula, window: Interval) -> Formula:
+        """`left since right`."""
+        return Binary(BinaryOp.SINCE, left, right, window, self.span)
+
+
+def rewritten(formula: Unary | Binary) -> Formula:
+    """The formula with its outermost operator told in `not and or X U Y S`.
+
+    >>> from rvmon.spec.checked.formula import EventAtom
+    >>> e = EventAtom("e")
+    >>> rewritten(Unary(UnaryOp.EVENTUALLY, e, Interval())) == Binary(
+    ...     BinaryOp.UNTIL, Constant(True), e, Interval()
+    ... )
+    True
+    """
+    return read(formula, lambda operand: operand, Formulas(formula.span))
