@@ -32,6 +32,9 @@ Make = Callable[["Numbers", "Numbers"], Attempts]
 
 Judged = tuple[Attempts, Outcome]
 
+NOWHERE = -FAR
+"""No place: those of instants may be negative."""
+
 _ROUNDS = 2
 """So many failures of an episode are followed one by one."""
 
@@ -83,11 +86,11 @@ class Episodes:
         attempts.stop[running] = piece.stop_of_old
         parts = [piece.judged(attempts)]
         behind = piece.following(*parts[0])
-        places = behind[behind >= 0]
+        places = behind[behind != NOWHERE]
         if self.failed_at is not None:
             waiting = piece.going_on(np.array([self.failed_at]), np.array([piece.stop_of_old]))
-            places = np.append(waiting[waiting >= 0], places)
-            if waiting[0] >= 0 or piece.stop_of_old < FAR:
+            places = np.append(waiting[waiting != NOWHERE], places)
+            if waiting[0] != NOWHERE or piece.stop_of_old < FAR:
                 self.failed_at = None
         parts += piece.follow(places)
         if len(parts) == 1:
@@ -163,14 +166,14 @@ class _Piece:
         return found
 
     def going_on(self, failed_at: Numbers, stop: Numbers) -> Numbers:
-        """Where episodes that are over at `stop` go on after failures; −1 where they do not."""
+        """Where episodes that are over at `stop` go on after failures; `NOWHERE` where they do not."""
         end = self._axis.stop
         places = first_in(self._again, self._axis.first_from(failed_at + 1), end)
-        return np.where(places < np.minimum(stop, end), places, -1)
+        return np.where(places < np.minimum(stop, end), places, NOWHERE)
 
     def following(self, attempts: Attempts, outcome: Outcome) -> Numbers:
-        """For each attempt the place of the one that follows it; −1 if none does."""
-        behind = np.full(len(attempts), -1)
+        """For each attempt the place of the one that follows it; `NOWHERE` if none does."""
+        behind = np.full(len(attempts), NOWHERE)
         failed = np.flatnonzero((outcome.decided < FAR) & ~outcome.passed)
         if len(failed):
             behind[failed] = self.going_on(outcome.decided[failed], attempts.stop[failed])
@@ -183,7 +186,7 @@ class _Piece:
         while len(places) and len(parts) < _ROUNDS:
             parts.append(self.starting(places))
             behind = self.following(*parts[-1])
-            own = behind >= 0
+            own = behind != NOWHERE
             places, steps = behind[own], (behind - places)[own]
         if not len(places):
             return parts
@@ -231,7 +234,7 @@ class _Chains:
     def has(self, places: Numbers) -> NDArray[np.bool_]:
         """Which places are among those."""
         made: NDArray[np.bool_] = (
-            np.append(self._starts, -2)[np.searchsorted(self._starts, places)] == places
+            np.append(self._starts, FAR)[np.searchsorted(self._starts, places)] == places
         )
         return made
 
@@ -248,7 +251,7 @@ class _Chains:
                 index = self._link[index]
             ends.append(chain[-1])
         own, last = np.array(chain, np.int64), np.array(ends, np.int64)
-        last = last[self._behind[last] >= 0]
+        last = last[self._behind[last] != NOWHERE]
         behind = self._behind[last]
         attempts, outcome = self._judged
         return (attempts.pick(own), outcome.pick(own)), behind, behind - self._starts[last]

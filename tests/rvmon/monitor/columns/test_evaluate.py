@@ -236,3 +236,18 @@ def test_what_was_lost_hides_triggers_and_what_was_not_born_hides_none():
     assert report.verdicts == {"R1": "I", "R2": "I", "R3": "I"}
     names = {attempt.name for attempt in report.attempts}
     assert names == {"R1#1", "R1?1", "R2#1"}
+
+
+def test_attempts_follow_failures_before_time_zero() -> None:
+    """An episode goes on after a failure at instants below zero as at others."""
+    spec = rvmon.loads(
+        "spec s\nsignal q : bool\nsignal p : bool\nrequirement R1\n  whenever q\n  then p\n"
+    )
+    columns = {
+        "t_ns": np.array([-3, -2, -1, 2]),
+        "q": np.array([True] * 4),
+        "p": np.array([False, True, False, True]),
+    }
+    report = spec.evaluate(columns, engine="columns")
+    assert [attempt.triggered for attempt in report.attempts] == [-3, -2, 2]
+    assert report.attempts == of_a_monitor(spec, columns, 2).attempts
