@@ -166,7 +166,7 @@ class _Piece:
         return found
 
     def going_on(self, failed_at: Numbers, stop: Numbers) -> Numbers:
-        """Where episodes that are over at `stop` go on after failures; `NOWHERE` where they do not."""
+        """Where episodes that are over at `stop` go on after failures, or `NOWHERE`."""
         end = self._axis.stop
         places = first_in(self._again, self._axis.first_from(failed_at + 1), end)
         return np.where(places < np.minimum(stop, end), places, NOWHERE)
