@@ -35,9 +35,6 @@ EQUIVALENT = {
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
         "`true and x` is only not made smaller; it still means x"
     ),
-    "lower.py and/or: `interval and interval.high` => `interval or interval.high`": (
-        "`held` always has an interval"
-    ),
     "graph.py constant: `remembers = False` => `remembers = (True)`": (
         "what came before is replayed where going on from now would do"
     ),

@@ -5,12 +5,7 @@ from pathlib import Path
 SOURCES = Path(__file__).parents[1] / "src"
 MOST_LINES = 400
 
-LONGER = {
-    "rvmon/runtime/unit.py": 478,
-    "rvmon/monitor/lanes.py": 479,
-    "rvmon/monitor/monitor.py": 423,
-    "rvmon/session.py": 451,
-}
+LONGER = {"rvmon/monitor/lanes.py": 414}
 """Files that are too long as yet, and their lines: they may only shrink."""
 
 

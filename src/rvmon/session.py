@@ -392,8 +392,7 @@ class Spec:
 
         Args:
             trace: it need not be read yet.
-            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors. Any name
-                may be missing, unless `allow_missing` says otherwise.
+            **reading: as for `evaluate`; so are the errors. By default any name may be missing.
         """
         from rvmon.monitor.finished import open_trace
 

@@ -18,7 +18,7 @@ from tests.tools.margins import margins
 
 pytestmark = pytest.mark.law
 
-PAIRS = 40
+PAIRS = 80
 
 
 def measured(case):

@@ -265,16 +265,16 @@ class GeneratedMonitor(Monitor):
         self._unit_lanes = GeneratedLanes(
             self._forms,
             self._unit,
-            self._compiled,
-            self._engine,
-            self._sources,
+            self.choice.compiled,
+            self.choice.engine,
+            self.choice.sources,
             self._ledger,
             super().step_ns,
         )
         return self._unit_lanes
 
     def _attend(self) -> None:
-        attends = self._callbacks or self.choice.keep is not None
+        attends = self._listeners or self.choice.keep is not None
         self._unit_lanes.told = self._hear if attends else self._unit_lanes._told
 
     def _begin(self) -> None:
@@ -305,7 +305,7 @@ class GeneratedMonitor(Monitor):
         self._last = self._reached = t
         decided = self._flush()
         self._unit.after = self._floor = t
-        self._tell(decided)
+        self._listeners.tell(decided)
         return decided
 
     def _flush(self) -> Sequence[Attempt]:

@@ -12,6 +12,7 @@ from rvmon.monitor.health import HealthLog
 from rvmon.monitor.intake import Intake
 from rvmon.monitor.lanes import Lanes
 from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.listeners import Callback, Listeners
 from rvmon.monitor.one_call import OneCall
 from rvmon.monitor.retention import Kept
 from rvmon.monitor.validate import Validator
@@ -22,8 +23,6 @@ from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
-
-Callback = Callable[[Attempt], object]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +48,8 @@ class Monitor:
     """
 
     STATE: tuple[str, ...] = (
-        "_ledger",
-        "_kept",
-        "_lanes",
-        "_intake",
-        "_health",
-        "_last",
-        "_reached",
+        *("_ledger", "_kept", "_lanes"),
+        *("_intake", "_health", "_last", "_reached"),
     )
 
     judged_by = ""
@@ -70,14 +64,9 @@ class Monitor:
         keep: int | None,
     ) -> None:
         self.choice = Choice(compiled, requirements, engine, settle, sources, keep)
-        self._compiled = compiled
-        self._requirements = requirements
-        self._engine = engine
-        self._sources = sources
-        self._settle = settle
         single = frozenset().union(*(one.single_payloads for one in requirements))
         self._validator = Validator(compiled.checked, sources, single)
-        self._callbacks: dict[object, tuple[bool, Callback]] = {}
+        self._listeners = Listeners()
         self.one_call = OneCall(self)
         self._begin()
 
@@ -95,9 +84,9 @@ class Monitor:
         self._ledger = Ledger()
         self._lanes = self._make_lanes()
         self._kept = Kept(self._ledger, self.choice.keep)
-        delay = self._compiled.checked.max_delay or 0
-        holds_back = delay or self._settle == "next"
-        self._intake = Intake(delay, self._compiled.checked.events) if holds_back else None
+        delay = self.choice.compiled.checked.max_delay or 0
+        holds_back = delay or self.choice.settle == "next"
+        self._intake = Intake(delay, self.choice.compiled.checked.events) if holds_back else None
         self._health = HealthLog()
         self._last: int | None = None
         self._reached: int | None = None
@@ -109,7 +98,11 @@ class Monitor:
 
     def _make_lanes(self) -> Lanes:
         return Lanes(
-            self._compiled.checked, self._requirements, self._engine, self._sources, self._ledger
+            self.choice.compiled.checked,
+            self.choice.requirements,
+            self.choice.engine,
+            self.choice.sources,
+            self._ledger,
         )
 
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
@@ -138,7 +131,7 @@ class Monitor:
             OverlapError: another call is under way. In all cases the monitor is as it was.
         """
         decided = self.one_call(self._step, t_ns, values)
-        self._tell(decided)
+        self._listeners.tell(decided)
         return decided
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
@@ -165,25 +158,6 @@ class Monitor:
         decided = self._ledger.flush()
         self._kept.bound(self._lanes)
         return decided
-
-    def _tell(self, decided: Sequence[Attempt]) -> None:
-        """Call the callbacks, which may call the monitor: the call that decided is over."""
-        if not self._callbacks:
-            return
-        errors: list[Exception] = []
-        for attempt in decided:
-            for failures_only, callback in tuple(self._callbacks.values()):
-                asked = attempt.verdict is Verdict.FAIL or not failures_only
-                if attempt.decided is None or not asked:
-                    continue
-                try:
-                    callback(attempt)
-                except Exception as error:  # noqa: BLE001 - the others are called first
-                    errors.append(error)
-        if len(errors) > 1:
-            raise ExceptionGroup("several callbacks of a monitor failed", errors)
-        if errors:
-            raise errors[0]
 
     def on_decided(self, callback: Callback) -> Callable[[], None]:
         r"""Have a function called with each attempt that passes or fails, as it is decided.
@@ -215,24 +189,11 @@ class Monitor:
         R1#2 PASS
         >>> stop()
         """
-        return self._register(callback, failures_only=False)
+        return self._listeners.add(callback, self._attend, failures_only=False)
 
     def on_failure(self, callback: Callback) -> Callable[[], None]:
         """Have a function called with each attempt that fails; otherwise as `on_decided`."""
-        return self._register(callback, failures_only=True)
-
-    def _register(self, callback: Callback, *, failures_only: bool) -> Callable[[], None]:
-        if not callable(callback):
-            raise RvmonError(f"expected a function that takes an attempt, found {callback!r}")
-        key = object()
-        self._callbacks[key] = (failures_only, callback)
-        self._attend()
-
-        def stop() -> None:
-            self._callbacks.pop(key, None)
-            self._attend()
-
-        return stop
+        return self._listeners.add(callback, self._attend, failures_only=True)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         self._lanes.through(t - 1)
@@ -262,7 +223,7 @@ class Monitor:
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
         decided = self.one_call(self._advance, t_ns)
-        self._tell(decided)
+        self._listeners.tell(decided)
         return decided
 
     def _advance(self, t_ns: int) -> Sequence[Attempt]:
@@ -296,7 +257,7 @@ class Monitor:
             The report; the same again if the run was finished before.
         """
         report, decided = self.one_call(self._finish, t_ns)
-        self._tell(decided)
+        self._listeners.tell(decided)
         return report
 
     def _finish(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
@@ -325,7 +286,7 @@ class Monitor:
             dropped=self._kept.dropped,
             untold=self._lanes.untold(),
             health=self._health.report(
-                self._requirements, self._lanes.main.flow.inputs, self._intake
+                self.choice.requirements, self._lanes.main.flow.inputs, self._intake
             ),
             origin=self._health.began or 0,
             end=end,
@@ -334,7 +295,7 @@ class Monitor:
 
     @property
     def _names(self) -> list[str]:
-        return [compiled.requirement.id for compiled in self._requirements]
+        return [compiled.requirement.id for compiled in self.choice.requirements]
 
     @property
     def verdicts(self) -> Mapping[str, Verdict]:
@@ -370,7 +331,7 @@ class Monitor:
         known = [self._last]
         if t is not None:
             known.append(t)
-        if self._reached is not None and self._compiled.checked.time is not TimeModel.SAMPLED:
+        if self._reached is not None and self.choice.compiled.checked.time is not TimeModel.SAMPLED:
             known.append(self._reached - 1)
         return max(known)
 

@@ -51,7 +51,7 @@ class CompiledMonitor(Monitor):
         super().__init__(compiled, requirements, "c", settle, sources, None)
 
     def _attend(self) -> None:
-        if self._intake is None and not self._callbacks:
+        if self._intake is None and not self._listeners:
             self.__dict__["step"] = self._core.step
             self.__dict__["step_ns"] = self._core.step_ns
         else:
@@ -59,7 +59,7 @@ class CompiledMonitor(Monitor):
             self.__dict__.pop("step_ns", None)
 
     def _make_lanes(self) -> Lanes:
-        return Lanes(self._compiled.checked, (), "auto", self._sources, self._ledger)
+        return Lanes(self.choice.compiled.checked, (), "auto", self.choice.sources, self._ledger)
 
     def _begin(self) -> None:
         super()._begin()
@@ -84,7 +84,7 @@ class CompiledMonitor(Monitor):
         if self._intake is not None:
             return super().step_ns(t_ns, values)
         decided = self._core.step_ns(t_ns, values)
-        self._tell(decided)
+        self._listeners.tell(decided)
         return decided
 
     def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:

@@ -117,7 +117,11 @@ class _Run(Monitor):
         self._gauged = _Gauged()
         self._ledger = self._gauged
         return _MeasuringLanes(
-            self._compiled.checked, self._requirements, self._sources, self._gauged, self._streams
+            self.choice.compiled.checked,
+            self.choice.requirements,
+            self.choice.sources,
+            self._gauged,
+            self._streams,
         )
 
     def taken(self) -> Sequence[Measured]:
