@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Doubt:
-    """Follows a trigger from piece to piece; `rvmon.dataflow.doubt.Doubt` for whole stretches.
+    """Follows a trigger from piece to piece; `rvmon.dataflow.previous.Hidden` for whole stretches.
 
     Args:
         pulse: whether it starts an attempt wherever it is true.

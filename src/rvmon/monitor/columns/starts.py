@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Starts:
-    """Follows a trigger from piece to piece; `rvmon.monitor.trigger.Trigger` for whole stretches.
+    """Follows a trigger from piece to piece; `rvmon.runtime.starts.Starts` for whole stretches.
 
     Args:
         pulse: whether it starts an attempt at every position where it holds.
