@@ -108,7 +108,7 @@ def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) 
     residual = after(judge.machine.residual(location), [now // 2 - anchor for anchor in anchors])
     owed = judge.compiled.words.owed(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    reason = f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}{unborn(judge, end)}"
+    reason = f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}{unborn(judge, attempt, end)}"
     alone = (_alone(judge.machine, worse), _alone(judge.machine, better))
     return Explanation(reason, owed, deadline=earlier(attempt, *alone))
 
@@ -149,10 +149,15 @@ def still_owed(owed: str, end: int | None) -> str:
     return f"still owed{when}: {owed}"
 
 
-def unborn(judge: AttemptJudge, end: int | None) -> str:
-    """Which of what a requirement reads has had no value so far: nothing holds of it, or fails."""
+def unborn(judge: AttemptJudge, attempt: Open, end: int | None) -> str:
+    """Which of what a requirement reads has had no value so far: nothing holds of it, or fails.
+
+    What has left the attempt open is named there.
+    """
     reads, outages = judge.flow.graph.reads, judge.flow.outages
     names = {name for place, _ in judge.leaves for name in reads[place].names & outages.keys()}
+    if attempt.doubt is not None:
+        names -= {one.name for one in attempt.doubt.outages}
     found = [outages[name] for name in sorted(names)]
     ended = "" if end is not None else " so far"
     return "".join(

@@ -53,7 +53,7 @@ def network_open(
     owed = owed_at(network, core, position, network.grown, judge.compiled.words)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
     waiting = still_owed(owed or "what lies ahead", end)
-    reason = f"{waiting}{longer(judge, attempt, end)}{doubt}{unborn(judge, end)}"
+    reason = f"{waiting}{longer(judge, attempt, end)}{doubt}{unborn(judge, attempt, end)}"
     return Explanation(reason, owed, _deadline(judge, attempt, now))
 
 
