@@ -311,6 +311,13 @@ class CompiledRequirement:
         """The propositions of what it owes."""
         return graph_of(self._own)
 
+    def looks_back_beyond(self, followed: Graph) -> bool:
+        """Whether what it owes depends on what was before the trigger and `followed` lacks."""
+        graph = self.consequent_graph
+        if self.network_plan.looks_back or graph.remembers_captured:
+            return True
+        return any(graph.nodes[place] not in followed.index for place in graph.stateful)
+
 
 def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:
     """The requirements of a specification, compiled, by id.

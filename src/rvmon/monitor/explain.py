@@ -108,7 +108,9 @@ def explain_open(judge: Judge, attempt: Open, now: int, end: int | None = None) 
     residual = after(judge.machine.residual(location), [now // 2 - anchor for anchor in anchors])
     owed = judge.compiled.words.owed(residual, anchors)
     doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-    reason = f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}{unborn(judge, attempt, end)}"
+    reason = (
+        f"{still_owed(owed, end)}{longer(judge, attempt, end)}{doubt}{unborn(judge, attempt, end)}"
+    )
     alone = (_alone(judge.machine, worse), _alone(judge.machine, better))
     return Explanation(reason, owed, deadline=earlier(attempt, *alone))
 

@@ -9,6 +9,14 @@ from rvmon.dataflow.inputs import Reported, payloads_of
 from rvmon.spec.checked.formula import FieldValue
 from rvmon.trace.sample import Payload, Scalar, Value
 
+Shape = tuple[
+    list[tuple[str, list[tuple[int, Scalar, int]]]],
+    list[tuple[str, str, dict[str, Scalar], Scalar, bool]],
+]
+"""Per requirement its instances: rank, value, first instant; per lane its requirement,
+which of its judges it has, captured values, the value of its instance, and whether attempts start
+in it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Instance:

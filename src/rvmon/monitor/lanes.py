@@ -10,7 +10,7 @@ from rvmon.dataflow.inputs import Inputs
 from rvmon.monitor.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.captive import CapturedAttempt, captured_value
 from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.instances import Instance, seen_by, values_in
+from rvmon.monitor.instances import Instance, Shape, seen_by, values_in
 from rvmon.monitor.judges import CapturingRule, judge_of
 from rvmon.monitor.keyed import Keyed
 from rvmon.monitor.lane import Lane
@@ -22,14 +22,6 @@ from rvmon.spec.checked.specification import CheckedSpec, Mode, TimeModel
 from rvmon.trace.sample import Scalar, Value
 
 Captured = Mapping[str, Scalar]
-
-Shape = tuple[
-    list[tuple[str, list[tuple[int, Scalar, int]]]],
-    list[tuple[str, str, dict[str, Scalar], Scalar, bool]],
-]
-"""Per requirement its instances: rank, value, first instant; per lane its requirement,
-which of its judges it has, captured values, the value of its instance, and whether attempts start
-in it."""
 
 
 class Lanes:
@@ -325,7 +317,7 @@ class Lanes:
         compared = self._compared(parent, compiled, own, instance)
         lapses = compared is not None and compared.may_begin_otherwise
         graph = compiled.consequent_graph
-        if _looks_back(compiled, parent.flow.graph):
+        if compiled.looks_back_beyond(parent.flow.graph):
             lane = Lane(self._flow(graph, own), (compiled, own))
             if lapses:
                 lane.flow.cut_at(t)
@@ -390,23 +382,16 @@ class Lanes:
     def _needs_history(self, compiled: CompiledRequirement) -> bool:
         """Whether an instance or a captured attempt has to look at what was before it."""
         keyed = self.roster.keyed.get(compiled.requirement.id)
-        kinds = [one for one in (compiled, compiled.hidden, compiled.doubted) if one is not None]
         return (keyed is not None and not keyed.reach.is_fresh) or (
             bool(compiled.requirement.captures)
-            and any(_looks_back(one, compiled.shared_graph) for one in kinds)
+            and any(
+                one.looks_back_beyond(compiled.shared_graph) for one in compiled.judges.values()
+            )
         )
 
 
 def _value(instance: Instance | None) -> Scalar:
     return None if instance is None else instance.value
-
-
-def _looks_back(compiled: CompiledRequirement, parent: Graph) -> bool:
-    """Whether what is owed depends on what was before the trigger, and a lane does not know."""
-    graph = compiled.consequent_graph
-    if compiled.network_plan.looks_back or graph.remembers_captured:
-        return True
-    return any(graph.nodes[place] not in parent.index for place in graph.stateful)
 
 
 def _is_doubted(instance: Instance | None) -> bool:
