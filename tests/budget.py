@@ -25,6 +25,7 @@ BUDGETS = {
     "tests/rvmon/codegen": 70,
     "tests/rvmon/dataflow": 10,
     "tests/rvmon/diagnostics": 2,
+    "tests/rvmon/execute": 12,
     "tests/rvmon/explain": 30,
     "tests/rvmon/export": 5,
     "tests/rvmon/formula": 2,
@@ -37,6 +38,7 @@ BUDGETS = {
     "tests/rvmon/timed": 30,
     "tests/rvmon/trace": 2,
     "tests/rvmon/verdict": 3,
+    "tests/tools": 40,
 }
 """On two quiet cores, of which each has half of this to do. What is over its budget is shown, and
 fails nothing: a machine may be busy."""
