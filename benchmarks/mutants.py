@@ -159,13 +159,8 @@ def _changes(files: Sequence[Path], options: argparse.Namespace) -> Iterator[Mut
 
 def _newer_lines(revision: str) -> dict[Path, set[int]]:
     """The lines of the package that are not as they were then; moved files are recognised."""
-    told = subprocess.run(
-        ["git", "diff", "--unified=0", "--find-renames", revision, "--", str(PACKAGE)],  # noqa: S607
-        cwd=ROOT,
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
+    command = ["git", "diff", "--unified=0", "--find-renames", revision, "--", str(PACKAGE)]
+    told = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     found: dict[Path, set[int]] = {}
     lines: set[int] = set()
     for line in told.splitlines():

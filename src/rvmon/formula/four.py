@@ -185,7 +185,7 @@ class Reader(Reading[Four]):
         return made
 
     def both(self, left: Four, right: Four) -> Four:
-        """Not born where no operand is."""
+        """Not born where an operand is not, none is false, and none is unknown."""
         return self._all([left, right])
 
     def next(self, _: Four) -> Four:
@@ -199,7 +199,6 @@ class Reader(Reading[Four]):
     def _all(self, args: Sequence[Four]) -> Four:
         factory = self.factory
         args = [part for arg in args for part in arg.parts]
-
         # What was lost is not excused by what is not there: with it, the whole is unknown.
         unborn = self._some_unborn(args)
 
