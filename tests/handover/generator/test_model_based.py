@@ -55,6 +55,7 @@ def test_the_same_seed_gives_the_same_tests():
     assert model_based(4, seed=5) != model_based(4, seed=6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("policy", ["shortest", "fastest", "likely"])
 def test_chosen_times_are_those_of_some_run(policy):
     """Whatever is chosen satisfies every limit that the witness puts on the projected instants."""
@@ -76,6 +77,7 @@ def test_chosen_times_are_those_of_some_run(policy):
                 assert bound == inf or (second - first) * run.timing.scale <= bound
 
 
+@pytest.mark.slow
 def test_waits_are_chosen_all_over_their_windows():
     """A wait with a window of ten units takes each of its values for some seed."""
     template = templates()[0]

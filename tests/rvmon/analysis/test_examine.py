@@ -76,6 +76,7 @@ def analysed():
     return analysis_of(SPEC)
 
 
+@pytest.mark.slow
 def test_known_answers(analysed):
     """Contradictions, missing deadlines, conflicts of two and three, and what is superfluous."""
     found = analysed.examination
@@ -134,6 +135,7 @@ def test_what_cannot_be_is_never_seen(model):
     assert claims > 1
 
 
+@pytest.mark.slow
 def test_timelines_trigger_what_conflicts(analysed):
     """The timeline of a conflict triggers its requirements as said."""
     assert [conflict.ids for conflict, _ in analysed.timelines] == [
@@ -362,6 +364,7 @@ def test_choices_see_both_sides_of_every_comparison():
     assert choices.complete
 
 
+@pytest.mark.slow
 def test_check_analyse(tmp_path, capsys):
     """`rvmon check --analyse` warns with places and draws the shortest conflicting timeline."""
     path = tmp_path / "a.rv"

@@ -76,6 +76,7 @@ def test_too_small_a_budget_is_said(door, capsys):
     assert "not decided" in shown(capsys, "door.rv", "D1", "--runs", "2")
 
 
+@pytest.mark.slow
 def test_the_difference_of_two(door, capsys):
     """Two requirements: a run on which one fails and the other does not."""
     text = shown(capsys, "door.rv", "D1", "D2")

@@ -257,6 +257,7 @@ def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec, engine, 
     assert Report.from_json(report.to_json()) == report
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_what_stays_undecided(spec, engine):
     """Attempts that unknown input has left without a way out are dropped, but counted."""
     monitor = spec.monitor(engine=engine, only=["Y1"], keep=5)
@@ -272,6 +273,7 @@ def test_memory_does_not_grow_with_what_stays_undecided(spec, engine):
     assert [one.number for one in report.attempts] == [*range(2995, 3000)]
 
 
+@pytest.mark.slow
 def test_attempts_in_doubt_are_bounded_too(engine):
     """Episodes whose trigger is lost, one after the other, whose consequent fails."""
     spec = rvmon.loads("""
@@ -297,6 +299,7 @@ requirement U1
         assert list(map(key, report.of(name, "I"))) == list(map(key, expected.of(name, "I")))[-4:]
 
 
+@pytest.mark.slow
 def test_void_episodes_are_bounded_too(engine):
     """Episodes that were over before all that is owed had a value."""
     spec = rvmon.loads("""
@@ -318,6 +321,7 @@ requirement W1
     assert list(report.attempts) == list(expected.attempts)[-4:]
 
 
+@pytest.mark.slow
 def test_a_snapshot_carries_the_counts(spec, engine):
     """A run that is put away and taken up again drops and counts as if it had not been."""
     plain, monitor = spec.monitor(engine=engine, keep=3), spec.monitor(engine=engine, keep=3)
@@ -344,6 +348,7 @@ def test_what_is_no_count_is_refused(spec, keep):
         spec.monitor(keep=keep)
 
 
+@pytest.mark.slow
 def test_instances_and_captured_attempts_are_bounded(spec):
     """What has judges of its own, per key or per attempt, is bounded per requirement."""
     spec = rvmon.loads("""
