@@ -223,6 +223,7 @@ def test_a_page_needs_nothing_but_itself():
     assert not re.search(r"https?://|url\(|@import", page)
 
 
+@pytest.mark.slow
 def test_a_long_run_makes_a_small_page():
     """Fifty thousand samples and hundreds of attempts stay below 200 KB."""
     samples = [
