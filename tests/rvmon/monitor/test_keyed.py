@@ -64,6 +64,7 @@ def test_what_is_over_changes_no_record(name, time, engine):
     assert disagreements(Case(checked, actions, None), Maker(engine), online=False) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 10 ms\n"])
 @pytest.mark.parametrize(
     "name", ["another event with the key", "a signal", "what was before", "stretches"]
