@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -18,7 +18,7 @@ import msgspec
 
 import rvmon
 from handover.campaign.outcome import Outcome
-from handover.campaign.plan import Plan
+from handover.campaign.plan import Job, Plan
 from rvmon.cache import files_told
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
@@ -91,10 +91,20 @@ def unfinished(folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str
             known = [msgspec.json.encode(own)]
         else:
             _refuse_another(path, known[:1], own)
-        journal.begin(path, known)
+        played = list(_in_order(known[1:], plan.jobs()))
+        journal.begin(path, known[: 1 + len(played)])
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror}: remove it, or name another --out") from None
-    return Unfinished(path, [msgspec.json.decode(one, type=Played) for one in known[1:]])
+    return Unfinished(path, played)
+
+
+def _in_order(entries: Sequence[bytes], jobs: Sequence[Job]) -> Iterator[Played]:
+    """What was played, up to the first that is not in its place: two may have written at once."""
+    for entry, job in zip(entries, jobs, strict=False):
+        one = msgspec.json.decode(entry, type=Played)
+        if one.outcomes[0].job != job:
+            return
+        yield one
 
 
 def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None:

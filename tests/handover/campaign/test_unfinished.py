@@ -109,6 +109,16 @@ def test_what_lies_behind_damage_is_played_again(whole, here, played):
     assert played[0] == 3
 
 
+def test_what_two_have_written_at_once_is_not_mixed(whole, here, played):
+    """From where they met, tests are played again."""
+    known, journal = whole
+    lines = journal.splitlines(keepends=True)
+    left(here, b"".join([*lines[:5], lines[4], *lines[5:]]))
+    assert main(WORDS) == 0
+    assert files(here) == known
+    assert played[0] == 5
+
+
 def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
     """What its partial tables and pages were is written over."""
 
