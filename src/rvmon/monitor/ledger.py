@@ -151,13 +151,8 @@ class Ledger:
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
-        for _, judge, attempt in sorted(self._started, key=_turn):
-            name = judge.compiled.requirement.id
-            attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
-        self._started.clear()
-        for _, judge, attempt in sorted(self._doubtful, key=_turn):
-            attempt.doubtful_number = self.next_doubtful(judge.compiled.requirement.id)
-        self._doubtful.clear()
+        if self._started or self._doubtful:
+            self._number_new()
         if not self._decided:
             if not self.told:
                 return ()
@@ -180,6 +175,15 @@ class Ledger:
         self.told.clear()
         self.attempts += records
         return records
+
+    def _number_new(self) -> None:
+        for _, judge, attempt in sorted(self._started, key=_turn):
+            name = judge.compiled.requirement.id
+            attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
+        self._started.clear()
+        for _, judge, attempt in sorted(self._doubtful, key=_turn):
+            attempt.doubtful_number = self.next_doubtful(judge.compiled.requirement.id)
+        self._doubtful.clear()
 
 
 def verdict_at_end(

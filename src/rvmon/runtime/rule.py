@@ -110,7 +110,7 @@ class Rule(Starts):
         """Start an attempt that is driven by itself, at the position visited last."""
         machine = self.machine
         attempt = self.clerk.opened(self, triggered, machine.start, self.is_sure)
-        self.enter(triggered)
+        self.enter(triggered, plain=self.is_plain)
         if self.moves is None or self.letter != self.other:
             due = self.stepped(attempt, t)
         else:
