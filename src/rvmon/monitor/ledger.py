@@ -71,6 +71,8 @@ class Ledger:
         attempt = Open(triggered, token, judge.seen)
         attempt.void = judge.flow.is_cut
         attempt.sure = sure
+        if judge.hidden:
+            attempt.doubt = judge.doubt
         (self.sure if sure else self.doubtful)(judge, attempt, triggered)
         return attempt
 
@@ -78,9 +80,10 @@ class Ledger:
         """See `rvmon.monitor.attempt_judge.Clerk`."""
         self.sure(judge, attempt, judge.flow.position)
 
-    def parted(self, judge: AttemptJudge, attempt: Open) -> None:
+    def parted(self, judge: AttemptJudge, attempt: Open, apart: bool) -> None:
         """See `rvmon.monitor.attempt_judge.Clerk`."""
-        attempt.doubt = judge.doubt
+        if not judge.hidden:
+            attempt.doubt = judge.doubt if apart else None
 
     def decided(
         self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token

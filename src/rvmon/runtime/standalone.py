@@ -116,8 +116,8 @@ class Monitor:
         """Hear of the decision of an attempt that was moved together with others."""
         self.decided(rule, Open(number, triggered, None), verdict, t, None)
 
-    def parted(self, rule: Rule, attempt: Open) -> None:
-        """Hear that unknown input made the two runs of an attempt part."""
+    def parted(self, rule: Rule, attempt: Open, apart: bool) -> None:
+        """Hear that unknown input made the two runs of an attempt part, or that they met."""
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, _: Any) -> None:
         """Hear of a decision."""
