@@ -39,6 +39,7 @@ def alone(lines: Iterator[str] | list[str]) -> Iterator[str]:
     yield from indented(lines)
     yield "except BaseException:"
     yield "    self.after = held"
+    yield "    self.torn = t"
     yield "    raise"
 
 
@@ -204,7 +205,7 @@ class VisitWriter:
         yield "        return self.clerk.told(t)"
         yield "    except BaseException:"
         yield "        if self.after == BUSY:"
-        yield "            self.after = t"
+        yield "            self.after = self.torn = t"
         yield "        raise"
         yield "self.after = t"
         yield "return ()"

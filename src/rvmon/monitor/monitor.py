@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NoReturn
 
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
+from rvmon.monitor.choice import Choice
 from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
 from rvmon.monitor.health import HealthLog
 from rvmon.monitor.intake import Intake
@@ -15,6 +16,7 @@ from rvmon.monitor.ledger import Ledger
 from rvmon.monitor.listeners import Callback, Listeners
 from rvmon.monitor.one_call import OneCall
 from rvmon.monitor.retention import Kept
+from rvmon.monitor.torn import capped, not_passed
 from rvmon.monitor.validate import Validator
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import TimeModel
@@ -23,18 +25,6 @@ from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
-
-
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """What a monitor was asked for; see `rvmon.monitor.build.build_monitor`."""
-
-    compiled: CompiledSpec
-    requirements: Sequence[CompiledRequirement]
-    engine: str
-    settle: str
-    sources: frozenset[str] | None
-    keep: int | None
 
 
 class Monitor:
@@ -49,7 +39,7 @@ class Monitor:
 
     STATE: tuple[str, ...] = (
         *("_ledger", "_kept", "_lanes"),
-        *("_intake", "_health", "_last", "_reached"),
+        *("_intake", "_health", "_last", "_reached", "_torn"),
     )
 
     judged_by = ""
@@ -91,6 +81,7 @@ class Monitor:
         self._last: int | None = None
         self._reached: int | None = None
         self._report: Report | None = None
+        self._torn: int | None = None
         self._attend()
 
     def _attend(self) -> None:
@@ -137,7 +128,8 @@ class Monitor:
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         t_ns = self._taken_time(t_ns)
         if self._intake is not None:
-            ready = self._intake.take(t_ns, self._validator.check(t_ns, values))
+            checked = self.one_call.spare(self._validator.check, t_ns, values)
+            ready = self._intake.take(t_ns, checked)
             return self._settled(ready, self._intake.floor)
         if self._last is not None and t_ns <= self._last:
             raise TimeOrderError(
@@ -150,7 +142,7 @@ class Monitor:
                 f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) said "
                 "that none before would come: advance later, or drop the sample"
             )
-        self._judge(t_ns, self._validator.check(t_ns, values))
+        self._judge(t_ns, self.one_call.spare(self._validator.check, t_ns, values))
         return self._flush()
 
     def _flush(self) -> Sequence[Attempt]:
@@ -268,6 +260,8 @@ class Monitor:
         for sample in () if self._intake is None else self._intake.close():
             self._judge(sample.t, sample.values)
         report, decided = self._conclude(t_ns)
+        if self._torn is not None:
+            report = capped(report, self._torn)
         self._report = replace(report, engine=self.judged_by)
         return self._report, decided
 
@@ -303,7 +297,8 @@ class Monitor:
 
         `F` if an attempt has failed, else `P` if one has passed, else `NT`. What is undecided does
         not count, so that this is not what `finish` would say: it may call a run `I` or `F` that
-        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's.
+        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's. After
+        a call that an interrupt tore, what has not failed is `I`.
         A call costs what was decided since the last one.
 
         >>> from rvmon import loads
@@ -319,7 +314,10 @@ class Monitor:
         return self.one_call(self._verdicts)
 
     def _verdicts(self) -> Mapping[str, Verdict]:
-        return self._verdicts_so_far() if self._report is None else self._report.verdicts
+        if self._report is not None:
+            return self._report.verdicts
+        found = self._verdicts_so_far()
+        return found if self._torn is None else not_passed(found)
 
     def _verdicts_so_far(self) -> Mapping[str, Verdict]:
         return self._kept.verdicts(self._names)
@@ -367,6 +365,8 @@ class Monitor:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
         from rvmon.monitor.snapshot import snapshot
 
+        if self._torn is not None:
+            self._flush()  # what the torn call has decided is not lost
         self._kept.tidy(self._lanes)
         return snapshot(self)
 

@@ -285,3 +285,18 @@ def test_attempts_follow_failures_before_time_zero() -> None:
     report = spec.evaluate(columns, engine="columns")
     assert [attempt.triggered for attempt in report.attempts] == [-3, -2, 2]
     assert report.attempts == of_a_monitor(spec, columns, 2).attempts
+
+
+def test_names_that_end_in_nul_are_told_whole():
+    """Arrays of text would leave the end out: the report reads back with all requirements."""
+    names = ["a\x00", "b\x00\x00"]
+    text = "".join(
+        f"requirement `{name}`\n  whenever p\n  then within 900 ms q\n" for name in names
+    )
+    spec = rvmon.loads(f"spec s\nsignal p, q : bool\n{text}")
+    found = recording(1)
+    report = spec.evaluate({name: found[name] for name in ("t_ns", "p", "q")})
+    assert isinstance(report.attempts, JudgedAttempts)
+    read = rvmon.Report.from_json(report.to_json())
+    assert read.counts == report.counts
+    assert list(read.verdicts) == names
