@@ -63,6 +63,7 @@ def of_a_monitor(spec: rvmon.Spec, columns: dict[str, np.ndarray], end: int) -> 
     return monitor.finish_ns(end)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("few", [0, 12, 10_000])
 @pytest.mark.parametrize("time", ["held", "sampled"])
 def test_blocks_of_any_size_say_what_a_monitor_says(time, few, monkeypatch):
@@ -173,6 +174,7 @@ UNKNOWN = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [4, 2000])
 @pytest.mark.parametrize("case", UNKNOWN)
 def test_what_left_an_attempt_open_is_told_with_its_stretch(case, size):
@@ -228,6 +230,7 @@ def test_what_makes_no_difference_in_the_end_left_nothing_open(engine):
     assert "not known" not in report.attempts[0].reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [5, 5000])
 def test_each_stretch_of_excess_is_a_failure_in_any_blocks(rows):
     """An episode goes on after a failure, however many there are, and over borders of blocks."""
