@@ -29,7 +29,7 @@ from rvmon.automaton.reduce import reduce
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.monitor.obligation_words import Words
+from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.spec.checked.formula import Binary, Formula, Unary
 from rvmon.testing.generate_formula import Shape, formula
 from rvmon.testing.show import show

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rvmon.monitor.robustness import RobustnessMonitor
+from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.compare import key_of

@@ -6,7 +6,7 @@ import random
 from collections.abc import Mapping, Sequence
 
 from rvmon.monitor import Monitor
-from rvmon.monitor.snapshot import restore
+from rvmon.monitor.restore import restore
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -30,7 +30,7 @@ class Interrupted:
     def _interrupt(self) -> Monitor:
         if self._dice.random() < self._share:
             self.interruptions += 1
-            self._monitor = restore(self._monitor.choice.compiled, self._monitor.snapshot())
+            self._monitor = restore(self._monitor.options.compiled, self._monitor.snapshot())
         return self._monitor
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value]) -> Sequence[Attempt]:

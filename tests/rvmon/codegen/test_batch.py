@@ -14,7 +14,7 @@ import rvmon
 from rvmon.codegen.c_build import built
 from rvmon.monitor import compile_spec
 from rvmon.monitor.columns import evaluate as arrays
-from rvmon.monitor.columns import rows
+from rvmon.monitor.engines import row_judge
 from rvmon.testing.compare import differences
 from rvmon.testing.generate_spec import Profile
 from rvmon.testing.generate_trace import TraceProfile
@@ -73,7 +73,7 @@ def one_by_one(spec: rvmon.Spec, columns: dict[str, np.ndarray]) -> rvmon.Report
 def test_the_report_is_that_of_the_samples(time, extra, monkeypatch):
     """Verdicts, records, reasons and health are the same, whatever rows are passed over."""
     monkeypatch.setattr(arrays, "CHUNK", 517)
-    monkeypatch.setattr(rows, "CHUNK", 131)
+    monkeypatch.setattr(row_judge, "CHUNK", 131)
     spec = rvmon.loads(SPEC.format(time=time, extra=extra))
     columns = recording(3)
     slow, fast = one_by_one(spec, columns), spec.evaluate(columns)
@@ -91,9 +91,9 @@ def test_most_rows_are_passed_over(monkeypatch):
     columns |= {"stop": np.zeros(3000, bool), "go": columns["t"] < 0, "count": np.zeros(3000, int)}
     columns["speed"] = np.linspace(0.3, 0.4, 3000)
     taken = []
-    real = rows._rows_that_matter
+    real = row_judge._rows_that_matter
     monkeypatch.setattr(
-        rows, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
+        row_judge, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
     )
     report = spec.evaluate(columns, engine="automaton")
     assert report == one_by_one(spec, columns)
