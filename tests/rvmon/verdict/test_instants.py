@@ -15,12 +15,12 @@ LONG = 8_388_608 * 10**9
 @pytest.mark.parametrize("seed", range(5))
 def test_as_one_by_one(seed):
     """The same texts and the same floats, of all magnitudes and signs."""
-    dice = random.Random(seed)
-    ticks = [dice.randrange(TIME_LIMIT) >> dice.randrange(62) for _ in range(2_000)]
-    ticks += [LONG - dice.randrange(1, 10**9) for _ in range(500)]
+    rng = random.Random(seed)
+    ticks = [rng.randrange(TIME_LIMIT) >> rng.randrange(62) for _ in range(2_000)]
+    ticks += [LONG - rng.randrange(1, 10**9) for _ in range(500)]
     ticks += [near + by for near in (*EDGES, LONG) for by in (-1, 0, 1)]
     ticks += [-one for one in ticks]
-    origin = dice.choice([0, -5, 1_700_000_000 * 10**9])
+    origin = rng.choice([0, -5, 1_700_000_000 * 10**9])
     array = np.array(ticks)
     assert formatted(array) == [format_ticks(one) for one in ticks]
     for some in (ticks, [one for one in ticks if abs(one - origin) < 1 << 53]):

@@ -35,20 +35,20 @@ def text_of(owed, time=""):
     return f"spec many\n{time}{HEAD}requirement R1\n  {owed}\n  for each k in order.id\n"
 
 
-def samples(dice, count):
+def samples(rng, count):
     """Many keys, most of which come once or twice; now and then one that is not known."""
     t = 0
     for number in range(count):
-        t += dice.choice([1, 5, 10, 25])
-        keys = [dice.choice([number, number - 1, number - 2, dice.randrange(6)]) for _ in "ab"]
+        t += rng.choice([1, 5, 10, 25])
+        keys = [rng.choice([number, number - 1, number - 2, rng.randrange(6)]) for _ in "ab"]
         values = {}
-        if dice.random() < 0.6:
-            orders = [{"id": None if dice.random() < 0.03 else key} for key in keys]
-            values["order"] = tuple(orders[: dice.choice([1, 1, 2])])
-        if dice.random() < 0.5:
-            values["done"] = {"id": dice.choice(keys)}
-        if dice.random() < 0.3:
-            values["ok"] = dice.choice([True, False, None])
+        if rng.random() < 0.6:
+            orders = [{"id": None if rng.random() < 0.03 else key} for key in keys]
+            values["order"] = tuple(orders[: rng.choice([1, 1, 2])])
+        if rng.random() < 0.5:
+            values["done"] = {"id": rng.choice(keys)}
+        if rng.random() < 0.3:
+            values["ok"] = rng.choice([True, False, None])
         yield Sample(t, values)
 
 

@@ -134,9 +134,9 @@ def test_an_unknown_engine_is_told_which_there_are(trace):
 
 def test_lengths_of_vectors_are_those_of_python():
     """`hypot` gives the number that all engines compute, to the last bit."""
-    dice = np.random.default_rng(1)
-    x = np.concatenate([dice.random(3000), [0.0, 3e200, 1e-200, 1.0, 1e308]])
-    y = np.concatenate([np.round(dice.normal(0, 9, 3000), 2), [0.0, 4e200, 3e-200, 1e-9, 1.0]])
+    rng = np.random.default_rng(1)
+    x = np.concatenate([rng.random(3000), [0.0, 3e200, 1e-200, 1.0, 1e308]])
+    y = np.concatenate([np.round(rng.normal(0, 9, 3000), 2), [0.0, 4e200, 3e-200, 1e-9, 1.0]])
     trace = {"t": np.arange(len(x)), "x": x, "y": y}
     trace["h"] = np.array(list(map(math.hypot, x.tolist(), y.tolist())))
     spec = spec_of("signal x, y, h : real", "always hypot(x, y) == h")

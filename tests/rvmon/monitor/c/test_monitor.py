@@ -19,8 +19,8 @@ from tests.tools.differential import campaign
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 pytestmark = pytest.mark.compiler
 
@@ -160,18 +160,18 @@ def test_names_of_an_enumeration(spec):
 
 def test_names_in_any_order(spec):
     """The order of names may change from sample to sample, and names be equal, not the same."""
-    dice = random.Random(1)
+    rng = random.Random(1)
     samples = []
     for t in range(200):
         names = list(FIRST)
-        dice.shuffle(names)
+        rng.shuffle(names)
         row = {
-            "".join(name): dice.choice(
+            "".join(name): rng.choice(
                 {"speed": [1.0, 3.0], "count": [1, 4], "mode": ["red", "green"]}.get(
                     name, [True, False]
                 )
             )
-            for name in names[: dice.randint(0, len(names))]
+            for name in names[: rng.randint(0, len(names))]
         }
         samples.append((t * S // 3, row))
     both(spec, samples)

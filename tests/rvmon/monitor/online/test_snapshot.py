@@ -7,15 +7,15 @@ import random
 
 import pytest
 from tests.tools.differential import campaign, case_of
+from tests.tools.interrupt import Interrupted
+from tests.tools.ways import Maker
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError
 from rvmon.session import Spec
 from rvmon.testing.drive import feed
-from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.interrupt import Interrupted
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 TEXT = """
 spec door
@@ -61,10 +61,10 @@ def test_another_process_could_take_over():
     for number in range(12):
         case = case_of(f"anew/{number}", Profile(), TraceProfile())
         monitor = Spec(case.spec).monitor(sources=case.names)
-        dice = random.Random(number)
+        rng = random.Random(number)
         for action in case.actions:
             feed(monitor, action)
-            if dice.random() < 0.2:
+            if rng.random() < 0.2:
                 data = monitor.snapshot()
                 monitor = Spec(case.spec).restore(data)
                 assert monitor.snapshot() == data
@@ -174,12 +174,12 @@ def test_most_hostile_snapshots_are_refused_at_once():
     document = json.loads(body)
     places = list(places_in(document))
     for seed in range(150):
-        dice = random.Random(seed)
-        hostile, path = copy.deepcopy(document), dice.choice(places)
+        rng = random.Random(seed)
+        hostile, path = copy.deepcopy(document), rng.choice(places)
         inner = hostile
         for key in path[:-1]:
             inner = inner[key]
-        inner[path[-1]] = dice.choice([None, True, -1, 1.5, "x", [], ["dict"], ["same", 0], {}])
+        inner[path[-1]] = rng.choice([None, True, -1, 1.5, "x", [], ["dict"], ["same", 0], {}])
         sealed = json.dumps(hostile, separators=(",", ":")).encode()
         seal = hashlib.sha256(sealed).hexdigest().encode()
         try:

@@ -8,11 +8,11 @@ from functools import cached_property
 
 from rvmon.spec.checked.formula import Bound, BoundAtom, Compare, FieldValue, SignalAtom
 from rvmon.spec.checked.specification import Mode, Requirement
-from rvmon.testing.kleene import Truth, conjunction, disjunction, negation
-from rvmon.testing.numbers import is_born, known_scalar, number
-from rvmon.testing.truths import Rest, Truths
-from rvmon.testing.walk import subformulas
-from rvmon.testing.word import EventState, Letter, Word
+from rvmon.testing.law.kleene import Truth, conjunction, disjunction, negation
+from rvmon.testing.law.numbers import is_born, known_scalar, number
+from rvmon.testing.law.truths import Rest, Truths
+from rvmon.testing.law.walk import subformulas
+from rvmon.testing.law.word import EventState, Letter, Word
 from rvmon.trace.sample import Payload, Scalar
 
 

@@ -8,26 +8,26 @@ from typing import Protocol, TypeVar
 T = TypeVar("T")
 
 
-class Dice(Protocol):
+class Rng(Protocol):
     """A source of integers; `random.Random` is one."""
 
     def randint(self, a: int, b: int, /) -> int:
         """An integer from `a` to `b`, both included; the least is the simplest."""
 
 
-def chance(dice: Dice, percent: int) -> bool:
+def chance(rng: Rng, percent: int) -> bool:
     """True in so many cases of a hundred; false is the simpler."""
-    return dice.randint(1, 100) > 100 - percent
+    return rng.randint(1, 100) > 100 - percent
 
 
-def pick(dice: Dice, options: Sequence[T]) -> T:
+def pick(rng: Rng, options: Sequence[T]) -> T:
     """One of the options, each as likely; the first is the simplest."""
-    return options[dice.randint(0, len(options) - 1)]
+    return options[rng.randint(0, len(options) - 1)]
 
 
-def weighted(dice: Dice, options: Sequence[tuple[int, T]]) -> T:
+def weighted(rng: Rng, options: Sequence[tuple[int, T]]) -> T:
     """One of the options, as likely as its weight says; the first is the simplest."""
-    rest = dice.randint(0, sum(weight for weight, _ in options) - 1)
+    rest = rng.randint(0, sum(weight for weight, _ in options) - 1)
     for weight, option in options:
         if rest < weight:
             return option

@@ -6,13 +6,13 @@ import pytest
 from tests.tools.differential import case_of
 
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.attempts import Readings, obligation
-from rvmon.testing.follow import follow
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.kleene import Truth
-from rvmon.testing.sample_words import word_of
-from rvmon.testing.truths import Rest
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.law.attempts import Readings, obligation
+from rvmon.testing.law.follow import follow
+from rvmon.testing.law.kleene import Truth
+from rvmon.testing.law.sample_words import word_of
+from rvmon.testing.law.truths import Rest
 
 
 @pytest.mark.parametrize("time", TimeModel)

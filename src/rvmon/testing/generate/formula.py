@@ -31,8 +31,8 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.spec.checked.operators import Tense, Window
-from rvmon.testing.dice import Dice, chance, pick, weighted
-from rvmon.testing.vocabulary import (
+from rvmon.testing.generate.rng import Rng, chance, pick, weighted
+from rvmon.testing.generate.vocabulary import (
     BOOLS,
     CARRIER,
     EVENTS,
@@ -70,20 +70,20 @@ class Shape:
     longest: int = 6
 
 
-def interval(dice: Dice, shape: Shape, *, from_zero: bool = False) -> Interval:
+def interval(rng: Rng, shape: Shape, *, from_zero: bool = False) -> Interval:
     """A random interval: bounded or not, from zero or later, a point or more."""
-    low = 0 if from_zero or chance(dice, 55) else dice.randint(1, shape.longest // 2)
-    if chance(dice, 25):
+    low = 0 if from_zero or chance(rng, 55) else rng.randint(1, shape.longest // 2)
+    if chance(rng, 25):
         return Interval(low, None)
-    if chance(dice, 20):
+    if chance(rng, 20):
         return Interval(low, low)
-    return Interval(low, dice.randint(max(low, 1), shape.longest))
+    return Interval(low, rng.randint(max(low, 1), shape.longest))
 
 
-def atom(dice: Dice, shape: Shape) -> Formula:
+def atom(rng: Rng, shape: Shape) -> Formula:
     """A random proposition."""
     kind = weighted(
-        dice,
+        rng,
         (
             (50, "signal"),
             (22 if shape.events else 0, "event"),
@@ -95,68 +95,68 @@ def atom(dice: Dice, shape: Shape) -> Formula:
     )
     match kind:
         case "signal":
-            return SignalAtom(pick(dice, BOOLS))
+            return SignalAtom(pick(rng, BOOLS))
         case "event":
-            return EventAtom(pick(dice, (*EVENTS, CARRIER, FURTHER)))
+            return EventAtom(pick(rng, (*EVENTS, CARRIER, FURTHER)))
         case "compare":
-            return comparison(dice, shape)
+            return comparison(rng, shape)
         case "probe":
-            return _probe(dice, shape)
+            return _probe(rng, shape)
         case "constant":
-            return Constant(chance(dice, 50))
+            return Constant(chance(rng, 50))
         case _:
             return BoundAtom(Bound.START)
 
 
-def comparison(dice: Dice, shape: Shape) -> Formula:
+def comparison(rng: Rng, shape: Shape) -> Formula:
     """A random comparison: of numbers, of a payload field, of a label."""
-    if chance(dice, 12):
-        op = pick(dice, (CompareOp.EQ, CompareOp.NE))
-        return Compare(op, SignalValue(LABEL), Literal(pick(dice, LABELS)))
-    op = pick(dice, tuple(CompareOp))
-    left: Numeric = SignalValue(pick(dice, NUMBERS))
-    if shape.events and chance(dice, 30):
-        left = field_value(dice)
-    elif chance(dice, 40):
-        left = arithmetic(dice, shape)
-    right: Numeric = Literal(dice.randint(-1, 2))
-    if shape.captured and chance(dice, 60):
-        right = Captured(pick(dice, shape.captured))
-    elif chance(dice, 20):
-        right = _input(dice, shape)
-    return Compare(op, right, left) if chance(dice, 10) else Compare(op, left, right)
+    if chance(rng, 12):
+        op = pick(rng, (CompareOp.EQ, CompareOp.NE))
+        return Compare(op, SignalValue(LABEL), Literal(pick(rng, LABELS)))
+    op = pick(rng, tuple(CompareOp))
+    left: Numeric = SignalValue(pick(rng, NUMBERS))
+    if shape.events and chance(rng, 30):
+        left = field_value(rng)
+    elif chance(rng, 40):
+        left = arithmetic(rng, shape)
+    right: Numeric = Literal(rng.randint(-1, 2))
+    if shape.captured and chance(rng, 60):
+        right = Captured(pick(rng, shape.captured))
+    elif chance(rng, 20):
+        right = _input(rng, shape)
+    return Compare(op, right, left) if chance(rng, 10) else Compare(op, left, right)
 
 
-def arithmetic(dice: Dice, shape: Shape) -> Numeric:
+def arithmetic(rng: Rng, shape: Shape) -> Numeric:
     """A random expression: of the last two updates, or an operation on a few numbers."""
-    if chance(dice, 40):
-        return UpdateValue(pick(dice, tuple(UpdateFunction)), pick(dice, NUMBERS))
-    op = pick(dice, tuple(NumericOp))
-    first = _input(dice, shape)
+    if chance(rng, 40):
+        return UpdateValue(pick(rng, tuple(UpdateFunction)), pick(rng, NUMBERS))
+    op = pick(rng, tuple(NumericOp))
+    first = _input(rng, shape)
     if op.entry.most == 1:
         return Arithmetic(op, (first,))
-    second = Literal(dice.randint(0, 2)) if chance(dice, 40) else _input(dice, shape)
-    return Arithmetic(op, (second, first) if chance(dice, 40) else (first, second))
+    second = Literal(rng.randint(0, 2)) if chance(rng, 40) else _input(rng, shape)
+    return Arithmetic(op, (second, first) if chance(rng, 40) else (first, second))
 
 
-def field_value(dice: Dice) -> Numeric:
+def field_value(rng: Rng) -> Numeric:
     """A field of one of the events that carry some."""
-    return FieldValue(FURTHER, SIZE) if chance(dice, 35) else FieldValue(CARRIER, FIELD)
+    return FieldValue(FURTHER, SIZE) if chance(rng, 35) else FieldValue(CARRIER, FIELD)
 
 
-def _input(dice: Dice, shape: Shape) -> Numeric:
-    if shape.events and chance(dice, 15):
-        return field_value(dice)
-    if shape.captured and chance(dice, 20):
-        return Captured(pick(dice, shape.captured))
-    return SignalValue(pick(dice, NUMBERS))
+def _input(rng: Rng, shape: Shape) -> Numeric:
+    if shape.events and chance(rng, 15):
+        return field_value(rng)
+    if shape.captured and chance(rng, 20):
+        return Captured(pick(rng, shape.captured))
+    return SignalValue(pick(rng, NUMBERS))
 
 
-def _probe(dice: Dice, shape: Shape) -> Formula:
-    probe = pick(dice, tuple(Probe))
+def _probe(rng: Rng, shape: Shape) -> Formula:
+    probe = pick(rng, tuple(Probe))
     events = (*EVENTS, CARRIER, FURTHER) if shape.events and probe is Probe.UPDATED else ()
     names = (*BOOLS, *NUMBERS, *events)
-    return ProbeAtom(probe, pick(dice, names))
+    return ProbeAtom(probe, pick(rng, names))
 
 
 _LIKELY: dict[UnaryOp | BinaryOp, int] = {
@@ -185,19 +185,19 @@ def _binary_of(tense: Tense) -> tuple[tuple[int, BinaryOp], ...]:
     return tuple((_LIKELY.get(op, 2), op) for op in BinaryOp if op.entry.tense is tense)
 
 
-def consequent(dice: Dice, shape: Shape, depth: int) -> Formula:
+def consequent(rng: Rng, shape: Shape, depth: int) -> Formula:
     """A random formula that mostly speaks of the future at its top."""
-    if shape.future and chance(dice, 50):
-        return (_future_unary if chance(dice, 50) else _future_binary)(dice, shape, depth)
-    return formula(dice, shape, depth)
+    if shape.future and chance(rng, 50):
+        return (_future_unary if chance(rng, 50) else _future_binary)(rng, shape, depth)
+    return formula(rng, shape, depth)
 
 
-def formula(dice: Dice, shape: Shape, depth: int) -> Formula:
+def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
     """A random formula whose operators nest at most `depth` deep."""
     if depth == 0:
-        return atom(dice, shape)
+        return atom(rng, shape)
     kind = weighted(
-        dice,
+        rng,
         (
             (8, "atom"),
             (12, "not"),
@@ -213,53 +213,53 @@ def formula(dice: Dice, shape: Shape, depth: int) -> Formula:
     below = shape if shape.mixed else replace(shape, future=False)
     match kind:
         case "atom":
-            return atom(dice, shape)
+            return atom(rng, shape)
         case "not":
-            return Unary(UnaryOp.NOT, formula(dice, shape, depth - 1))
+            return Unary(UnaryOp.NOT, formula(rng, shape, depth - 1))
         case "connective":
-            return _binary(dice, shape, depth, Tense.PRESENT)
+            return _binary(rng, shape, depth, Tense.PRESENT)
         case "future unary":
-            return _future_unary(dice, shape, depth)
+            return _future_unary(rng, shape, depth)
         case "future binary":
-            return _future_binary(dice, shape, depth)
+            return _future_binary(rng, shape, depth)
         case "next":
-            return Unary(UnaryOp.NEXT, formula(dice, shape, depth - 1))
+            return Unary(UnaryOp.NEXT, formula(rng, shape, depth - 1))
         case "past unary":
-            return past_unary(dice, below, depth)
+            return past_unary(rng, below, depth)
         case "since":
-            return _binary(dice, below, depth, Tense.PAST)
+            return _binary(rng, below, depth, Tense.PAST)
         case _:
-            return Unary(UnaryOp.PREVIOUS, formula(dice, below, depth - 1))
+            return Unary(UnaryOp.PREVIOUS, formula(rng, below, depth - 1))
 
 
-def _future_unary(dice: Dice, shape: Shape, depth: int) -> Formula:
-    op = weighted(dice, _unary_of(Tense.FUTURE))
-    window = interval(dice, shape)
-    return Unary(op, formula(dice, shape, depth - 1), window)
+def _future_unary(rng: Rng, shape: Shape, depth: int) -> Formula:
+    op = weighted(rng, _unary_of(Tense.FUTURE))
+    window = interval(rng, shape)
+    return Unary(op, formula(rng, shape, depth - 1), window)
 
 
-def _future_binary(dice: Dice, shape: Shape, depth: int) -> Formula:
-    return _binary(dice, shape, depth, Tense.FUTURE)
+def _future_binary(rng: Rng, shape: Shape, depth: int) -> Formula:
+    return _binary(rng, shape, depth, Tense.FUTURE)
 
 
-def _binary(dice: Dice, shape: Shape, depth: int, tense: Tense) -> Formula:
+def _binary(rng: Rng, shape: Shape, depth: int, tense: Tense) -> Formula:
     ops = _binary_of(tense)
-    op = weighted(dice, ops) if len(ops) > 1 else ops[0][1]
+    op = weighted(rng, ops) if len(ops) > 1 else ops[0][1]
     window = None
     if op.entry.window is not Window.NONE:
-        window = interval(dice, shape, from_zero=op.entry.window is Window.FROM_NOW)
-    left = formula(dice, shape, dice.randint(0, depth - 1))
-    return Binary(op, left, formula(dice, shape, depth - 1), window)
+        window = interval(rng, shape, from_zero=op.entry.window is Window.FROM_NOW)
+    left = formula(rng, shape, rng.randint(0, depth - 1))
+    return Binary(op, left, formula(rng, shape, depth - 1), window)
 
 
-def past_unary(dice: Dice, shape: Shape, depth: int) -> Formula:
+def past_unary(rng: Rng, shape: Shape, depth: int) -> Formula:
     """A random unary past operator over a formula one less deep."""
-    op = weighted(dice, _unary_of(Tense.PAST))
-    operand = formula(dice, shape, depth - 1)
+    op = weighted(rng, _unary_of(Tense.PAST))
+    operand = formula(rng, shape, depth - 1)
     match op.entry.window:
         case Window.LENGTH:
-            return Unary(op, operand, Interval(0, dice.randint(0, shape.longest)))
+            return Unary(op, operand, Interval(0, rng.randint(0, shape.longest)))
         case Window.NONE:
             return Unary(op, operand)
         case _:
-            return Unary(op, operand, interval(dice, shape))
+            return Unary(op, operand, interval(rng, shape))

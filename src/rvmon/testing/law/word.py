@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rvmon.testing.kleene import Truth
+from rvmon.testing.law.kleene import Truth
 from rvmon.trace.sample import Payload, Scalar
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
-from rvmon.testing.walk import speaks_of_future
+from rvmon.testing.law.walk import speaks_of_future
 
 _RELEASES = {UnaryOp.ALWAYS, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL}
 _UNTILS = {UnaryOp.EVENTUALLY, BinaryOp.UNTIL, BinaryOp.STRONG_RELEASE}

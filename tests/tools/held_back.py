@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.drive import OnlineMonitor
-from rvmon.testing.health import readers_of
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from tests.tools.health import readers_of
 
 
 class HeldBack:
@@ -23,16 +23,16 @@ class HeldBack:
     Args:
         monitor: fresh, with `settle="next"`.
         spec: that it judges.
-        dice: says how samples are cut.
+        rng: says how samples are cut.
 
     Attributes:
         monitor: the same.
     """
 
-    def __init__(self, monitor: OnlineMonitor, spec: CheckedSpec, dice: random.Random) -> None:
+    def __init__(self, monitor: OnlineMonitor, spec: CheckedSpec, rng: random.Random) -> None:
         self.monitor = monitor
         self._spec = spec
-        self._dice = dice
+        self._rng = rng
         self._conflicts: dict[str, tuple[int, int]] = {}
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value]) -> Sequence[Attempt]:
@@ -43,14 +43,14 @@ class HeldBack:
         return decided
 
     def _portions(self, t: int, values: Mapping[str, Value]) -> list[dict[str, Value]]:
-        portions: list[dict[str, Value]] = [{} for _ in range(self._dice.randint(1, 3))]
+        portions: list[dict[str, Value]] = [{} for _ in range(self._rng.randint(1, 3))]
         names = list(values)
-        self._dice.shuffle(names)
+        self._rng.shuffle(names)
         last = len(portions) - 1
         for name in names:
-            place = self._dice.randint(0, last)
+            place = self._rng.randint(0, last)
             portions[place][name] = values[name]
-            if place and self._dice.random() < 0.3:
+            if place and self._rng.random() < 0.3:
                 portions[place - 1].update(self._before(t, name, values[name], portions[place]))
         return portions
 

@@ -19,12 +19,12 @@ from tests.tools.law import judge
 from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import EndPolicy, Mode, TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.generate_formula import Shape, formula
-from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.generate_trace import TraceProfile, random_trace
-from rvmon.testing.pulse import is_pulse
+from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.walk import intervals, subformulas
 from rvmon.testing.strategies import cases
-from rvmon.testing.walk import intervals, subformulas
 from rvmon.trace.sample import Sample
 
 pytestmark = pytest.mark.law

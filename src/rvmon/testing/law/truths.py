@@ -26,7 +26,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.kleene import (
+from rvmon.testing.law.kleene import (
     Truth,
     born_or_false,
     born_or_true,
@@ -35,10 +35,18 @@ from rvmon.testing.kleene import (
     negation,
     truth_of,
 )
-from rvmon.testing.numbers import compare
-from rvmon.testing.past import Operand, always_true, held, historically, inverted, is_within, since
-from rvmon.testing.walk import is_proposition, speaks_of_future
-from rvmon.testing.word import Letter, Word
+from rvmon.testing.law.numbers import compare
+from rvmon.testing.law.past import (
+    Operand,
+    always_true,
+    held,
+    historically,
+    inverted,
+    is_within,
+    since,
+)
+from rvmon.testing.law.walk import is_proposition, speaks_of_future
+from rvmon.testing.law.word import Letter, Word
 from rvmon.trace.sample import Scalar
 
 EVER = Interval(0, None)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import Mode, Requirement
-from rvmon.testing.attempts import (
+from rvmon.testing.law.attempts import (
     Start,
     View,
     counts_in_favour,
@@ -16,11 +16,11 @@ from rvmon.testing.attempts import (
     starts_upon,
     views,
 )
-from rvmon.testing.kleene import Truth
-from rvmon.testing.pulse import is_pulse
-from rvmon.testing.ready import opened_at_once
-from rvmon.testing.walk import looks_back_at_future
-from rvmon.testing.word import Word
+from rvmon.testing.law.kleene import Truth
+from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.ready import opened_at_once
+from rvmon.testing.law.walk import looks_back_at_future
+from rvmon.testing.law.word import Word
 
 
 @dataclass(slots=True, eq=False)

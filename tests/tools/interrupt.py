@@ -17,18 +17,18 @@ class Interrupted:
 
     Args:
         monitor: fresh.
-        dice: says before which calls.
+        rng: says before which calls.
         share: of the calls.
     """
 
-    def __init__(self, monitor: Monitor, dice: random.Random, share: float = 0.1) -> None:
+    def __init__(self, monitor: Monitor, rng: random.Random, share: float = 0.1) -> None:
         self._monitor = monitor
-        self._dice = dice
+        self._rng = rng
         self._share = share
         self.interruptions = 0
 
     def _interrupt(self) -> Monitor:
-        if self._dice.random() < self._share:
+        if self._rng.random() < self._share:
             self.interruptions += 1
             self._monitor = restore(self._monitor.options.compiled, self._monitor.snapshot())
         return self._monitor

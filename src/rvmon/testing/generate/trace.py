@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from rvmon.spec.checked.formula import Interval, Literal
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.testing.case import Case
-from rvmon.testing.dice import Dice, chance, pick
-from rvmon.testing.walk import intervals, numerics
+from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.law.walk import intervals, numerics
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 
@@ -31,48 +31,48 @@ class TraceProfile:
     advances: bool = True
 
 
-def random_trace(dice: Dice, spec: CheckedSpec, profile: TraceProfile) -> Case:
+def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
     """A random trace for a specification, with what else a monitor is told.
 
     Gaps between samples are often a bound of the spec, or one tick more; numbers lie at and
     beside its literals.
 
     Args:
-        dice: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
         spec: any; its bounds should be a few ticks if the oracle is to judge.
         profile: what may occur.
     """
     gaps = _gaps(spec)
     numbers = _numbers(spec)
     names = None
-    if profile.unknowns and chance(dice, 8):
-        names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(dice, 20))
+    if profile.unknowns and chance(rng, 8):
+        names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(rng, 20))
     # Some sensors fail often: what was known before they did then matters, above all to instances
     # that begin later.
     often = 40 if any(one.for_each for one in spec.requirements.values()) else 25
-    unknown = (30 if chance(dice, often) else 5) if profile.unknowns else 0
-    late = {name: dice.randint(1, 5) for name in spec.signals if chance(dice, 20)}
+    unknown = (30 if chance(rng, often) else 5) if profile.unknowns else 0
+    late = {name: rng.randint(1, 5) for name in spec.signals if chance(rng, 20)}
     values = _Values(spec, numbers, names, unknown, _several(spec), late)
-    time = start = pick(dice, (0, 1, 5, -3))
+    time = start = pick(rng, (0, 1, 5, -3))
     actions: list[Sample | int] = []
-    for index in range(dice.randint(0 if chance(dice, 5) else 1, profile.samples)):
+    for index in range(rng.randint(0 if chance(rng, 5) else 1, profile.samples)):
         if index:
-            gap = _gap(dice, gaps)
-            if profile.advances and chance(dice, 15):
-                actions.append(time + dice.randint(0, gap))
+            gap = _gap(rng, gaps)
+            if profile.advances and chance(rng, 15):
+                actions.append(time + rng.randint(0, gap))
             time += gap
         if time - start > profile.span:
             break
-        actions.append(Sample(time, values.sample(dice, index)))
-    if profile.advances and chance(dice, 25):
-        time += _gap(dice, gaps)
+        actions.append(Sample(time, values.sample(rng, index)))
+    if profile.advances and chance(rng, 25):
+        time += _gap(rng, gaps)
         actions.append(time)
-    end = time + _gap(dice, gaps) * dice.randint(0, 2) if chance(dice, 45) else None
+    end = time + _gap(rng, gaps) * rng.randint(0, 2) if chance(rng, 45) else None
     return Case(spec, tuple(actions), end, names)
 
 
-def _gap(dice: Dice, gaps: Sequence[int]) -> int:
-    return pick(dice, gaps) if chance(dice, 40) else dice.randint(1, 3)
+def _gap(rng: Rng, gaps: Sequence[int]) -> int:
+    return pick(rng, gaps) if chance(rng, 40) else rng.randint(1, 3)
 
 
 def _gaps(spec: CheckedSpec) -> list[int]:
@@ -131,7 +131,7 @@ class _Values:
     several: frozenset[str]
     late: Mapping[str, int]
 
-    def sample(self, dice: Dice, index: int) -> dict[str, Value]:
+    def sample(self, rng: Rng, index: int) -> dict[str, Value]:
         """Random updates; most signals get a value in the first sample that may bring one."""
         values: dict[str, Value] = {}
         for name, signal in self.spec.signals.items():
@@ -139,39 +139,39 @@ class _Values:
             if not self._has_source(name):
                 continue
             if index < first:
-                if self.unknown and chance(dice, 10):
+                if self.unknown and chance(rng, 10):
                     values[name] = None
-            elif chance(dice, 85 if index == first else 35):
-                values[name] = self._scalar(dice, signal.type)
+            elif chance(rng, 85 if index == first else 35):
+                values[name] = self._scalar(rng, signal.type)
         for name, event in self.spec.events.items():
-            if self._has_source(name) and chance(dice, 30):
-                values[name] = self._occurrence(dice, name, event.fields)
+            if self._has_source(name) and chance(rng, 30):
+                values[name] = self._occurrence(rng, name, event.fields)
         return values
 
     def _has_source(self, name: str) -> bool:
         return self.names is None or name in self.names
 
-    def _scalar(self, dice: Dice, type_: Type) -> Scalar:
-        if chance(dice, self.unknown):
-            return float("nan") if type_.kind is Kind.REAL and chance(dice, 50) else None
+    def _scalar(self, rng: Rng, type_: Type) -> Scalar:
+        if chance(rng, self.unknown):
+            return float("nan") if type_.kind is Kind.REAL and chance(rng, 50) else None
         match type_.kind:
             case Kind.BOOL:
-                return chance(dice, 50)
+                return chance(rng, 50)
             case Kind.LABEL:
-                return pick(dice, type_.labels)
+                return pick(rng, type_.labels)
             case Kind.INT:
-                return int(pick(dice, self.numbers))
+                return int(pick(rng, self.numbers))
             case Kind.REAL:
-                return pick(dice, self.numbers)
+                return pick(rng, self.numbers)
 
-    def _occurrence(self, dice: Dice, name: str, fields: Mapping[str, Type]) -> Value:
-        if chance(dice, self.unknown):
+    def _occurrence(self, rng: Rng, name: str, fields: Mapping[str, Type]) -> Value:
+        if chance(rng, self.unknown):
             return None
-        if chance(dice, 5):
+        if chance(rng, 5):
             return False
-        if not fields or chance(dice, 5):
+        if not fields or chance(rng, 5):
             return True
-        payload = {name: self._scalar(dice, type_) for name, type_ in fields.items()}
-        if name in self.several and chance(dice, 25):
-            return (payload, {name: self._scalar(dice, t) for name, t in fields.items()})
+        payload = {name: self._scalar(rng, type_) for name, type_ in fields.items()}
+        if name in self.several and chance(rng, 25):
+            return (payload, {name: self._scalar(rng, t) for name, t in fields.items()})
         return payload

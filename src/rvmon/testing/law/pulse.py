@@ -18,7 +18,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.numbers import events_of
+from rvmon.testing.law.numbers import events_of
 
 
 def is_pulse(formula: Formula, *, negated: bool = False) -> bool:

@@ -28,8 +28,7 @@ from rvmon.spec.checked.specification import (
     Requirement,
     TimeModel,
 )
-from rvmon.testing.dice import Dice, chance, pick, weighted
-from rvmon.testing.generate_formula import (
+from rvmon.testing.generate.formula import (
     Shape,
     arithmetic,
     comparison,
@@ -37,8 +36,18 @@ from rvmon.testing.generate_formula import (
     formula,
     past_unary,
 )
-from rvmon.testing.pulse import is_pulse
-from rvmon.testing.vocabulary import BOOLS, CARRIER, EVENTS, FIELD, LABEL, NUMBERS, events, signals
+from rvmon.testing.generate.rng import Rng, chance, pick, weighted
+from rvmon.testing.generate.vocabulary import (
+    BOOLS,
+    CARRIER,
+    EVENTS,
+    FIELD,
+    LABEL,
+    NUMBERS,
+    events,
+    signals,
+)
+from rvmon.testing.law.pulse import is_pulse
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,42 +85,42 @@ class Profile:
     ignoring: bool = True
 
 
-def random_spec(dice: Dice, profile: Profile) -> CheckedSpec:
+def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
     """A random specification over a fixed small vocabulary, with bounds of a few ticks.
 
     Args:
-        dice: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
         profile: what may occur.
     """
-    time = profile.time or pick(dice, tuple(TimeModel))
+    time = profile.time or pick(rng, tuple(TimeModel))
     found = [
-        _requirement(dice, profile, time, f"R{number}")
-        for number in range(1, dice.randint(1, profile.requirements) + 1)
+        _requirement(rng, profile, time, f"R{number}")
+        for number in range(1, rng.randint(1, profile.requirements) + 1)
     ]
     return CheckedSpec(
         name="random",
         title="",
         time=time,
-        signals=signals(_stale(dice, profile), _ignoring(dice, profile)),
+        signals=signals(_stale(rng, profile), _ignoring(rng, profile)),
         events=events(),
         requirements={requirement.id: requirement for requirement in found},
-        period=dice.randint(1, 4) if time is TimeModel.CLOCKED else None,
+        period=rng.randint(1, 4) if time is TimeModel.CLOCKED else None,
     )
 
 
-def _stale(dice: Dice, profile: Profile) -> dict[str, int]:
+def _stale(rng: Rng, profile: Profile) -> dict[str, int]:
     names = (*BOOLS, *NUMBERS, LABEL)
-    return {n: dice.randint(1, 9) for n in names if profile.stale and chance(dice, 10)}
+    return {n: rng.randint(1, 9) for n in names if profile.stale and chance(rng, 10)}
 
 
-def _ignoring(dice: Dice, profile: Profile) -> frozenset[str]:
-    return frozenset(n for n in NUMBERS[:1] if profile.ignoring and chance(dice, 25))
+def _ignoring(rng: Rng, profile: Profile) -> frozenset[str]:
+    return frozenset(n for n in NUMBERS[:1] if profile.ignoring and chance(rng, 25))
 
 
-def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Requirement:
-    captures = _captures(dice) if profile.captures and chance(dice, 12) else ()
+def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
+    captures = _captures(rng) if profile.captures and chance(rng, 12) else ()
     for_each = None
-    if profile.for_each and chance(dice, 12):
+    if profile.for_each and chance(rng, 12):
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
     instance = (for_each.name,) if for_each else ()
     shape = Shape(
@@ -131,16 +140,16 @@ def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Re
         events=profile.events,
         captured=instance,
     )
-    trigger = _trigger(dice, seen, for_each)
+    trigger = _trigger(rng, seen, for_each)
     at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
-    mode = Mode.WHENEVER if not at_end and chance(dice, 35) else Mode.UPON
-    owed = consequent(dice, shape, dice.randint(1, profile.depth))
-    if captures and chance(dice, 70):
-        op = pick(dice, (BinaryOp.AND, BinaryOp.OR))
-        owed = Binary(op, owed, comparison(dice, shape))
+    mode = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
+    owed = consequent(rng, shape, rng.randint(1, profile.depth))
+    if captures and chance(rng, 70):
+        op = pick(rng, (BinaryOp.AND, BinaryOp.OR))
+        owed = Binary(op, owed, comparison(rng, shape))
     policy = EndPolicy.DEFAULT
-    if profile.policies and chance(dice, 35):
-        policy = pick(dice, tuple(EndPolicy)[1:])
+    if profile.policies and chance(rng, 35):
+        policy = pick(rng, tuple(EndPolicy)[1:])
     return Requirement(
         name,
         mode,
@@ -153,32 +162,32 @@ def _requirement(dice: Dice, profile: Profile, time: TimeModel, name: str) -> Re
     )
 
 
-def _captures(dice: Dice) -> tuple[Capture, ...]:
+def _captures(rng: Rng) -> tuple[Capture, ...]:
     found: list[Capture] = []
-    for name in ("v", "w")[: 2 if chance(dice, 25) else 1]:
+    for name in ("v", "w")[: 2 if chance(rng, 25) else 1]:
         earlier = Shape(captured=tuple(capture.name for capture in found))
         simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
-        value = arithmetic(dice, earlier) if chance(dice, 25) else pick(dice, simple)
+        value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
         found.append(Capture(name, value))
     return tuple(found)
 
 
-def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
+def _trigger(rng: Rng, shape: Shape, for_each: ForEach | None) -> Formula:
     if for_each:
         compared = Compare(CompareOp.EQ, for_each.value, Captured(for_each.name))
-        further = Binary(BinaryOp.AND, compared, formula(dice, shape, 1))
-        level = SignalAtom(pick(dice, BOOLS))
+        further = Binary(BinaryOp.AND, compared, formula(rng, shape, 1))
+        level = SignalAtom(pick(rng, BOOLS))
         either = Binary(BinaryOp.OR, level, compared)
         options: tuple[Formula, ...] = (EventAtom(CARRIER), compared, further, level, either)
         if shape.past:
-            earlier = past_unary(dice, shape, 1)
+            earlier = past_unary(rng, shape, 1)
             options += (
                 Binary(BinaryOp.AND, compared, earlier),
                 Binary(BinaryOp.OR, earlier, compared),
             )
-        return pick(dice, options)
+        return pick(rng, options)
     kind = weighted(
-        dice,
+        rng,
         (
             (28 if shape.events else 0, "event"),
             (16 if shape.events else 0, "event and"),
@@ -191,17 +200,17 @@ def _trigger(dice: Dice, shape: Shape, for_each: ForEach | None) -> Formula:
     )
     match kind:
         case "event":
-            return EventAtom(pick(dice, EVENTS))
+            return EventAtom(pick(rng, EVENTS))
         case "event and":
-            occurs = EventAtom(pick(dice, EVENTS))
-            return Binary(BinaryOp.AND, occurs, formula(dice, shape, 1))
+            occurs = EventAtom(pick(rng, EVENTS))
+            return Binary(BinaryOp.AND, occurs, formula(rng, shape, 1))
         case "level":
-            return SignalAtom(pick(dice, BOOLS))
+            return SignalAtom(pick(rng, BOOLS))
         case "start":
             return BoundAtom(Bound.START)
         case "any":
-            return formula(dice, shape, dice.randint(1, 2))
+            return formula(rng, shape, rng.randint(1, 2))
         case "since when":
-            return past_unary(dice, shape, 1)
+            return past_unary(rng, shape, 1)
         case _:
             return BoundAtom(Bound.END)

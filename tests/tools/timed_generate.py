@@ -13,10 +13,10 @@ def random_model(seed: int) -> str:
     All parts of the model occur: integer guards and updates, resets to a number, binary, broadcast
     and urgent channels, urgent and committed locations, strict and equal bounds.
     """
-    return _Dice(Random(seed)).model()
+    return _RandomModel(Random(seed)).model()
 
 
-class _Dice:
+class _RandomModel:
     """One throw of everything."""
 
     def __init__(self, random: Random) -> None:

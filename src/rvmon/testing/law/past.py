@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from rvmon.spec.checked.formula import Interval
-from rvmon.testing.kleene import (
+from rvmon.testing.law.kleene import (
     Truth,
     born_or_false,
     born_or_true,
@@ -14,7 +14,7 @@ from rvmon.testing.kleene import (
     negation,
     truth_of,
 )
-from rvmon.testing.word import Letter
+from rvmon.testing.law.word import Letter
 
 Operand = Callable[[int], Truth]
 """The truth of an operand at a position."""

@@ -7,9 +7,9 @@ from itertools import dropwhile, pairwise
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
-from rvmon.testing.kleene import Truth, disjunction, truth_of
-from rvmon.testing.numbers import known_scalar
-from rvmon.testing.word import EventState, Letter, Occurrence, SignalState, Update, Word
+from rvmon.testing.law.kleene import Truth, disjunction, truth_of
+from rvmon.testing.law.numbers import known_scalar
+from rvmon.testing.law.word import EventState, Letter, Occurrence, SignalState, Update, Word
 from rvmon.trace.sample import Sample, Value
 
 MOST_TICKS = 1_000_000
