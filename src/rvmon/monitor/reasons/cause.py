@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
-from rvmon.formula.alphabet import Cell, holds
+from rvmon.formula.alphabet import TruthValue, holds
 from rvmon.formula.core import (
     And,
     Constant,
@@ -50,7 +50,7 @@ class CauseFinder:
     """Looks for the cause of a decision.
 
     Args:
-        cells: what the propositions are at the decision, as the deciding run takes them.
+        valuation: the truths of the propositions at the decision, as the deciding run takes them.
         ages: of the clocks at the decision.
         verdict: the decision.
         by_time: whether time alone decided, without a letter.
@@ -58,13 +58,13 @@ class CauseFinder:
 
     def __init__(
         self,
-        cells: Mapping[State, Cell],
+        valuation: Mapping[State, TruthValue],
         ages: Sequence[int],
         *,
         verdict: bool,
         by_time: bool,
     ) -> None:
-        self.cells = cells
+        self.valuation = valuation
         self.ages = ages
         self.verdict = verdict
         self.by_time = by_time
@@ -92,7 +92,7 @@ class CauseFinder:
         return None
 
     def _read(self, literal: Literal) -> Residual:
-        return HOLDS if holds(literal.sense, self.cells[literal.proposition]) else FAILS
+        return HOLDS if holds(literal.sense, self.valuation[literal.proposition]) else FAILS
 
     def _of_atom(self, node: Literal | Next | Until | Release, clock: int) -> Cause | None:
         match node:

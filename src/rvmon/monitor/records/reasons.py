@@ -93,8 +93,8 @@ class Reasons:
         residual = self._machine.residual(before[0])
         ages = [t - anchor for anchor in before[1]]
         by_time = value(after(residual, ages)) != UNKNOWN
-        cells = self._alphabet.cells_of(letter)
-        cause = CauseFinder(cells, ages, verdict=verdict, by_time=by_time).of(residual)
+        valuation = self._alphabet.valuation(letter)
+        cause = CauseFinder(valuation, ages, verdict=verdict, by_time=by_time).of(residual)
         if cause is None:
             return Finding(None, ("nothing was owed" if verdict else "it can never hold",))
         return Finding(cause, self.words.sentence(cause, verdict))
