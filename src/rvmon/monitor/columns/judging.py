@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.automaton.location import FAILED, PASSED
+from rvmon.automaton.moves import Moves, joint_moves
 from rvmon.monitor.columns.attempts import Attempts, Tokens
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.drive import Driver, Outcome
-from rvmon.monitor.columns.moves import Moves, joint_moves
 from rvmon.monitor.columns.row_letters import Letters
 from rvmon.monitor.columns.timeline import Piece
 

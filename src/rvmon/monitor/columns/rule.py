@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.automaton.machine import Token
+from rvmon.automaton.moves import Moves, moves_of
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.outages import Outage
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
-from rvmon.monitor.attempt_judge import Open
+from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.columns.attempts import Attempts, Tokens, joined_attempts, starting_attempts
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
@@ -20,16 +21,15 @@ from rvmon.monitor.columns.drive import Outcome
 from rvmon.monitor.columns.episodes import Episodes
 from rvmon.monitor.columns.judging import Judging
 from rvmon.monitor.columns.leaves import NotByColumnsError
-from rvmon.monitor.columns.moves import Moves, moves_of
 from rvmon.monitor.columns.row_letters import letters_along
 from rvmon.monitor.columns.starts import Starts
 from rvmon.monitor.columns.stretches import first_in
 from rvmon.monitor.columns.timeline import Piece, Timeline
 from rvmon.monitor.columns.track import UNSEEN, Track
-from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.doubt import Doubt
-from rvmon.monitor.ledger import Ledger
-from rvmon.monitor.witness import Stood, Witness
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.reasons.doubt import Doubt
+from rvmon.monitor.records.deferred_reasons import DeferredReasons, Stood
+from rvmon.monitor.records.ledger import Ledger
 from rvmon.spec.checked.specification import Mode
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class ColumnRule:
         self._plan = plan
         self._ledger = ledger
         self._is_hidden = hidden
-        self._witness = Witness(compiled, plan, ledger)
+        self._witness = DeferredReasons(compiled, plan, ledger)
         obligation, requirement = compiled.obligation, compiled.requirement
         self._trigger = self._node(obligation.trigger)
         self._again = self._node(obligation.again)

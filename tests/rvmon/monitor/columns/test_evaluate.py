@@ -38,19 +38,19 @@ requirement R4 "at every stop"
 
 def recording(seed: int, rows: int = 1500) -> dict[str, np.ndarray]:
     """Truth values that stay for a while, a stop now and then, numbers that are lost at times."""
-    dice = np.random.default_rng(seed)
-    speed = dice.random(rows)
-    speed[dice.random(rows) < 0.02] = np.nan
+    rng = np.random.default_rng(seed)
+    speed = rng.random(rows)
+    speed[rng.random(rows) < 0.02] = np.nan
 
     def slow(stays: int) -> np.ndarray:
-        return np.repeat(dice.random(rows // stays + 1) < 0.4, stays)[:rows]
+        return np.repeat(rng.random(rows // stays + 1) < 0.4, stays)[:rows]
 
     return {
-        "t_ns": np.cumsum(dice.choice([1, 50_000_000, 250_000_000, 1_100_000_000], rows)),
+        "t_ns": np.cumsum(rng.choice([1, 50_000_000, 250_000_000, 1_100_000_000], rows)),
         "p": slow(6),
         "q": slow(4),
         "speed": speed,
-        "stop": dice.random(rows) < 0.05,
+        "stop": rng.random(rows) < 0.05,
     }
 
 

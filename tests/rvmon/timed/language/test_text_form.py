@@ -251,12 +251,12 @@ query Q3: E<> (A.c
 @pytest.mark.parametrize("seed", range(40))
 def test_what_is_damaged_is_told_and_nothing_else(seed):
     """Of a model with some edges damaged, each of these is told and no other."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     lines = ["clock x", "automaton A {", "  location a", "  start a"]
     lines += ["  edge a -> a when x > 1 do x = 0"] * 12 + ["}", "query: E<> A.a"]
-    damaged = sorted(dice.sample(range(4, 15), dice.randint(1, 4)))
+    damaged = sorted(rng.sample(range(4, 15), rng.randint(1, 4)))
     for row in damaged:
-        lines[row] = dice.choice(["  edge a -> a when x > > 1", "  edge a -> a do x = ) 0"])
+        lines[row] = rng.choice(["  edge a -> a when x > > 1", "  edge a -> a do x = ) 0"])
     assert [line for _, line, _ in findings("\n".join(lines))] == [row + 1 for row in damaged]
 
 
