@@ -25,10 +25,10 @@ from benchmarks.workload import Workload
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.law.walk import intervals
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import UntranslatableError, names_in
 from rvmon.testing.peers.ways import Cell
-from rvmon.testing.walk import intervals
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -286,20 +286,20 @@ def _shortened(case: _Case, rows: int) -> _Case:
 
 def _damaged(workload: Workload, seed: int) -> Question:
     """The first rows, with single cells turned over and stretches of a column held."""
-    dice = random.Random(f"{workload.name}/{seed}")
+    rng = random.Random(f"{workload.name}/{seed}")
     rows = _rows_judged(workload)
     whole = _question(workload)
     columns: dict[str, list[Cell]] = {
         name: list(column[:rows]) for name, column in whole.columns.items()
     }
     for column in columns.values():
-        flips = dice.choice((0.0, 0.002, 0.02))
+        flips = rng.choice((0.0, 0.002, 0.02))
         for row in range(rows):
-            if dice.random() < flips:
+            if rng.random() < flips:
                 value = column[row]
-                column[row] = not value if isinstance(value, bool) else dice.uniform(-2.0, 2.0)
-        if dice.random() < 0.5:
-            start = dice.randrange(rows)
-            length = min(dice.randint(1, rows // 2), rows - start)
+                column[row] = not value if isinstance(value, bool) else rng.uniform(-2.0, 2.0)
+        if rng.random() < 0.5:
+            start = rng.randrange(rows)
+            length = min(rng.randint(1, rows // 2), rows - start)
             column[start : start + length] = [column[start]] * length
     return replace(whole, columns=columns)

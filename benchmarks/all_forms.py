@@ -26,8 +26,8 @@ from benchmarks import columns
 from rvmon.execute.interrupt import interrupted_by_sigterm
 from rvmon.execute.parallel import execute
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 PART = 10
 """Specifications that a worker takes at a time."""

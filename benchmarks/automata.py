@@ -29,9 +29,9 @@ from rvmon.automaton.reduce import reduce
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.monitor.obligation_words import Words
+from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.spec.checked.formula import Binary, Formula, Unary
-from rvmon.testing.generate_formula import Shape, formula
+from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.show import show
 
 SHAPE = Shape(mixed=False, past=False)
@@ -76,9 +76,9 @@ def main(argv: Sequence[str]) -> int:
     forecasts: list[tuple[float, str]] = []
     drawn = 0
     while len(seconds) < options.formulas:
-        dice = random.Random(f"{options.seed}/{drawn}")
+        rng = random.Random(f"{options.seed}/{drawn}")
         drawn += 1
-        owed = formula(dice, SHAPE, options.depth)
+        owed = formula(rng, SHAPE, options.depth)
         if nesting(owed) < options.depth:
             continue
         mode = {"upon": start} if len(seconds) % 2 else {"whenever": p}
@@ -91,19 +91,19 @@ def main(argv: Sequence[str]) -> int:
             refused[str(error)] += 1
         seconds.append((time.process_time() - began, show(owed)))
         if found is not None:
-            forecasts += [(spent, show(owed)) for spent in _forecast(found, dice)]
+            forecasts += [(spent, show(owed)) for spent in _forecast(found, rng)]
     _print(options, sizes, refused, seconds)
     print(f"  {len(forecasts)} forecasts, of what may be owed at the end of a trace")
     _print_seconds(forecasts)
     return int(max(max(seconds), max(forecasts))[0] > options.most)
 
 
-def _forecast(automaton: Automaton, dice: random.Random) -> Iterator[float]:
+def _forecast(automaton: Automaton, rng: random.Random) -> Iterator[float]:
     """Seconds for the forecasts of some locations, each at ages about its bounds."""
     forecaster = Forecaster()
     waiting = automaton.locations[PASSED + 1 :]
-    for location in dice.sample(waiting, min(len(waiting), 10)):
-        ages = [dice.choice((0, *cuts)) for cuts in location.cuts]
+    for location in rng.sample(waiting, min(len(waiting), 10)):
+        ages = [rng.choice((0, *cuts)) for cuts in location.cuts]
         began = time.process_time()
         forecaster.of(location.residual, sorted(ages, reverse=True), 1)
         yield time.process_time() - began

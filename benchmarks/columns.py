@@ -22,6 +22,7 @@ from dataclasses import replace
 from benchmarks.differential import MODELS
 from tests.tools.differential import cases_of
 from tests.tools.filled import filled, judge_columns
+from tests.tools.frame import frame_differences
 from tests.tools.law import judge
 
 from rvmon.errors import RvmonError
@@ -29,9 +30,9 @@ from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.readers.alternation import REMARK
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences, frame_differences
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.compare import differences
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report
 
@@ -43,13 +44,13 @@ def judge_seed(seed: str, options: argparse.Namespace, count: Counter[str]) -> N
         MODELS.get(options.time or ""), depth=options.depth, captures=deep, for_each=deep
     )
     traces = TraceProfile(samples=options.samples, span=4 * options.samples)
-    dice = random.Random(f"cuts/{seed}")
+    rng = random.Random(f"cuts/{seed}")
     compiled = None
     for case in cases_of(seed, profile, traces, options.each):
         whole = filled(case)
         try:
             compiled = compiled or compile_spec(whole.spec)
-            cuts = random_cuts(dice, len(whole.samples))
+            cuts = random_cuts(rng, len(whole.samples))
             report = judge_columns(compiled, whole, options.engine, cuts)
         except RvmonError as error:
             print(f"seed {seed}: {error}")
@@ -102,9 +103,9 @@ def _without_doubt(attempt: Attempt) -> Attempt:
     return replace(attempt, reason="it was unknown")
 
 
-def random_cuts(dice: random.Random, rows: int) -> list[int]:
+def random_cuts(rng: random.Random, rows: int) -> list[int]:
     """Up to three places between rows."""
-    return sorted(dice.sample(range(1, rows), dice.randrange(min(rows, 4)))) if rows > 1 else []
+    return sorted(rng.sample(range(1, rows), rng.randrange(min(rows, 4)))) if rows > 1 else []
 
 
 def parse(argv: Sequence[str]) -> argparse.Namespace:

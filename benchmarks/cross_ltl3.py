@@ -26,9 +26,9 @@ from rvmon.monitor import compile_spec
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.testing.dice import Dice, chance
+from rvmon.testing.generate.rng import Rng, chance
+from rvmon.testing.generate.vocabulary import BOOLS
 from rvmon.testing.show import show
-from rvmon.testing.vocabulary import BOOLS
 from rvmon.trace.schema import Kind
 from rvmon.verdict.verdict import Verdict
 
@@ -48,14 +48,14 @@ def main(argv: Sequence[str]) -> int:
     began = time.perf_counter()
     tally: Counter[str] = Counter()
     found: list[str] = []
-    for number, dice, formula, tableau in _questions(options.seed, options.timed, tally):
+    for number, rng, formula, tableau in _questions(options.seed, options.timed, tally):
         if tally["formulas"] == options.formulas:
             break
         tally["formulas"] += 1
         spec = _spec(formula, TimeModel.HELD if options.timed else TimeModel.SAMPLED)
         tally[f"judged by {_judged_by(spec, options.engine)}"] += 1
         for _ in range(options.words):
-            word = _word(dice)
+            word = _word(rng)
             said = [*_said(spec, word, options.engine)]
             for length, ours in enumerate(said, 1):
                 possible = tableau.possible(word[:length])
@@ -84,14 +84,14 @@ def _questions(
 ) -> Iterator[tuple[int, random.Random, Formula, Tableau]]:
     number = 0
     while True:
-        dice = random.Random(f"{seed}/{number}")
+        rng = random.Random(f"{seed}/{number}")
         number += 1
-        formula = (random_mtl if timed else random_ltl)(dice, dice.randint(1, 4))
+        formula = (random_mtl if timed else random_ltl)(rng, rng.randint(1, 4))
         tableau = Tableau.of(unrolled(formula), MOST_TEMPORAL)
         if tableau is None:
             tally[f"passed over, more than {MOST_TEMPORAL} temporal operators"] += 1
         else:
-            yield number, dice, formula, tableau
+            yield number, rng, formula, tableau
 
 
 def _spec(formula: Formula, time_model: TimeModel) -> Spec:
@@ -118,9 +118,9 @@ def _said(spec: Spec, word: Sequence[Letter], engine: str) -> Iterator[tuple[boo
         yield decided is not None, None if value is None else value is Verdict.PASS
 
 
-def _word(dice: Dice) -> list[Letter]:
-    length = dice.randint(1, 8)
-    return [frozenset(name for name in BOOLS if chance(dice, 50)) for _ in range(length)]
+def _word(rng: Rng) -> list[Letter]:
+    length = rng.randint(1, 8)
+    return [frozenset(name for name in BOOLS if chance(rng, 50)) for _ in range(length)]
 
 
 def _word_of(value: bool | None) -> str:

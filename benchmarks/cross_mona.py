@@ -37,12 +37,12 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.testing.dice import Dice, chance
+from rvmon.testing.generate.rng import Rng, chance
+from rvmon.testing.generate.vocabulary import BOOLS
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import both, no, to_core, until
 from rvmon.testing.peers.dialects import LTLF, spelling, translate
 from rvmon.testing.show import show
-from rvmon.testing.vocabulary import BOOLS
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Decision
@@ -101,9 +101,9 @@ def compare(
     number: int, seed: int, count: int, peer: Peer, judges: dict[str, Judge], tally: Counter[str]
 ) -> list[str]:
     """Compare one random formula on so many random words; the disagreements as text."""
-    dice = random.Random(f"{seed}/{number}")
-    formula = random_ltl(dice, dice.randint(1, 4))
-    words = [_word(dice) for _ in range(count)]
+    rng = random.Random(f"{seed}/{number}")
+    formula = random_ltl(rng, rng.randint(1, 4))
+    words = [_word(rng) for _ in range(count)]
     core = to_core(formula)
     try:
         answer = peer.ask(
@@ -132,9 +132,9 @@ def compare(
     return found
 
 
-def _word(dice: Dice) -> Word:
-    length = dice.randint(1, 8)
-    return [frozenset(name for name in BOOLS if chance(dice, 50)) for _ in range(length)]
+def _word(rng: Rng) -> Word:
+    length = rng.randint(1, 8)
+    return [frozenset(name for name in BOOLS if chance(rng, 50)) for _ in range(length)]
 
 
 def parse(argv: Sequence[str]) -> argparse.Namespace:

@@ -70,9 +70,9 @@ def campaign(
 def _questions(contest: Contest, tally: Tally, seed: int) -> Iterator[Question]:
     number = 0
     while True:
-        dice = random.Random(f"{seed}/{contest.way.name}/{number}")
+        rng = random.Random(f"{seed}/{contest.way.name}/{number}")
         number += 1
-        question, reason = random_question(dice, contest)
+        question, reason = random_question(rng, contest)
         if question is None:
             tally.refused[reason] += 1
         else:

@@ -57,27 +57,27 @@ class Tally:
     disagreements: list[str] = field(default_factory=list)
 
 
-def random_formula(dice: random.Random, depth: int) -> Formula:
+def random_formula(rng: random.Random, depth: int) -> Formula:
     """A formula over comparisons of numbers, with operators that rtamt has."""
     if depth == 0:
-        bound = Literal(dice.randint(-3, 3))
-        return Compare(dice.choice(ORDERS), SignalValue(dice.choice(NAMES)), bound)
-    kind = dice.random()
+        bound = Literal(rng.randint(-3, 3))
+        return Compare(rng.choice(ORDERS), SignalValue(rng.choice(NAMES)), bound)
+    kind = rng.random()
     if kind < 0.15:
-        return Unary(UnaryOp.NOT, random_formula(dice, depth - 1))
+        return Unary(UnaryOp.NOT, random_formula(rng, depth - 1))
     if kind < 0.6:
-        operand = random_formula(dice, depth - 1)
-        return Unary(dice.choice(UNARY), operand, random_window(dice))
-    left, right = random_formula(dice, dice.randint(0, depth - 1)), random_formula(dice, depth - 1)
+        operand = random_formula(rng, depth - 1)
+        return Unary(rng.choice(UNARY), operand, random_window(rng))
+    left, right = random_formula(rng, rng.randint(0, depth - 1)), random_formula(rng, depth - 1)
     if kind < 0.8:
-        return Binary(dice.choice((BinaryOp.AND, BinaryOp.OR)), left, right)
-    return Binary(dice.choice((BinaryOp.UNTIL, BinaryOp.SINCE)), left, right, random_window(dice))
+        return Binary(rng.choice((BinaryOp.AND, BinaryOp.OR)), left, right)
+    return Binary(rng.choice((BinaryOp.UNTIL, BinaryOp.SINCE)), left, right, random_window(rng))
 
 
-def random_window(dice: random.Random) -> Interval:
+def random_window(rng: random.Random) -> Interval:
     """A bounded window."""
-    low = dice.choice((0, 0, dice.randint(1, 3)))
-    return Interval(low, low + dice.randint(1, 4))
+    low = rng.choice((0, 0, rng.randint(1, 3)))
+    return Interval(low, low + rng.randint(1, 4))
 
 
 def ours(formula: Formula, columns: dict[str, list[float]], model: TimeModel) -> list[float | None]:
@@ -96,13 +96,13 @@ def ours(formula: Formula, columns: dict[str, list[float]], model: TimeModel) ->
     return [found.low if found.low == found.high else None for _, found in stream]
 
 
-def compare(way: Way, peer: Peer, dice: random.Random, tally: Tally) -> None:
+def compare(way: Way, peer: Peer, rng: random.Random, tally: Tally) -> None:
     """One formula on one trace."""
-    formula = random_formula(dice, dice.randint(1, 3))
-    columns = {name: [float(dice.randint(-4, 4))] for name in NAMES}
+    formula = random_formula(rng, rng.randint(1, 3))
+    columns = {name: [float(rng.randint(-4, 4))] for name in NAMES}
     for column in columns.values():
         while len(column) < TICKS:
-            column.append(column[-1] if dice.random() < 0.5 else float(dice.randint(-4, 4)))
+            column.append(column[-1] if rng.random() < 0.5 else float(rng.randint(-4, 4)))
     try:
         text = translate(formula, way.dialect)
         named = {spelling(name): column for name, column in columns.items()}
@@ -143,8 +143,8 @@ def main(argv: list[str]) -> int:
         with Peer(environment.python, way.worker) as peer:
             number = 0
             while tally.pairs < options.pairs:
-                dice = random.Random(f"{options.seed}/{name}/{number}")
-                compare(way, peer, dice, tally)
+                rng = random.Random(f"{options.seed}/{name}/{number}")
+                compare(way, peer, rng, tally)
                 number += 1
         print(f"{name}, seed {options.seed}, {time.perf_counter() - began:.0f} s")
         print(f"  pairs {tally.pairs}, not to be said to it {tally.refused}")

@@ -19,14 +19,15 @@ from typing import Any
 
 from tests.tools.differential import Campaign, Mix, campaign_of
 from tests.tools.features import Feature, possible
+from tests.tools.ways import INTERRUPT, NEXT, Maker
 
 from rvmon.errors import RvmonError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.forms import FORMS, INTERRUPT, NEXT, Compiler, Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.forms import FORMS, Compiler
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeModel.CLOCKED}
 _ENGINES = f"""some of {", ".join(FORMS)}; those of `Spec.monitor` may be followed by

@@ -25,8 +25,8 @@ from tests.tools.doors import Content, content_of, doors, whole
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 EACH = 5
 """Recordings of a specification."""

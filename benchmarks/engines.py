@@ -13,18 +13,18 @@ _INPUTS = tuple(
 _ATTEMPTS = tuple(
     f"monitor/{name}.py"
     for name in (
-        "attempt_judge",
+        "attempts/attempt_judge",
+        "attempts/captured",
+        "attempts/instance",
+        "attempts/lane",
+        "attempts/machine_judge",
         "build",
-        "captive",
-        "compiled",
-        "health",
-        "instances",
-        "judge",
-        "lane",
-        "lanes",
-        "ledger",
-        "monitor",
-        "validate",
+        "compiled/requirement",
+        "inputs/health",
+        "inputs/validate",
+        "online/lanes",
+        "online/monitor",
+        "records/ledger",
     )
 )
 _AUTOMATA = tuple(
@@ -49,13 +49,13 @@ _RUNTIME = tuple(
         "values",
     )
 )
-_GENERATED = tuple(f"monitor/{name}.py" for name in ("generated", "generated_records"))
+_GENERATED = tuple(f"monitor/online/{name}.py" for name in ("generated", "generated_records"))
 
 COLUMNS = "columns"
 """Has a test of its own, of recordings."""
 
 ENGINES: dict[str, tuple[str, ...]] = {
-    COLUMNS: ("monitor/columns/*.py",),
+    COLUMNS: ("automaton/moves.py", "monitor/columns/*.py"),
     "automaton": (*_FORMULAS, *_INPUTS, *_ATTEMPTS, *_AUTOMATA, *_DRIVEN),
     "progression": (
         *_FORMULAS,
@@ -65,7 +65,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
     "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "runtime/standalone.py"),
-    "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/online_c.py"),
+    "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/c/monitor.py"),
     "network": (
         "dataflow/time_decisions.py",
         "dataflow/at_end.py",
@@ -78,8 +78,8 @@ ENGINES: dict[str, tuple[str, ...]] = {
         "dataflow/positions.py",
         "dataflow/ranges.py",
         "dataflow/sweep.py",
-        "monitor/network_judge.py",
-        "monitor/owed_network.py",
+        "monitor/attempts/network_judge.py",
+        "monitor/reasons/owed_network.py",
     ),
 }
 """By engine, patterns of files below the package."""

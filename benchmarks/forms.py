@@ -49,11 +49,11 @@ class Stream:
 
 def stream(rows: int, changing: float) -> Stream:
     """Samples of which about this share changes a truth value."""
-    dice = np.random.default_rng(1)
+    rng = np.random.default_rng(1)
     columns: dict[str, np.ndarray[Any, Any]] = {
-        name: np.cumsum(dice.random(rows) < changing / 3) % 2 == 1 for name in "pqr"
+        name: np.cumsum(rng.random(rows) < changing / 3) % 2 == 1 for name in "pqr"
     }
-    columns["speed"] = 1 + np.abs(np.sin(np.arange(rows) / 50)) + 0.1 * dice.random(rows)
+    columns["speed"] = 1 + np.abs(np.sin(np.arange(rows) / 50)) + 0.1 * rng.random(rows)
     times = np.arange(rows, dtype=np.int64) * 50_000_000
     names = list(columns)
     rows_of = zip(*(columns[name].tolist() for name in names), strict=True)
@@ -209,9 +209,9 @@ def many(options: argparse.Namespace) -> None:
             for n in range(count)
         )
         spec = rvmon.loads(f"spec many\n{declared}{rules}")
-        dice = np.random.default_rng(2)
-        names = dice.integers(0, count, options.rows).tolist()
-        flips = (dice.random(options.rows) < 0.01).tolist()
+        rng = np.random.default_rng(2)
+        names = rng.integers(0, count, options.rows).tolist()
+        flips = (rng.random(options.rows) < 0.01).tolist()
         now = [False] * count
         samples = []
         for t, (n, flip) in enumerate(zip(names, flips, strict=True)):

@@ -221,12 +221,12 @@ def main(argv: Sequence[str]) -> int:
     for parent in PARENTS:
         if parent.label not in options.only:
             continue
-        dice = random.Random(f"{options.seed} {parent.label}")
+        rng = random.Random(f"{options.seed} {parent.label}")
         with tempfile.TemporaryDirectory() as folder:
             inputs(Path(folder))
             trial = Trial(parent, Path(folder))
             for number in range(options.kills):
-                trial.kill(number, dice.uniform(0, trial.span))
+                trial.kill(number, rng.uniform(0, trial.span))
         print(f"{parent.label}: {options.kills} kills within {trial.span:.1f} s", flush=True)
         for what, count in sorted(trial.found.items()):
             print(f"  {what}: {count}", flush=True)

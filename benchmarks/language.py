@@ -31,7 +31,7 @@ from rvmon.monitor import compile_spec
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
 from rvmon.spec.rules.registry import all_rules
-from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[1]
 TIMELINE = re.compile(r"\b(?:P|F|NT|I) (everywhere|before r|after q until r|after q|between q r):")
@@ -85,7 +85,7 @@ def catalogue() -> None:
     print(f"FRET: {sizes} = {math.prod(rows)} combinations of scope, condition and timing")
 
 
-def texts(count: int, dice: random.Random) -> int:
+def texts(count: int, rng: random.Random) -> int:
     """Specifications mutated by words and by characters, and texts by the grammar.
 
     Every answer has to be orderly, and what can be read has to say the same when it is laid out.
@@ -98,8 +98,8 @@ def texts(count: int, dice: random.Random) -> int:
     counts: Counter[str] = Counter()
     slowest = 0.0
     for number in range(count):
-        by_grammar = dice.random() < GRAMMATICAL
-        text = random_text(dice) if by_grammar else mutated(dice.choice(seeds), words, dice)
+        by_grammar = rng.random() < GRAMMATICAL
+        text = random_text(rng) if by_grammar else mutated(rng.choice(seeds), words, rng)
         try:
             started = time.process_time()
             findings = answer(text)
@@ -140,18 +140,18 @@ def kept_by_layout(text: str, syntax: Hashable) -> bool:
     return syntax_of(once) == syntax and format_text(once) == once
 
 
-def mutated(text: str, words: list[str], dice: random.Random) -> str:
+def mutated(text: str, words: list[str], rng: random.Random) -> str:
     """Change a few words or characters."""
-    by_words = dice.random() < 0.6
+    by_words = rng.random() < 0.6
     parts = WORD.findall(text) if by_words else list(text)
-    for _ in range(dice.randint(1, 6)):
-        place = dice.randrange(len(parts))
+    for _ in range(rng.randint(1, 6)):
+        place = rng.randrange(len(parts))
         strange = (
-            dice.choice(words)
+            rng.choice(words)
             if by_words
-            else chr(dice.choice((dice.randrange(32, 127), dice.randrange(0x3000))))
+            else chr(rng.choice((rng.randrange(32, 127), rng.randrange(0x3000))))
         )
-        parts[place] = dice.choice(("", strange, parts[place] * 2, dice.choice(parts)))
+        parts[place] = rng.choice(("", strange, parts[place] * 2, rng.choice(parts)))
     return "".join(parts)
 
 
@@ -159,13 +159,13 @@ def layouts(count: int, seed: int) -> int:
     """Print, scribble and lay out random specifications; meaning and form have to stay."""
     wrong = refused = 0
     for number in range(seed * 1_000_000, seed * 1_000_000 + count):
-        dice = random.Random(number)
+        rng = random.Random(number)
         try:
-            first, _ = compile_text(spec_text(random_spec(dice, Profile())))
+            first, _ = compile_text(spec_text(random_spec(rng, Profile())))
         except SpecError:  # a division by the constant 0, which the generator knows and we refuse
             refused += 1
             continue
-        text = scribbled(spec_text(first), dice)
+        text = scribbled(spec_text(first), rng)
         once = format_text(text)
         same = meaning(compile_text(once)[0]) == meaning(first)
         stable = format_text(once) == once
@@ -177,10 +177,10 @@ def layouts(count: int, seed: int) -> int:
     return wrong
 
 
-def large_file(count: int, dice: random.Random) -> None:
+def large_file(count: int, rng: random.Random) -> None:
     """CPU time of checking one file with many requirements, and specs/handover.rv."""
     handover = (ROOT / "specs" / "handover.rv").read_text(encoding="utf-8")
-    files = {"specs/handover.rv": handover, f"{count:,} requirements": many(count, dice)}
+    files = {"specs/handover.rv": handover, f"{count:,} requirements": many(count, rng)}
     for name, text in files.items():
         started = time.process_time()
         compile_text(text)
@@ -188,9 +188,9 @@ def large_file(count: int, dice: random.Random) -> None:
         print(f"check of {name}: {seconds:.2f} s of CPU, {len(text):,} characters")
 
 
-def analysis(count: int, dice: random.Random) -> None:
+def analysis(count: int, rng: random.Random) -> None:
     """CPU time of analysing a file, without a limit, and what remains undecided."""
-    compiled = compile_spec(compile_text(many(count, dice))[0])
+    compiled = compile_spec(compile_text(many(count, rng))[0])
     started = time.process_time()
     found = analyse(compiled, seconds=3600).examination
     seconds = time.process_time() - started
@@ -202,7 +202,7 @@ def analysis(count: int, dice: random.Random) -> None:
     )
 
 
-def many(count: int, dice: random.Random) -> str:
+def many(count: int, rng: random.Random) -> str:
     """A file with requirements of the usual kinds."""
     names = [", ".join(f"{letter}{number}" for number in range(100)) for letter in "bxe"]
     lines = [f"signal {names[0]} : bool", f"signal {names[1]} : real [m]", f"event {names[2]}"]
@@ -213,7 +213,7 @@ def many(count: int, dice: random.Random) -> str:
         "whenever b{} and x{} > 1 m\n  then b{} until (e{} or not rise(b1))",
     )
     for number in range(count):
-        body = kinds[number % 4].format(*(dice.randrange(100) for _ in range(4)))
+        body = kinds[number % 4].format(*(rng.randrange(100) for _ in range(4)))
         lines.append(f'requirement R{number} "Requirement {number}"\n  {body}')
     return "\n".join(lines) + "\n"
 

@@ -33,11 +33,11 @@ from benchmarks.engines import COLUMNS, ENGINES, PACKAGE, RELATED, files_of
 from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
+from tests.tools.ways import INTERRUPT, NEXT
 
 from rvmon.execute.command import run
 from rvmon.execute.interrupt import interrupted_by_sigterm
 from rvmon.monitor.engines.registry import EXPLAINING as SWITCHABLE
-from rvmon.testing.forms import INTERRUPT, NEXT
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -28,11 +28,11 @@ def measure(model: str, samples: int, chance: float) -> tuple[float, str]:
     """Seconds of processor time for a run, and its verdict."""
     spec = loads(f"spec s\ntime {model}\nsignal a, b : bool\nrequirement R1\n  {TEXT}\n")
     monitor = spec.monitor(engine="network")
-    dice = random.Random(1)
+    rng = random.Random(1)
     values = {"a": False, "b": False}
     rows = []
     for _ in range(samples):
-        values = {name: value ^ (dice.random() < chance) for name, value in values.items()}
+        values = {name: value ^ (rng.random() < chance) for name, value in values.items()}
         rows.append(values)
     began = time.process_time()
     for index, row in enumerate(rows):

@@ -32,7 +32,7 @@ def stream(rate: int, rows: int, seed: int = 1) -> dict[str, list[bool | float]]
         rows: the length.
         seed: of the random choices.
     """
-    dice = random.Random(f"robot/{rate}/{seed}")
+    rng = random.Random(f"robot/{rate}/{seed}")
     flags: dict[str, list[bool | float]] = {
         name: [False] * rows
         for name in ("request", "granted", "withheld", "released", "near", "stopped")
@@ -44,9 +44,9 @@ def stream(rate: int, rows: int, seed: int = 1) -> dict[str, list[bool | float]]
 
     row = 0.0
     while row < rows:
-        answer = row + dice.uniform(0.2, 2.9) * rate
+        answer = row + rng.uniform(0.2, 2.9) * rate
         hold("request", row, 0)
-        if dice.random() < 0.7:
+        if rng.random() < 0.7:
             hold("granted", answer, 0.1)
             hold("released", answer + 0.3 * rate, 0.1)
         else:
@@ -54,8 +54,8 @@ def stream(rate: int, rows: int, seed: int = 1) -> dict[str, list[bool | float]]
             hold("withheld", answer + 0.2 * rate, 0)
         near = answer + 3.5 * rate
         hold("near", near, 1)
-        hold("stopped", near + dice.uniform(0.05, 0.25) * rate, 1.5)
-        row = near + dice.uniform(2, 4) * rate
+        hold("stopped", near + rng.uniform(0.05, 0.25) * rate, 1.5)
+        row = near + rng.uniform(2, 4) * rate
     return {
         **flags,
         "distance": [0.8 + 0.25 * math.sin(i / rate) for i in range(rows)],

@@ -19,8 +19,8 @@ from tests.tools.differential import case_of
 from tests.tools.sound import is_spoken_of, overturned
 
 from rvmon.execute.parallel import execute
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.show import show_case
 
 
@@ -32,8 +32,8 @@ def run_part(options: argparse.Namespace, seeds: Iterable[str]) -> tuple[Counter
         case = case_of(seed, Profile(requirements=1), TraceProfile())
         if not is_spoken_of(case.spec):
             continue
-        dice = random.Random(seed)
-        before, overturning = overturned(dice, case, options.fillings)
+        rng = random.Random(seed)
+        before, overturning = overturned(rng, case, options.fillings)
         verdicts.update(verdict.value for verdict in before.values())
         if overturning is not None:
             lines = [f"seed {seed}", show_case(case), "filled in:", show_case(overturning)]

@@ -44,11 +44,11 @@ def robots(seconds: int) -> Iterator[Workload]:
 def many(rows: int, counts: Sequence[int] = (10, 100, 1000)) -> Iterator[Workload]:
     """So many responses on one stream of 20 signals, of which one changes at each row."""
     names = [f"v{number}" for number in range(SIGNALS)]
-    dice = random.Random("many")
+    rng = random.Random("many")
     columns: dict[str, list[bool | float]] = {name: [] for name in names}
     state = dict.fromkeys(names, False)
     for _ in range(rows):
-        changed = names[dice.randrange(SIGNALS)]
+        changed = names[rng.randrange(SIGNALS)]
         state[changed] = not state[changed]
         for name in names:
             columns[name].append(state[name])
@@ -58,11 +58,11 @@ def many(rows: int, counts: Sequence[int] = (10, 100, 1000)) -> Iterator[Workloa
 
 
 def _responses(count: int, form: str) -> tuple[Formula, ...]:
-    dice = random.Random("responses")
+    rng = random.Random("responses")
     formulas = []
     for _ in range(count):
-        asked, answer = (SignalAtom(f"v{n}") for n in dice.sample(range(SIGNALS), 2))
-        deadline = dice.randint(40, 400)
+        asked, answer = (SignalAtom(f"v{n}") for n in rng.sample(range(SIGNALS), 2))
+        deadline = rng.randint(40, 400)
         if form == "past":
             formulas.append(no(two(no(answer), "S", two(asked, "and", no(answer)), deadline, None)))
         else:
@@ -75,14 +75,14 @@ def bounds(
 ) -> Iterator[Workload]:
     """One response with a growing deadline, on one trace."""
     p, s = SignalAtom("p"), SignalAtom("s")
-    dice = random.Random("bounds")
+    rng = random.Random("bounds")
     columns: dict[str, list[bool | float]] = {"p": [False] * rows, "s": [False] * rows}
     row = 0
     while row < rows - 20:
         columns["p"][row] = True
-        row += dice.randint(1, 9)
+        row += rng.randint(1, 9)
         columns["s"][row] = True
-        row += dice.randint(1, 9)
+        row += rng.randint(1, 9)
     for high in highs:
         past = no(two(no(s), "S", p, high, None))
         future = two(p, "->", eventually(s, 0, high))

@@ -13,7 +13,7 @@ import sys
 import time
 from collections import Counter
 
-from tests.tools.timed_dice import random_model
+from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import TooManyRegionsError, decide
 from tests.tools.timed_runs import shows
 

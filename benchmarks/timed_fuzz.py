@@ -17,7 +17,7 @@ from pathlib import Path
 from random import Random
 
 from tests.tools.timed_damage import damaged, survives
-from tests.tools.timed_dice import random_model
+from tests.tools.timed_generate import random_model
 
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.language.load import loads_network

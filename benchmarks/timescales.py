@@ -42,11 +42,11 @@ class Rows:
         for name, column in self.columns.items():
             column.extend([name in true] * count)
 
-    def add_noise(self, dice: random.Random, noisy: str, count: int) -> None:
+    def add_noise(self, rng: random.Random, noisy: str, count: int) -> None:
         """So many rows at which one name is drawn and the others are false."""
         for name, column in self.columns.items():
             if name == noisy:
-                column.extend(dice.random() < 0.5 for _ in range(count))
+                column.extend(rng.random() < 0.5 for _ in range(count))
             else:
                 column.extend([False] * count)
 
@@ -87,10 +87,10 @@ def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list
         seed: of the random choices.
     """
     low = low_bound(high)
-    dice = random.Random(f"{family.name}/{high}/{seed}")
+    rng = random.Random(f"{family.name}/{high}/{seed}")
     made = Rows(family.names)
     while len(made) < rows - 2 * high:
-        family.episode(made, dice, low, high)
+        family.episode(made, rng, low, high)
     family.violation(made, low, high)
     return made.columns
 
@@ -130,10 +130,10 @@ def _answered(low: int, high: int) -> Formula:
     return two(in_time, "and", no(two(no(_s), "S", _p, high, None)))
 
 
-def _absent_after(rows: Rows, dice: random.Random, _: int, high: int) -> None:
+def _absent_after(rows: Rows, rng: random.Random, _: int, high: int) -> None:
     rows.add("q")
     rows.add(count=high)
-    rows.add_noise(dice, "p", high)
+    rows.add_noise(rng, "p", high)
 
 
 def _absent_after_violated(rows: Rows, _: int, high: int) -> None:
@@ -142,8 +142,8 @@ def _absent_after_violated(rows: Rows, _: int, high: int) -> None:
     rows.add("p")
 
 
-def _absent_before(rows: Rows, dice: random.Random, _: int, high: int) -> None:
-    rows.add_noise(dice, "p", high)
+def _absent_before(rows: Rows, rng: random.Random, _: int, high: int) -> None:
+    rows.add_noise(rng, "p", high)
     rows.add(count=high)
     rows.add("r")
 
@@ -154,11 +154,11 @@ def _absent_before_violated(rows: Rows, _: int, high: int) -> None:
     rows.add("r")
 
 
-def _absent_between(rows: Rows, dice: random.Random, low: int, high: int) -> None:
+def _absent_between(rows: Rows, rng: random.Random, low: int, high: int) -> None:
     rows.add("q")
-    rows.add(count=dice.randint(low, high - 1))
+    rows.add(count=rng.randint(low, high - 1))
     rows.add("r")
-    rows.add_noise(dice, "p", 1)
+    rows.add_noise(rng, "p", 1)
 
 
 def _absent_between_violated(rows: Rows, _: int, high: int) -> None:
@@ -168,10 +168,10 @@ def _absent_between_violated(rows: Rows, _: int, high: int) -> None:
     rows.add("r")
 
 
-def _always_after(rows: Rows, dice: random.Random, _: int, high: int) -> None:
+def _always_after(rows: Rows, rng: random.Random, _: int, high: int) -> None:
     rows.add("qp")
     rows.add("p", high)
-    rows.add_noise(dice, "p", high)
+    rows.add_noise(rng, "p", high)
 
 
 def _always_after_violated(rows: Rows, _: int, high: int) -> None:
@@ -180,8 +180,8 @@ def _always_after_violated(rows: Rows, _: int, high: int) -> None:
     rows.add()
 
 
-def _always_before(rows: Rows, dice: random.Random, _: int, high: int) -> None:
-    rows.add_noise(dice, "p", high)
+def _always_before(rows: Rows, rng: random.Random, _: int, high: int) -> None:
+    rows.add_noise(rng, "p", high)
     rows.add("p", high)
     rows.add("pr")
 
@@ -192,9 +192,9 @@ def _always_before_violated(rows: Rows, _: int, high: int) -> None:
     rows.add("pr")
 
 
-def _always_between(rows: Rows, dice: random.Random, low: int, high: int) -> None:
+def _always_between(rows: Rows, rng: random.Random, low: int, high: int) -> None:
     rows.add("qp")
-    rows.add("p", dice.randint(low, high - 1))
+    rows.add("p", rng.randint(low, high - 1))
     rows.add("pr")
     rows.add()
 
@@ -205,9 +205,9 @@ def _always_between_violated(rows: Rows, _: int, high: int) -> None:
     rows.add("pr")
 
 
-def _recurring(rows: Rows, dice: random.Random, _: int, high: int) -> None:
+def _recurring(rows: Rows, rng: random.Random, _: int, high: int) -> None:
     rows.add("p")
-    rows.add(count=dice.randint(1, high) - 1)
+    rows.add(count=rng.randint(1, high) - 1)
 
 
 def _recurring_violated(rows: Rows, _: int, high: int) -> None:
@@ -215,14 +215,14 @@ def _recurring_violated(rows: Rows, _: int, high: int) -> None:
     rows.add(count=high + 1)
 
 
-def _recurring_between(rows: Rows, dice: random.Random, _: int, high: int) -> None:
+def _recurring_between(rows: Rows, rng: random.Random, _: int, high: int) -> None:
     rows.add("q")
-    for _repeat in range(dice.randint(1, 7)):
-        rows.add(count=dice.randint(1, high) - 1)
+    for _repeat in range(rng.randint(1, 7)):
+        rows.add(count=rng.randint(1, high) - 1)
         rows.add("p")
-    rows.add(count=dice.randint(1, high) - 1)
+    rows.add(count=rng.randint(1, high) - 1)
     rows.add("r")
-    rows.add(count=dice.randint(1, high) - 1)
+    rows.add(count=rng.randint(1, high) - 1)
 
 
 def _recurring_between_violated(rows: Rows, _: int, high: int) -> None:
@@ -231,9 +231,9 @@ def _recurring_between_violated(rows: Rows, _: int, high: int) -> None:
     rows.add("r")
 
 
-def _responding(rows: Rows, dice: random.Random, low: int, high: int) -> None:
+def _responding(rows: Rows, rng: random.Random, low: int, high: int) -> None:
     rows.add("p")
-    rows.add(count=dice.randint(low + 1, high) - 1)
+    rows.add(count=rng.randint(low + 1, high) - 1)
     rows.add("s")
 
 
@@ -242,11 +242,11 @@ def _responding_violated(rows: Rows, _: int, high: int) -> None:
     rows.add(count=high)
 
 
-def _responding_between(rows: Rows, dice: random.Random, low: int, high: int) -> None:
+def _responding_between(rows: Rows, rng: random.Random, low: int, high: int) -> None:
     rows.add("q")
     rows.add()
-    for _repeat in range(dice.randint(1, 7)):
-        _responding(rows, dice, low, high)
+    for _repeat in range(rng.randint(1, 7)):
+        _responding(rows, rng, low, high)
         rows.add()
     rows.add("r")
 

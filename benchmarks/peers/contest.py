@@ -19,13 +19,13 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     Unary,
 )
-from rvmon.testing.dice import chance, pick
-from rvmon.testing.generate_formula import Shape, formula
+from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.rng import chance, pick
+from rvmon.testing.generate.vocabulary import CARRIER, EVENTS, FURTHER, NUMBERS
 from rvmon.testing.peers.client import Peer
 from rvmon.testing.peers.core import UntranslatableError, names_in
 from rvmon.testing.peers.dialects import translate
 from rvmon.testing.peers.ways import WAYS, Way, truths
-from rvmon.testing.vocabulary import CARRIER, EVENTS, FURTHER, NUMBERS
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,47 +66,47 @@ RTAMT_STEPPED = Contest(
 it steps twice a row."""
 
 
-def random_question(dice: random.Random, contest: Contest) -> tuple[Question | None, str]:
+def random_question(rng: random.Random, contest: Contest) -> tuple[Question | None, str]:
     """A formula that the peer can say, and a trace; or no question and the reason."""
-    asked = _with_numbers(dice, formula(dice, contest.shape, dice.randint(1, 3)))
+    asked = _with_numbers(rng, formula(rng, contest.shape, rng.randint(1, 3)))
     try:
         translate(asked, contest.way.dialect)
     except UntranslatableError as error:
         return None, str(error)
-    ticks = dice.randint(2, 24)
+    ticks = rng.randint(2, 24)
     columns: dict[str, list[bool | float]] = {}
     for name in sorted(names_in(asked) or {"p"}):
         if name in NUMBERS:
-            columns[name] = list(_walk(dice, ticks, lambda: float(dice.randint(-2, 3))))
+            columns[name] = list(_walk(rng, ticks, lambda: float(rng.randint(-2, 3))))
         else:
-            columns[name] = list(_walk(dice, ticks, lambda: chance(dice, 50)))
+            columns[name] = list(_walk(rng, ticks, lambda: chance(rng, 50)))
     events = frozenset(_EVENTS) & columns.keys()
     return Question(asked, columns, events, contest.way.time), ""
 
 
-def _with_numbers(dice: random.Random, asked: Formula) -> Formula:
+def _with_numbers(rng: random.Random, asked: Formula) -> Formula:
     """Some of the events replaced by comparisons that no value meets exactly."""
     match asked:
-        case EventAtom() if chance(dice, 50):
-            op = pick(dice, (CompareOp.LT, CompareOp.LE, CompareOp.GE, CompareOp.GT))
-            return Compare(op, SignalValue(pick(dice, NUMBERS)), Literal(dice.randint(-1, 2) + 0.5))
+        case EventAtom() if chance(rng, 50):
+            op = pick(rng, (CompareOp.LT, CompareOp.LE, CompareOp.GE, CompareOp.GT))
+            return Compare(op, SignalValue(pick(rng, NUMBERS)), Literal(rng.randint(-1, 2) + 0.5))
         case Unary():
-            return replace(asked, operand=_with_numbers(dice, asked.operand))
+            return replace(asked, operand=_with_numbers(rng, asked.operand))
         case Binary():
-            left = _with_numbers(dice, asked.left)
-            return replace(asked, left=left, right=_with_numbers(dice, asked.right))
+            left = _with_numbers(rng, asked.left)
+            return replace(asked, left=left, right=_with_numbers(rng, asked.right))
         case _:
             return asked
 
 
 def _walk(
-    dice: random.Random, ticks: int, draw: Callable[[], bool | float]
+    rng: random.Random, ticks: int, draw: Callable[[], bool | float]
 ) -> Iterator[bool | float]:
     """Values that are held for a while."""
     value = draw()
     for _ in range(ticks):
         yield value
-        if chance(dice, 40):
+        if chance(rng, 40):
             value = draw()
 
 

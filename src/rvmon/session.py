@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.engines.choice import EngineChoice
-    from rvmon.monitor.robustness import RobustnessMonitor
-    from rvmon.monitor.robustness_values import Margins
+    from rvmon.monitor.robustness.monitor import RobustnessMonitor
+    from rvmon.monitor.robustness.values import Margins
     from rvmon.readers.reading import Reading, ReadingArguments, Telling
     from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
@@ -100,7 +100,7 @@ class Spec:
 
     @cached_property
     def _compiled(self) -> CompiledSpec:
-        from rvmon.monitor.compiled_spec import CompiledSpec
+        from rvmon.monitor.compiled.specification import CompiledSpec
 
         return CompiledSpec(self.checked)
 
@@ -135,7 +135,7 @@ class Spec:
             UnknownNameError: there is no such requirement.
             RvmonError: one of them is beyond generated code; which and why is said.
         """
-        from rvmon.monitor.codegen_support import plan_alone
+        from rvmon.monitor.compiled.code_plan import plan_alone
 
         return plan_alone(self._compiled, only)
 
@@ -187,7 +187,7 @@ class Spec:
             SnapshotError: the bytes are no snapshot, are damaged, or come from another
                 specification or another version of rvmon.
         """
-        from rvmon.monitor.snapshot import restore
+        from rvmon.monitor.restore import restore
 
         return restore(self._compiled, data)
 
@@ -228,7 +228,7 @@ class Spec:
         >>> [spec.evaluate(merged, nan=nan).verdicts["R1"] for nan in ("unknown", "no update")]
         [<Verdict.INCONCLUSIVE: 'I'>, <Verdict.PASS: 'P'>]
         """
-        from rvmon.monitor.finished import evaluate_trace
+        from rvmon.monitor.evaluate import evaluate_trace
 
         return evaluate_trace(
             self._compiled,
@@ -301,7 +301,7 @@ class Spec:
         ['P', 'F']
         """
         from rvmon.execute.parallel import execute
-        from rvmon.monitor.finished import evaluate_trace
+        from rvmon.monitor.evaluate import evaluate_trace
 
         begin = partial(
             partial,
@@ -344,8 +344,8 @@ class Spec:
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
-        from rvmon.monitor.finished import open_trace
-        from rvmon.monitor.robustness import margins_of
+        from rvmon.monitor.evaluate import open_trace
+        from rvmon.monitor.robustness.monitor import margins_of
 
         chosen = requirements_asked(self.checked, only)
         recording = open_trace(self.checked, trace, self._reading(**reading), only=chosen)
@@ -377,7 +377,7 @@ class Spec:
         Raises:
             UnknownNameError: `only`, `settle` or `sources` names what does not exist.
         """
-        from rvmon.monitor.robustness import RobustnessMonitor
+        from rvmon.monitor.robustness.monitor import RobustnessMonitor
 
         return RobustnessMonitor(
             self._compiled,
@@ -394,7 +394,7 @@ class Spec:
             trace: it need not be read yet.
             **reading: as for `evaluate`; so are the errors. By default any name may be missing.
         """
-        from rvmon.monitor.finished import open_trace
+        from rvmon.monitor.evaluate import open_trace
 
         reading.setdefault("allow_missing", True)
         return open_trace(self.checked, trace, self._reading(**reading), only=None)

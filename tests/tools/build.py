@@ -32,8 +32,17 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
-from rvmon.testing.pulse import is_pulse
-from rvmon.testing.vocabulary import BOOLS, CARRIER, FIELD, LABEL, LABELS, NUMBERS, events, signals
+from rvmon.testing.generate.vocabulary import (
+    BOOLS,
+    CARRIER,
+    FIELD,
+    LABEL,
+    LABELS,
+    NUMBERS,
+    events,
+    signals,
+)
+from rvmon.testing.law.pulse import is_pulse
 from rvmon.trace.sample import Sample, Value
 
 p, q, r = (SignalAtom(name) for name in BOOLS)

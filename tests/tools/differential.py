@@ -10,16 +10,17 @@ from dataclasses import dataclass, field
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences, frame_differences
+from rvmon.testing.compare import differences
 from rvmon.testing.drive import Monitored, drive, is_online
-from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.generate_trace import TraceProfile, random_trace
-from rvmon.testing.health import health_differences
-from rvmon.testing.held_back import HeldBack
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.law.walk import intervals
 from rvmon.testing.show import show_case
-from rvmon.testing.walk import intervals
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.features import Feature, features
+from tests.tools.frame import frame_differences
+from tests.tools.health import health_differences
+from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.online import differences_after_end, online_differences
 from tests.tools.shrink import shrink
@@ -109,10 +110,10 @@ def cases_of(
     seed: object, profile: Profile, traces: TraceProfile, number: int = 1
 ) -> Iterator[Case]:
     """The random cases of a seed, the same for ever: one specification, so many traces."""
-    dice = random.Random(str(seed))
-    spec = random_spec(dice, profile)
+    rng = random.Random(str(seed))
+    spec = random_spec(rng, profile)
     for _ in range(number):
-        yield random_trace(dice, spec, traces)
+        yield random_trace(rng, spec, traces)
 
 
 def case_of(seed: object, profile: Profile, traces: TraceProfile) -> Case:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.dice import Dice, chance
+from rvmon.testing.generate.rng import Rng, chance
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind
 
@@ -47,14 +47,14 @@ class Content:
         return frozenset(name.partition(".")[0] for name in self.columns)
 
 
-def content_of(dice: Dice, case: Case) -> Content:
+def content_of(rng: Rng, case: Case) -> Content:
     """A random trace as rows, some of which are split or contradicted by further ones.
 
     Labels of which nothing is known are left out: text has no NaN.
 
     Args:
-        dice: decides what a trace leaves open.
-        case: from `rvmon.testing.generate_trace.random_trace`.
+        rng: decides what a trace leaves open.
+        case: from `rvmon.testing.generate.trace.random_trace`.
     """
     columns = _columns(case.spec, case.names)
     rows: list[tuple[int, Cells]] = []
@@ -64,8 +64,8 @@ def content_of(dice: Dice, case: Case) -> Content:
             if name in case.spec.signals:
                 _signal(own[0], name, value, columns[name])
             else:
-                _event(dice, own, name, value, columns)
-        if chance(dice, 4) and own[0]:
+                _event(rng, own, name, value, columns)
+        if chance(rng, 4) and own[0]:
             own.append({name: cell for name, cell in own[0].items() if name in case.spec.signals})
         rows += [(sample.t, cells) for cells in own]
     return Content(columns, frozenset(case.spec.events), tuple(rows))
@@ -112,7 +112,7 @@ def _signal(cells: Cells, name: str, value: Value, kind: Kind) -> None:
 
 
 def _event(
-    dice: Dice, own: list[Cells], name: str, value: Value, columns: Mapping[str, Kind]
+    rng: Rng, own: list[Cells], name: str, value: Value, columns: Mapping[str, Kind]
 ) -> None:
     payloads = value if isinstance(value, tuple) else (value,)
     for place, payload in enumerate(payloads):
@@ -121,12 +121,12 @@ def _event(
         cells = own[place]
         if not isinstance(payload, Mapping):
             cells[name] = NAN if payload is None else payload
-            if payload is False and chance(dice, 30):  # what its fields say then is not heard
+            if payload is False and chance(rng, 30):  # what its fields say then is not heard
                 cells |= {column: 1 for column in columns if column.startswith(f"{name}.")}
             continue
         for field, scalar in payload.items():
             cells[f"{name}.{field}"] = NAN if scalar is None else scalar
-        if chance(dice, 50):
+        if chance(rng, 50):
             cells[name] = True
 
 

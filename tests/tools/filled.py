@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.codegen.c_batch import BatchLibrary
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.codegen_support import plan_alone
+from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.readers.blocks import Block, up_to
 from rvmon.readers.source import Fillable, Source

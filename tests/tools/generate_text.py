@@ -11,7 +11,7 @@ from typing import Any
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.rules.findings import Findings
 from rvmon.spec.syntax.parse import grammar, parse_spec
-from rvmon.testing.dice import Dice, chance, pick
+from rvmon.testing.generate.rng import Rng, chance, pick
 
 HEAD = """spec demo
 time sampled
@@ -61,14 +61,14 @@ _SAMPLES: Mapping[str, Sequence[str]] = {
 _GAPS = (" ", " ", " ", "  ", "\n    ", " # note\n  ")
 
 
-def random_text(dice: Dice, items: int = 1) -> str:
+def random_text(rng: Rng, items: int = 1) -> str:
     """A text of the language by its grammar; its names and types often do not fit.
 
     Args:
-        dice: decides.
+        rng: decides.
         items: so many beside the fixed head.
     """
-    return HEAD + "".join(_item(dice) + "\n" for _ in range(items))
+    return HEAD + "".join(_item(rng) + "\n" for _ in range(items))
 
 
 def syntax_of(text: str) -> Hashable | None:
@@ -96,19 +96,19 @@ def _bare(node: Any) -> Hashable:
             return hashable
 
 
-def _item(dice: Dice) -> str:
+def _item(rng: Rng) -> str:
     rules, shortest = _rules()
     tokens: list[tuple[str, str]] = []
-    waiting = ["requirement" if chance(dice, 60) else "item"]
-    free = dice.randint(3, LONGEST)
+    waiting = ["requirement" if chance(rng, 60) else "item"]
+    free = rng.randint(3, LONGEST)
     while waiting:
         symbol = waiting.pop()
         if symbol not in rules:
-            tokens.append((symbol, pick(dice, _looks(symbol))))
+            tokens.append((symbol, pick(rng, _looks(symbol))))
             continue
         low = min(_depth(rule, shortest) for rule in rules[symbol])
         short = [rule for rule in rules[symbol] if _depth(rule, shortest) == low]
-        waiting += reversed(pick(dice, rules[symbol] if free > 0 else short))
+        waiting += reversed(pick(rng, rules[symbol] if free > 0 else short))
         free -= len(rules[symbol]) > 1
     text = ""
     before = ""
@@ -116,23 +116,23 @@ def _item(dice: Dice) -> str:
         if before == "NUMBER" and kind in ("NAME", "CALL"):
             text += "\n    "  # beside the number it would be its unit
         elif text and before != "CALL":
-            text += pick(dice, _GAPS) if chance(dice, 30) else " "
-        text += shown if kind != "NAME" else _name(dice, before, shown)
+            text += pick(rng, _GAPS) if chance(rng, 30) else " "
+        text += shown if kind != "NAME" else _name(rng, before, shown)
         before = before if kind == "COLON" and before == "AT_END" else kind
     return text
 
 
-def _name(dice: Dice, before: str, shown: str) -> str:
+def _name(rng: Rng, before: str, shown: str) -> str:
     """A name that fits behind a word, if only some do."""
     match before:
         case "REQUIREMENT" | "SIGNAL" | "EVENT" | "COVER" | "COVERPOINT" | "CROSS":
-            return f"new{dice.randint(1, 999)}"
+            return f"new{rng.randint(1, 999)}"
         case "CONST" | "DEFINE":
-            return f"made{dice.randint(1, 999)}"
+            return f"made{rng.randint(1, 999)}"
         case "AT_END":
-            return pick(dice, ("strict", "weak", "pass", shown))
+            return pick(rng, ("strict", "weak", "pass", shown))
         case "WITHIN" | "FOR":
-            return pick(dice, ("T", shown))
+            return pick(rng, ("T", shown))
         case _:
             return shown
 

@@ -68,17 +68,17 @@ def hostile_names(count: int, seed: int = 0) -> Iterator[str]:
     >>> len(set(hostile_names(1000)))
     1000
     """
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     known: set[str] = set()
     waiting = list(reversed(FORGERIES))
     while len(known) < count:
         if waiting:
             name = waiting.pop()
-        elif dice.random() < 0.5:
-            name = "".join(dice.choices(_LETTERS, k=dice.randint(2, 12)))
+        elif rng.random() < 0.5:
+            name = "".join(rng.choices(_LETTERS, k=rng.randint(2, 12)))
         else:
-            left, right = dice.choice(FORGERIES), dice.choice(FORGERIES)
-            name = left[: dice.randint(1, 12)] + dice.choice(_LETTERS) + right[-12:]
+            left, right = rng.choice(FORGERIES), rng.choice(FORGERIES)
+            name = left[: rng.randint(1, 12)] + rng.choice(_LETTERS) + right[-12:]
         if name.strip() and name not in known:
             known.add(name)
             yield name

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from rvmon.testing.case import Case
+from rvmon.testing.law.sample_words import word_of
+from rvmon.testing.law.word import Word
 from rvmon.testing.oracle import evaluate
-from rvmon.testing.sample_words import word_of
-from rvmon.testing.word import Word
 from rvmon.verdict.report import Report
 
 

@@ -22,8 +22,8 @@ from rvmon.spec.checked.formula import (
     Unary,
 )
 from rvmon.spec.checked.formula import UnaryOp as Op
+from rvmon.testing.law.walk import subformulas
 from rvmon.testing.peers.core import both, either, to_core
-from rvmon.testing.walk import subformulas
 
 Letter = frozenset[str]
 """The propositions that are true at a position."""

@@ -9,11 +9,11 @@ from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, Outcome, key_of
 from rvmon.testing.drive import Monitored, feed, is_online
-from rvmon.testing.held_back import HeldBack
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.moments import moments
 from tests.tools.waiting import Waiting

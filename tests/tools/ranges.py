@@ -17,11 +17,11 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.kleene import Truth, conjunction, negation
-from rvmon.testing.numbers import events_of, number
-from rvmon.testing.past import is_within
-from rvmon.testing.truths import EVER, Truths
-from rvmon.testing.word import Letter, Word
+from rvmon.testing.law.kleene import Truth, conjunction, negation
+from rvmon.testing.law.numbers import events_of, number
+from rvmon.testing.law.past import is_within
+from rvmon.testing.law.truths import EVER, Truths
+from rvmon.testing.law.word import Letter, Word
 from rvmon.trace.sample import Payload, Scalar
 
 Range = tuple[float, float]

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.specification import CheckedSpec, Event, Type
 from rvmon.testing.case import Case
-from rvmon.testing.dice import Dice, chance, pick
+from rvmon.testing.generate.rng import Rng, chance, pick
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 
 _NUMBERS = (-2, -1, 0, 1, 2, 3)
 
 
-def refilled(dice: Dice, case: Case) -> Case:
+def refilled(rng: Rng, case: Case) -> Case:
     """The case with a random value wherever one was lost.
 
     Signals keep their births: before its first known value nothing of a signal was lost. Where a
@@ -23,10 +23,10 @@ def refilled(dice: Dice, case: Case) -> Case:
     there.
 
     Args:
-        dice: draws the values.
+        rng: draws the values.
         case: what is known.
     """
-    lost = _Lost(dice, case.spec)
+    lost = _Lost(rng, case.spec)
     actions: list[Sample | int] = []
     born: set[str] = set()
     updated: dict[str, int] = {}
@@ -44,7 +44,7 @@ def refilled(dice: Dice, case: Case) -> Case:
                 if _is_known(value):
                     born.add(name)
         for name, event in case.spec.events.items():
-            if case.names is not None and name not in case.names and chance(dice, 30):
+            if case.names is not None and name not in case.names and chance(rng, 30):
                 values[name] = lost.occurrence(event)
         for name, signal in case.spec.signals.items():
             is_stale = action.t > updated.get(name, action.t) + (signal.stale_after or 0)
@@ -63,7 +63,7 @@ def _is_known(value: Value) -> bool:
 class _Lost:
     """Draws what was lost."""
 
-    dice: Dice
+    rng: Rng
     spec: CheckedSpec
 
     def filled(self, name: str, value: Value, *, born: bool) -> Value:
@@ -81,7 +81,7 @@ class _Lost:
         return self._payload(event, value if isinstance(value, Mapping) else {})
 
     def occurrence(self, event: Event) -> Value:
-        if chance(self.dice, 50):
+        if chance(self.rng, 50):
             return False
         return self._payload(event, {}) if event.fields else True
 
@@ -94,8 +94,8 @@ class _Lost:
     def scalar(self, type_: Type) -> Scalar:
         match type_.kind:
             case Kind.BOOL:
-                return chance(self.dice, 50)
+                return chance(self.rng, 50)
             case Kind.LABEL:
-                return pick(self.dice, type_.labels)
+                return pick(self.rng, type_.labels)
             case Kind.INT | Kind.REAL:
-                return pick(self.dice, _NUMBERS)
+                return pick(self.rng, _NUMBERS)

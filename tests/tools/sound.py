@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.dice import Dice
-from rvmon.testing.walk import parts_of, subformulas
+from rvmon.testing.generate.rng import Rng
+from rvmon.testing.law.walk import parts_of, subformulas
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 from tests.tools.law import judge as oracle
@@ -38,12 +38,12 @@ def is_spoken_of(spec: CheckedSpec) -> bool:
 
 
 def overturned(
-    dice: Dice, case: Case, fillings: int, judge: Callable[[Case], Report] = oracle
+    rng: Rng, case: Case, fillings: int, judge: Callable[[Case], Report] = oracle
 ) -> tuple[Mapping[str, Verdict], Case | None]:
     """The verdicts on a case, and a filling of what it lost that overturns one, if any was found.
 
     Args:
-        dice: draws what is filled in.
+        rng: draws what is filled in.
         case: of a specification that the law speaks of.
         fillings: so many are tried.
         judge: gives the verdicts.
@@ -52,7 +52,7 @@ def overturned(
     """
     before = judge(case).verdicts
     for _ in range(fillings):
-        filled = refilled(dice, case)
+        filled = refilled(rng, case)
         after = judge(filled).verdicts
         for name, verdict in before.items():
             green = verdict in (Verdict.PASS, Verdict.NOT_TRIGGERED)

@@ -10,7 +10,7 @@ from typing import Any
 from rvmon.spec.checked.formula import Binary, BinaryOp
 from rvmon.spec.checked.specification import CheckedSpec, Event, Requirement, Signal
 from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
-from rvmon.testing.dice import Dice, chance, pick
+from rvmon.testing.generate.rng import Rng, chance, pick
 from rvmon.trace.schema import Kind
 
 _SYNONYMS = {
@@ -75,22 +75,22 @@ def _requirement(requirement: Requirement) -> list[str]:
     return [*lines, f"  at end: {requirement.at_end}"]
 
 
-def scribbled(text: str, dice: Dice) -> str:
+def scribbled(text: str, rng: Rng) -> str:
     """The same specification with synonyms, other spaces, and comments wherever they may stand."""
     lines = []
     for line in text.split("\n"):
         words = []
         for word in _WORD.findall(line.strip()):
             if not word.isspace():
-                words.append(pick(dice, _SYNONYMS.get(word, (word,))))
-            elif chance(dice, 2):
-                words.append(pick(dice, (" # note\n   ", "\n  # own line\n ", "\n ")))
+                words.append(pick(rng, _SYNONYMS.get(word, (word,))))
+            elif chance(rng, 2):
+                words.append(pick(rng, (" # note\n   ", "\n  # own line\n ", "\n ")))
             else:
-                words.append(pick(dice, (" ", "  ", "\t")))
+                words.append(pick(rng, (" ", "  ", "\t")))
         indent = "" if not line.startswith(" ") else "   "
-        lines.append(indent + "".join(words) + ("  # remark" if chance(dice, 10) else ""))
-        if chance(dice, 10):
-            lines.append(pick(dice, ("", "# above", "  # below", "\n\n")))
+        lines.append(indent + "".join(words) + ("  # remark" if chance(rng, 10) else ""))
+        if chance(rng, 10):
+            lines.append(pick(rng, ("", "# above", "  # below", "\n\n")))
     return "\n".join(lines)
 
 

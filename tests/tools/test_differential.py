@@ -11,13 +11,12 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import UnaryOp
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences, frame_differences
+from rvmon.testing.compare import differences
 from rvmon.testing.drive import drive
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.health import expected_health, health_differences
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.law.walk import subformulas
 from rvmon.testing.show import show_case
-from rvmon.testing.walk import subformulas
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report, report_of
@@ -38,6 +37,8 @@ from tests.tools.differential import (
     decided_on_bound,
     disagreements,
 )
+from tests.tools.frame import frame_differences
+from tests.tools.health import expected_health, health_differences
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge, word
 from tests.tools.online import differences_after_end, online_differences

@@ -9,8 +9,8 @@ import pytest
 
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from tests.tools.differential import campaign
 
 pytestmark = pytest.mark.law

@@ -2,13 +2,13 @@
 
 import pytest
 
-from rvmon.monitor.robustness import RobustnessMonitor
+from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.compare import key_of
 from rvmon.testing.drive import feed
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict

@@ -77,9 +77,9 @@ class Diagrams:
             result = self._of(opened, leaf, level - 1, made)
         else:
             children = []
-            for cell in self.alphabet.cells[level]:
+            for truth in self.alphabet.truths[level]:
                 values = {
-                    atom: HOLDS if holds(sense, cell) else FAILS for atom, sense in read.items()
+                    atom: HOLDS if holds(sense, truth) else FAILS for atom, sense in read.items()
                 }
                 children.append(self._of(substitute(opened, values), leaf, level - 1, made))
             first = children[0]
@@ -143,7 +143,7 @@ class _Product:
         if known is None:
             lower = (
                 tuple(node.children[digit] if node.level == level else node for node in nodes)
-                for digit in range(len(self.alphabet.cells[level]))
+                for digit in range(len(self.alphabet.truths[level]))
             )
             children = tuple([self.tree(own, level - 1) for own in lower])
             known = self.made[key] = joined(self.alphabet.strides[level], children)

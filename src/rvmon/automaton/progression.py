@@ -124,10 +124,10 @@ class Progression:
         return target, tuple([t if source == NOW else anchors[source] for source in sources])
 
     def _edge(self, index: int, ages: list[int], letter: int) -> Edge:
-        cells = self.alphabet.cells_of(letter)
+        valuation = self.alphabet.valuation(letter)
 
         def read(literal: Literal) -> Residual:
-            return HOLDS if holds(literal.sense, cells[literal.proposition]) else FAILS
+            return HOLDS if holds(literal.sense, valuation[literal.proposition]) else FAILS
 
         try:
             reached = step(self._locations[index].residual, ages, read, MOST_CLAUSES)

@@ -106,7 +106,7 @@ def _as_run_takes_them(
 ) -> tuple[list[Sample], tuple[int, int] | None]:
     """The samples in order of time, and how many came too late, with the first one's instant."""
     from rvmon.cli.post_analysis import in_order
-    from rvmon.monitor.intake import Intake
+    from rvmon.monitor.inputs.intake import Intake
 
     if not spec.max_delay:
         return in_order(recording), None

@@ -14,7 +14,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled import CompiledSpec
+    from rvmon.monitor.compiled.specification import CompiledSpec
     from rvmon.session import Spec
 
 _CODE = re.compile(r"(RV|TA)\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)

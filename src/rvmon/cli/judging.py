@@ -14,7 +14,7 @@ from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
-from rvmon.monitor.missing import expect_names
+from rvmon.monitor.inputs.missing import expect_names
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec
@@ -22,7 +22,7 @@ from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
-    from rvmon.monitor.robustness_values import Measured
+    from rvmon.monitor.robustness.values import Measured
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -183,7 +183,7 @@ class _Meter:
     def told(self, report: Report) -> Report:
         """The report with a figure for each attempt."""
         self._found.extend(self._monitor.finish_ns(self._end))
-        from rvmon.monitor.robustness_values import margins_from
+        from rvmon.monitor.robustness.values import margins_from
 
         margins = margins_from(self._found)
         return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))

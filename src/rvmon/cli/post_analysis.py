@@ -202,7 +202,7 @@ def _goals(
     names: frozenset[str] | None,
     samples: Callable[[], Sequence[Sample]],
 ) -> Mapping[str, Verdict]:
-    from rvmon.monitor.goals import goal_verdicts, goals_as_requirements
+    from rvmon.verdict.cover_goals import goal_verdicts, goals_as_requirements
 
     goals = Spec(goals_as_requirements(spec.checked))
     if spec.checked.max_delay is None:

@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.explain.dissect import dissect
     from rvmon.explain.nearest_miss import nearest_miss
     from rvmon.loading import load
-    from rvmon.monitor.missing import expect_names
+    from rvmon.monitor.inputs.missing import expect_names
     from rvmon.trace.time import ticks_of_seconds
 
     if arguments.trace == "-":

@@ -64,7 +64,7 @@ class Horizon:
         return index < len(self.asked) and self.asked[index] <= right
 
 
-class Cell(ABC):
+class Operator(ABC):
     """One node while a trace goes by."""
 
     @abstractmethod
@@ -76,8 +76,8 @@ class Cell(ABC):
         """The same, independent from now on."""
 
 
-def cell_of(node: Node, *, thin: bool) -> Cell | None:
-    """A cell for a node; `None` for a leaf.
+def operator_of(node: Node, *, thin: bool) -> Operator | None:
+    """The operator of a node; `None` for a leaf.
 
     Args:
         node: of a plan.
@@ -135,7 +135,7 @@ class _Aligned:
                     queue.appendleft((right + 1, last, value))
 
 
-class _Junction(Cell):
+class _Junction(Operator):
     """All of its operands, or one of them."""
 
     def __init__(self, node: Junction, thin: bool) -> None:
@@ -159,7 +159,7 @@ class _Junction(Cell):
         return made
 
 
-class _Window(Cell):
+class _Window(Operator):
     """The extreme of the operand over a window, by a monotonic wedge.
 
     Attributes:
@@ -223,7 +223,7 @@ class _Window(Cell):
                 wedge.popleft()
 
 
-class _Shift(Cell):
+class _Shift(Operator):
     """The operand so many integers further on."""
 
     def __init__(self, node: Shift) -> None:
@@ -249,7 +249,7 @@ class _Shift(Cell):
         return replaced(made, last + 1, FAR, -INFINITE)
 
 
-class _Since(Cell):
+class _Since(Operator):
     """S(i) = max(meets(i), min(stays(i), S(i − 1))), or its dual."""
 
     def __init__(self, node: Sweep) -> None:
@@ -276,7 +276,7 @@ _Part = tuple[int, int, float, float, float, float]
 follows; and the same given what has followed."""
 
 
-class _Until(Cell):
+class _Until(Operator):
     """U(i) = max(meets(i), min(stays(i), U(i + 1))), or its dual.
 
     Of a stretch, U is what follows, kept between two bounds; so it is of several stretches at once.

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 
-from rvmon.dataflow.margin_nodes import Cell, Horizon, Rest, cell_of
+from rvmon.dataflow.margin_nodes import Horizon, Operator, Rest, operator_of
 from rvmon.dataflow.nodes import Junction, Plan, Sweep, Window, operands_of
 from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.positions import Positions
@@ -33,8 +33,8 @@ class Gauge:
         self.plan = plan
         self.horizon = Horizon(Positions(gap))
         thin = _asked_alone(plan)
-        self._cells: list[Cell | None] = [
-            cell_of(node, thin=place in thin) for place, node in enumerate(plan.nodes)
+        self._operators: list[Operator | None] = [
+            operator_of(node, thin=place in thin) for place, node in enumerate(plan.nodes)
         ]
         self._given = [-FAR - 1] * len(plan.nodes)
         """Per node, the integer up to which it is settled."""
@@ -50,7 +50,7 @@ class Gauge:
         made = copy(self)
         own = self.horizon
         made.horizon = Horizon(own.positions.copy(), own.now, own.reached, list(own.asked))
-        made._cells = [cell and cell.copy() for cell in self._cells]
+        made._operators = [operator and operator.copy() for operator in self._operators]
         made._given = list(self._given)
         return made
 
@@ -99,10 +99,12 @@ class Gauge:
         fresh: list[Steps] = [()] * len(self.plan.nodes)
         for (place, _), steps in zip(self.plan.leaves, leaves, strict=True):
             fresh[place] = steps
-        for place, (node, cell) in enumerate(zip(self.plan.nodes, self._cells, strict=True)):
-            if cell is not None:
+        for place, (node, operator) in enumerate(
+            zip(self.plan.nodes, self._operators, strict=True)
+        ):
+            if operator is not None:
                 operands = [fresh[operand] for operand in operands_of(node)]
-                fresh[place] = cell.take(operands, self.horizon)
+                fresh[place] = operator.take(operands, self.horizon)
             if fresh[place]:
                 self._given[place] = fresh[place][-1][1]
         return self._answers(fresh[-1])

@@ -11,7 +11,7 @@ from rvmon.analysis.subject import Conflict, Subject
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.explain.example import Budget, Example
 from rvmon.explain.search import Goal, shortest_examples
-from rvmon.monitor.compiled import CompiledSpec
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.verdict.verdict import Verdict
 
 CONFLICT_RUNS = 400

@@ -34,7 +34,7 @@ def findings_about(rule: Rule, text: str) -> tuple[Diagnostic, ...]:
     if rule.code not in analysis_rules():
         return tuple(found)
     from rvmon.explain.analysed import analyse
-    from rvmon.monitor.compiled import compile_spec
+    from rvmon.monitor.compiled.specification import compile_spec
 
     return analyse(compile_spec(checked), timelines=0).findings
 

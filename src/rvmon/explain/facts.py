@@ -6,7 +6,7 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.dataflow.graph import graph_of
 from rvmon.formula.horizon import horizon
 from rvmon.formula.state import State, StateOp
-from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.print.printer import format_duration
 
 Facts = dict[str, str]

@@ -13,7 +13,7 @@ from rvmon.explain.cubes import ANY, Cube, cubes_of
 from rvmon.formula.core import Core, Literal, Sense
 from rvmon.formula.residual import Clause
 from rvmon.formula.state import FALSE, TRUE, Shown, State
-from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.print.printer import format_duration, format_formula

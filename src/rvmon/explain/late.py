@@ -10,7 +10,7 @@ from rvmon.explain.state_truths import state_truths
 from rvmon.explain.states import state_of
 from rvmon.explain.truth_over_trace import positions_of, subformulas
 from rvmon.formula.factory import Factory
-from rvmon.monitor.instances import Instance
+from rvmon.monitor.attempts.instance import Instance
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement
 from rvmon.spec.checked.tense import has_future

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import Machine, Token
 from rvmon.explain.example import Example
-from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
-from rvmon.monitor.judge import Judge
-from rvmon.monitor.lane import Lane
-from rvmon.monitor.lanes import Lanes
-from rvmon.monitor.ledger import Ledger
-from rvmon.monitor.network_judge import NetworkJudge
+from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.attempts.machine_judge import MachineJudge
+from rvmon.monitor.attempts.network_judge import NetworkJudge
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.table import next_cut
 from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Sample
@@ -42,7 +43,7 @@ def play(
     end: int,
     remembered: frozenset[str],
 ) -> Played:
-    """Judge a short run.
+    """MachineJudge a short run.
 
     Args:
         compiled: the specification.
@@ -76,7 +77,7 @@ def _cuts(lanes: Lanes, end: int) -> Iterator[int]:
         yield lane.flow.next_change
     for judge in lanes.judges:
         for attempt in judge.attempts:
-            if isinstance(judge, Judge):
+            if isinstance(judge, MachineJudge):
                 for token in _tokens(attempt.token, attempt.better):
                     yield next_cut(judge.machine, token, end)
         if isinstance(judge, NetworkJudge):
@@ -94,7 +95,7 @@ def _situation(lanes: Lanes, end: int, remembered: frozenset[str]) -> Iterator[o
         yield tuple(judge.captured.items()) if judge.attempts else ()
         if isinstance(judge, NetworkJudge):
             yield judge.situation(end)
-        elif isinstance(judge, Judge):
+        elif isinstance(judge, MachineJudge):
             yield _standings(judge, end)
     slots = lanes.main.flow.inputs.slots
     for name in sorted(remembered):
@@ -102,7 +103,7 @@ def _situation(lanes: Lanes, end: int, remembered: frozenset[str]) -> Iterator[o
         yield (slot.value, slot.updates and slot.at - end, slot.before, slot.before_at - slot.at)
 
 
-def _standings(judge: Judge, end: int) -> object:
+def _standings(judge: MachineJudge, end: int) -> object:
     return frozenset(
         (
             _relative(judge.machine, attempt.token, end),

@@ -11,7 +11,8 @@ from rvmon.analysis.choices import SILENT, Choices, Silence, Valuation, choices_
 from rvmon.explain.example import Budget, Example, Found
 from rvmon.explain.play import play
 from rvmon.explain.tempo import small_step
-from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT

@@ -10,8 +10,8 @@ from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.dataflow.inputs import Inputs
 from rvmon.explain.spans import FOREVER, Spans, union
 from rvmon.formula.state import FALSE, TRUE, State
-from rvmon.monitor.instances import Instance, seen_by
-from rvmon.monitor.lane import Lane
+from rvmon.monitor.attempts.instance import Instance, seen_by
+from rvmon.monitor.attempts.lane import Lane
 from rvmon.readers.coalesce import updates_in
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.trace.sample import Sample, Scalar

@@ -14,7 +14,7 @@ from rvmon.formula.core import Literal, Sense
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import State
-from rvmon.monitor.instances import Instance
+from rvmon.monitor.attempts.instance import Instance
 from rvmon.spec.checked.formula import (
     Binary,
     Bound,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.errors import RvmonError
 from rvmon.explain.graph import graph_of
-from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.verdict import Verdict
 

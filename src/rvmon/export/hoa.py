@@ -15,7 +15,7 @@ from rvmon.errors import RvmonError
 from rvmon.explain.graph import proposition_texts
 from rvmon.explain.graph_text import quoted
 from rvmon.formula.state import FALSE, TRUE
-from rvmon.monitor.compiled import CompiledRequirement
+from rvmon.monitor.compiled.requirement import CompiledRequirement
 
 MOST_PROPOSITIONS = 12
 

@@ -23,7 +23,7 @@ from rvmon.formula.core import (
 from rvmon.formula.state import State
 
 
-class Cell(Enum):
+class TruthValue(Enum):
     """The value of a proposition as one run takes it: an unknown one in the worse or better way."""
 
     FALSE = 0
@@ -32,16 +32,16 @@ class Cell(Enum):
     UNKNOWN_OPTIMISTIC = 3
 
 
-_TRUE_CELLS = {
-    Sense.TRUE: frozenset({Cell.TRUE, Cell.UNKNOWN_OPTIMISTIC}),
-    Sense.FALSE: frozenset({Cell.FALSE, Cell.UNKNOWN_OPTIMISTIC}),
-    Sense.KNOWN_FALSE: frozenset({Cell.FALSE}),
+_TRUE_IN = {
+    Sense.TRUE: frozenset({TruthValue.TRUE, TruthValue.UNKNOWN_OPTIMISTIC}),
+    Sense.FALSE: frozenset({TruthValue.FALSE, TruthValue.UNKNOWN_OPTIMISTIC}),
+    Sense.KNOWN_FALSE: frozenset({TruthValue.FALSE}),
 }
 
 
-def holds(sense: Sense, cell: Cell) -> bool:
-    """Whether a literal of this sense is true where its proposition is in this cell."""
-    return cell in _TRUE_CELLS[sense]
+def holds(sense: Sense, truth: TruthValue) -> bool:
+    """Whether a literal of this sense is true where its proposition has this truth in a run."""
+    return truth in _TRUE_IN[sense]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +53,7 @@ class Alphabet:
 
     Attributes:
         propositions: in the order of their digits.
-        cells: per proposition and digit, a cell that stands for all that the formula cannot tell
-            from it.
+        truths: per proposition and digit, one of the truths that the formula cannot tell apart.
         strides: per proposition, the weight of its digit.
         pessimistic: per proposition, what FALSE, UNKNOWN and TRUE contribute.
         optimistic: the same with unknown taken the better way.
@@ -62,18 +61,18 @@ class Alphabet:
     """
 
     propositions: tuple[State, ...]
-    cells: tuple[tuple[Cell, ...], ...]
+    truths: tuple[tuple[TruthValue, ...], ...]
     strides: tuple[int, ...]
     pessimistic: tuple[tuple[int, int, int], ...]
     optimistic: tuple[tuple[int, int, int], ...]
     size: int
 
-    def cells_of(self, letter: int) -> dict[State, Cell]:
-        """What each proposition is in a letter."""
+    def valuation(self, letter: int) -> dict[State, TruthValue]:
+        """The truth of each proposition in a letter."""
         return {
-            proposition: cells[letter // stride % len(cells)]
-            for proposition, cells, stride in zip(
-                self.propositions, self.cells, self.strides, strict=True
+            proposition: truths[letter // stride % len(truths)]
+            for proposition, truths, stride in zip(
+                self.propositions, self.truths, self.strides, strict=True
             )
         }
 
@@ -88,18 +87,18 @@ def alphabet_of(formula: Core) -> Alphabet:
         senses.setdefault(literal.proposition, set()).add(literal.sense)
     propositions = tuple(sorted(senses, key=lambda state: state.id))
     stride = 1
-    strides, all_cells, pessimistic, optimistic = [], [], [], []
+    strides, all_truths, pessimistic, optimistic = [], [], [], []
     for proposition in propositions:
-        cells, digit = _digits(senses[proposition])
+        truths, digit = _digits(senses[proposition])
         strides.append(stride)
-        all_cells.append(cells)
-        low, high = digit[Cell.FALSE] * stride, digit[Cell.TRUE] * stride
-        pessimistic.append((low, digit[Cell.UNKNOWN_PESSIMISTIC] * stride, high))
-        optimistic.append((low, digit[Cell.UNKNOWN_OPTIMISTIC] * stride, high))
-        stride *= len(cells)
+        all_truths.append(truths)
+        low, high = digit[TruthValue.FALSE] * stride, digit[TruthValue.TRUE] * stride
+        pessimistic.append((low, digit[TruthValue.UNKNOWN_PESSIMISTIC] * stride, high))
+        optimistic.append((low, digit[TruthValue.UNKNOWN_OPTIMISTIC] * stride, high))
+        stride *= len(truths)
     return Alphabet(
         propositions,
-        tuple(all_cells),
+        tuple(all_truths),
         tuple(strides),
         tuple(pessimistic),
         tuple(optimistic),
@@ -107,19 +106,19 @@ def alphabet_of(formula: Core) -> Alphabet:
     )
 
 
-def _digits(senses: set[Sense]) -> tuple[tuple[Cell, ...], dict[Cell, int]]:
-    """One digit per set of cells that the senses cannot tell apart."""
+def _digits(senses: set[Sense]) -> tuple[tuple[TruthValue, ...], dict[TruthValue, int]]:
+    """One digit per set of truths that the senses cannot tell apart."""
     seen: dict[tuple[bool, ...], int] = {}
-    cells: list[Cell] = []
-    digit: dict[Cell, int] = {}
+    truths: list[TruthValue] = []
+    digit: dict[TruthValue, int] = {}
     ordered = sorted(senses, key=lambda sense: sense.value)
-    for cell in Cell:
-        look = tuple(holds(sense, cell) for sense in ordered)
+    for truth in TruthValue:
+        look = tuple(holds(sense, truth) for sense in ordered)
         if look not in seen:
-            seen[look] = len(cells)
-            cells.append(cell)
-        digit[cell] = seen[look]
-    return tuple(cells), digit
+            seen[look] = len(truths)
+            truths.append(truth)
+        digit[truth] = seen[look]
+    return tuple(truths), digit
 
 
 def literals(formula: Core) -> Iterator[Literal]:

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rvmon.monitor.build import build_monitor
-    from rvmon.monitor.compiled import CompiledRequirement
-    from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
-    from rvmon.monitor.monitor import Monitor
+    from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
+    from rvmon.monitor.online.monitor import Monitor
 
 __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "compile_spec"]
 
 # Recordings in columns are judged without a monitor: a name is imported when it is asked for.
 _HOMES = {
-    "CompiledRequirement": "rvmon.monitor.compiled",
-    "CompiledSpec": "rvmon.monitor.compiled_spec",
-    "Monitor": "rvmon.monitor.monitor",
+    "CompiledRequirement": "rvmon.monitor.compiled.requirement",
+    "CompiledSpec": "rvmon.monitor.compiled.specification",
+    "Monitor": "rvmon.monitor.online.monitor",
     "build_monitor": "rvmon.monitor.build",
-    "compile_spec": "rvmon.monitor.compiled_spec",
+    "compile_spec": "rvmon.monitor.compiled.specification",
 }
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
-from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.online.monitor import Monitor
 from rvmon.spec.checked.selection import requirements_asked
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rvmon.diagnostics.shown import shown_line
-from rvmon.monitor.compiled import CompileReport
+from rvmon.monitor.compiled.requirement import CompileReport
 from rvmon.report.plain_table import plain_table
 from rvmon.spec.print.printer import format_duration
 

@@ -13,7 +13,8 @@ from rvmon.explain.graph import graph_of
 from rvmon.explain.graph_text import graph_lines
 from rvmon.explain.search import difference_of, shortest_examples, verdict_of
 from rvmon.explain.words import requirement_in_words
-from rvmon.monitor.compiled import CompiledRequirement, CompiledSpec
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.report.example_text import picture_of
 from rvmon.spec.checked.formula import BoundAtom, Constant
 from rvmon.spec.checked.specification import Mode, Requirement

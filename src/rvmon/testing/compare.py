@@ -84,15 +84,3 @@ def differences(expected: Report, actual: Report) -> list[str]:
 def _show(report: Report, name: str) -> str:
     verdict = report.verdicts.get(name)
     return "none" if verdict is None else verdict.value
-
-
-def frame_differences(expected: Report, actual: Report) -> list[str]:
-    """One line per disagreement on where the trace begins and ends."""
-    return [
-        f"{what} of the trace: {wanted}, got {got}"
-        for what, wanted, got in (
-            ("origin", expected.origin, actual.origin),
-            ("end", expected.end, actual.end),
-        )
-        if wanted != got
-    ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import Any
@@ -13,15 +12,13 @@ from rvmon.codegen.python_file import python_file
 from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
-from rvmon.monitor.codegen_support import plan_alone
+from rvmon.monitor.c.monitor import CompiledMonitor
+from rvmon.monitor.c.recorded import report_of_records
+from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.engines.registry import EXPLAINING, HANDING_ON, engine_named
-from rvmon.monitor.online_c import CompiledMonitor
-from rvmon.monitor.recorded import report_of_records
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.drive import Monitored, OnlineMonitor
-from rvmon.testing.held_back import HeldBack
-from rvmon.testing.interrupt import Interrupted
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report, report_of
@@ -30,10 +27,6 @@ from rvmon.verdict.verdict import Verdict
 FORMS = (*EXPLAINING, "file", "c", "c rows")
 """The engines of `Spec.monitor` that give reasons; the Python file that runs alone; compiled C that
 is stepped, and fed rows."""
-
-
-NEXT, INTERRUPT = "next", "interrupt"
-"""Ways to drive an engine: samples in portions, settled by the next stamp; with snapshots."""
 
 
 class Compiler:
@@ -58,7 +51,7 @@ class Maker:
     """Makes monitors of one form; what is compiled for a specification serves the next case too.
 
     Args:
-        form: one of `FORMS`, perhaps followed by `+next` or `+interrupt`, or both.
+        form: one of `FORMS`.
         compiler: shared with other makers; default: its own.
 
     Raises:
@@ -66,15 +59,9 @@ class Maker:
     """
 
     def __init__(self, form: str, compiler: Compiler | None = None) -> None:
-        self.form, *ways = form.split("+")
-        driven = self.form in EXPLAINING or not ways
-        if self.form not in FORMS or not driven or {*ways} - {NEXT, INTERRUPT}:
-            raise RvmonError(
-                f"no form `{form}`: there are {', '.join(FORMS)}; "
-                f"{', '.join(EXPLAINING)} also with +{NEXT}, +{INTERRUPT}"
-            )
-        self.settle = "next" if NEXT in ways else "now"
-        self._interrupts = INTERRUPT in ways
+        if form not in FORMS:
+            raise RvmonError(f"no form `{form}`: there are {', '.join(FORMS)}")
+        self.form = form
         self._compile = compiler or Compiler()
         self._spec: CheckedSpec | None = None
         self._made: Any = None
@@ -89,7 +76,7 @@ class Maker:
             self._made, self._spec = self._compiled(case.spec), case.spec
         match self._made:
             case CompiledSpec() as compiled:
-                return self._driven(compiled, case)
+                return self.online(compiled, case)
             case BatchLibrary() as library:
                 return _Compiled(library, case)
             case OnlineLibrary() as library:
@@ -99,11 +86,9 @@ class Maker:
             case _:
                 return None
 
-    def _driven(self, compiled: CompiledSpec, case: Case) -> OnlineMonitor:
-        dice = random.Random(len(case.actions))  # noqa: S311 - repeatable
-        monitor = build_monitor(compiled, engine=self.form, settle=self.settle, sources=case.names)
-        driven = Interrupted(monitor, dice) if self._interrupts else monitor
-        return driven if self.settle == "now" else HeldBack(driven, case.spec, dice)
+    def online(self, compiled: CompiledSpec, case: Case) -> OnlineMonitor:
+        """A monitor of this process, for an engine of `Spec.monitor`."""
+        return build_monitor(compiled, engine=self.form, sources=case.names)
 
     def _compiled(
         self, spec: CheckedSpec

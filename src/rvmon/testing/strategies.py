@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.generate_formula import Shape, formula
-from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.generate_trace import TraceProfile, random_trace
+from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.show import show_case
 
 _ANY_SPEC = Profile()
@@ -24,7 +24,7 @@ _ANY_FORMULA = Shape()
 
 
 class _Drawn:
-    """Dice that Hypothesis throws."""
+    """Rng that Hypothesis throws."""
 
     def __init__(self, draw: Callable[[st.SearchStrategy[int]], int]) -> None:
         self._draw = draw
@@ -81,8 +81,8 @@ def cases(
         profile: of the specs.
         trace_profile: of the traces.
     """
-    dice = _Drawn(draw)
-    return _noted(random_trace(dice, random_spec(dice, profile), trace_profile))
+    rng = _Drawn(draw)
+    return _noted(random_trace(rng, random_spec(rng, profile), trace_profile))
 
 
 def _noted(case: Case) -> Case:

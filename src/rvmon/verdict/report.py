@@ -159,8 +159,8 @@ def report_of(
         attempts: of these requirements, in any order.
         dropped: by requirement, how many attempts more there were, by verdict.
         health: findings about the input.
-        untold: the ids of those whose trigger was never true or false: without attempts, they are
-            inconclusive.
+        untold: the ids of those of which attempts may be missing, as their trigger was never true
+            or false: they are inconclusive, unless one failed.
         trace: name of the recording.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the trace, ticks.

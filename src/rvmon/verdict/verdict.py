@@ -27,8 +27,8 @@ def fold(verdicts: Iterable[Verdict], *, told: bool = True) -> Verdict:
 
     Args:
         verdicts: of its attempts.
-        told: whether its trigger was ever true or false; if not, that there are no attempts says
-            nothing.
+        told: whether all attempts that it may have are among these; if not, as when its trigger
+            was never true or false, only that one failed says something.
 
     Source: SEMANTICS, section 3.
 
@@ -36,7 +36,8 @@ def fold(verdicts: Iterable[Verdict], *, told: bool = True) -> Verdict:
     ('I', 'NT')
     """
     seen = set(verdicts)
-    for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
-        if verdict in seen:
-            return verdict
-    return Verdict.NOT_TRIGGERED if told else Verdict.INCONCLUSIVE
+    if Verdict.FAIL in seen:
+        return Verdict.FAIL
+    if Verdict.INCONCLUSIVE in seen or not told:
+        return Verdict.INCONCLUSIVE
+    return Verdict.PASS if Verdict.PASS in seen else Verdict.NOT_TRIGGERED

@@ -15,8 +15,8 @@ from rvmon.explain.example import Budget
 from rvmon.explain.search import shortest_examples
 from rvmon.monitor import compile_spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.generate_trace import TraceProfile, random_trace
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec
 
@@ -118,17 +118,17 @@ def test_a_clock_that_is_started_at_every_position(time, owed, passes):
 @pytest.mark.parametrize("model", list(TimeModel))
 def test_what_cannot_be_is_never_seen(model):
     """Random requirements: none passes, or fails, of which that was ruled out."""
-    dice = random.Random(model.value)
+    rng = random.Random(model.value)
     claims = 0
     for _ in range(60):
-        spec = random_spec(dice, Profile(time=model, requirements=1, depth=3, numbers=False))
+        spec = random_spec(rng, Profile(time=model, requirements=1, depth=3, numbers=False))
         [one] = compile_spec(spec).requirements.values()
         can = possible(spec, one.obligation.trigger, one.automaton, one.requirement.at_end)
         ruled_out = {"P"} if can.pass_ is False else set()
         ruled_out |= {"F"} if can.fail is False else set()
         claims += len(ruled_out)
         for _ in range(15 if ruled_out else 0):
-            case = random_trace(dice, spec, TraceProfile())
+            case = random_trace(rng, spec, TraceProfile())
             report = evaluate(spec, case.samples, advances=case.advances, end=case.end)
             seen = {attempt.verdict.value for attempt in report.attempts}
             assert not seen & ruled_out, (show_spec(spec), case)
@@ -265,10 +265,10 @@ def test_implications(text, implied):
 @pytest.mark.parametrize("seed", range(2))
 def test_claims_about_random_specs_are_not_refuted(seed):
     """Random requirements: no run meets a conflict, or fails what is implied alone."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     claims = 0
     for _ in range(40):
-        spec = _random_responses(dice)
+        spec = _random_responses(rng)
         compiled = compile_spec(spec)
         found = analyse(compiled, seconds=math.inf, timelines=0).examination
         for conflict in found.conflicts:
@@ -290,25 +290,25 @@ def test_claims_about_random_specs_are_not_refuted(seed):
     assert claims > 5
 
 
-def _random_responses(dice):
+def _random_responses(rng):
     """Three random requirements over two signals and two events, with windows of a few ticks."""
     literals = [build.p, build.q, build.f, build.no(build.p), build.no(build.q), build.no(build.f)]
     triggers = [build.e, build.f, build.two(build.e, "and", build.p), build.start]
 
     def owed():
-        low = dice.choice([0, 0, 0, 1, 2])
-        high = low + dice.randint(0, 3)
-        operator = dice.choice([build.eventually, build.always, build.always])
-        if dice.random() < 0.2:
+        low = rng.choice([0, 0, 0, 1, 2])
+        high = low + rng.randint(0, 3)
+        operator = rng.choice([build.eventually, build.always, build.always])
+        if rng.random() < 0.2:
             inner = build.always if operator is build.eventually else build.eventually
-            return operator(inner(dice.choice(literals), 0, dice.randint(1, 2)), low, high)
-        if dice.random() < 0.25:
-            return build.two(dice.choice(literals), "U", dice.choice(literals), low, high)
-        return operator(dice.choice(literals), low, high)
+            return operator(inner(rng.choice(literals), 0, rng.randint(1, 2)), low, high)
+        if rng.random() < 0.25:
+            return build.two(rng.choice(literals), "U", rng.choice(literals), low, high)
+        return operator(rng.choice(literals), low, high)
 
     return build.spec_of(
         *(
-            build.requirement(owed(), upon=dice.choice(triggers), name=f"R{number}")
+            build.requirement(owed(), upon=rng.choice(triggers), name=f"R{number}")
             for number in (1, 2, 3)
         )
     )

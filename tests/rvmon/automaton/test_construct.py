@@ -143,12 +143,12 @@ def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
     assert alphabet.size == 2**18
     assert isinstance(automaton.class_of, LetterDiagram)
     assert automaton.classes == 19
-    dice = Random(1)
+    rng = Random(1)
     table, worked_out = TableMachine(automaton), Progression(owed, alphabet)
     for _ in range(40):
         tokens = table.start, worked_out.start
         for t in range(20):
-            letter = 1 << dice.randrange(18) if dice.random() < 0.1 else 0
+            letter = 1 << rng.randrange(18) if rng.random() < 0.1 else 0
             tokens = table.step(tokens[0], t, letter), worked_out.step(tokens[1], t, letter)
             decided = [token[0] if token[0] <= PASSED else None for token in tokens]
             assert decided[0] == decided[1]

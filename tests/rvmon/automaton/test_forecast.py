@@ -12,8 +12,8 @@ from tests.tools.ltl3 import Tableau, unrolled
 from rvmon import loads
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision
@@ -152,14 +152,14 @@ def test_forecasts_with_windows_are_those_of_the_tableau(engine):
     """Where every tick is a position, windows are nests of `X`; hardly a forecast is missed."""
     given = missed = 0
     for seed in range(30):
-        dice = random.Random(f"windows/{seed}")
-        formula = random_mtl(dice, dice.randint(1, 3))
+        rng = random.Random(f"windows/{seed}")
+        formula = random_mtl(rng, rng.randint(1, 3))
         tableau = Tableau.of(unrolled(formula), 7)
         spec = Spec(spec_of(requirement(formula, upon=start), time=TimeModel.HELD))
         if tableau is None:
             continue
         for _ in range(6):
-            word = [frozenset(n for n in "pqr" if dice.random() < 0.5) for _ in range(6)]
+            word = [frozenset(n for n in "pqr" if rng.random() < 0.5) for _ in range(6)]
             monitor = spec.monitor(engine=engine)
             for t, letter in enumerate(word):
                 if monitor.step_ns(t, {name: name in letter for name in "pqr"}):

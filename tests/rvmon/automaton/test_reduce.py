@@ -14,8 +14,8 @@ from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, UNKNOWN
-from rvmon.monitor.obligation_words import Words
-from rvmon.testing.generate_formula import Shape
+from rvmon.monitor.reasons.obligation_words import Words
+from rvmon.testing.generate.formula import Shape
 from rvmon.testing.strategies import formulas
 
 

@@ -48,9 +48,9 @@ def test_what_is_written_runs_at_once(name, tmp_path, monkeypatch, capsys):
 @pytest.mark.slow
 def test_random_recordings_run_at_once(tmp_path):
     """Random CSV recordings: the starter meets its own recording."""
-    dice = random.Random(5)
+    rng = random.Random(5)
     for number in range(60):
-        columns = [_random_column(dice, 30) for _ in range(dice.randint(1, 5))]
+        columns = [_random_column(rng, 30) for _ in range(rng.randint(1, 5))]
         names = [f"c{index}" for index in range(len(columns))]
         rows = [
             f"{t * 0.1:.1f},{','.join(cells)}" for t, cells in enumerate(zip(*columns, strict=True))
@@ -63,15 +63,15 @@ def test_random_recordings_run_at_once(tmp_path):
         assert "F" not in {verdict.value for verdict in report.verdicts.values()}, path.read_text()
 
 
-def _random_column(dice, length):
-    kind = dice.choice(["bool", "sparse", "int", "real", "label", "spike"])
+def _random_column(rng, length):
+    kind = rng.choice(["bool", "sparse", "int", "real", "label", "spike"])
     make = {
-        "bool": lambda: dice.choice("01"),
-        "sparse": lambda: dice.choice(["", "", "", "1"]),
-        "int": lambda: str(dice.randint(-5, 5)),
-        "real": lambda: dice.choice(["", f"{dice.uniform(-1, 1):.3f}"]),
-        "label": lambda: dice.choice(["red", "green", "start"]),
-        "spike": lambda: "1" if dice.random() < 0.05 else "0",
+        "bool": lambda: rng.choice("01"),
+        "sparse": lambda: rng.choice(["", "", "", "1"]),
+        "int": lambda: str(rng.randint(-5, 5)),
+        "real": lambda: rng.choice(["", f"{rng.uniform(-1, 1):.3f}"]),
+        "label": lambda: rng.choice(["red", "green", "start"]),
+        "spike": lambda: "1" if rng.random() < 0.05 else "0",
     }[kind]
     cells = [make() for _ in range(length)]
     return cells if any(cells) else ["1", *cells[1:]]

@@ -36,15 +36,15 @@ SILENT = {
 
 def rows(seed: int) -> list[dict]:
     """A plain recording in which few rows change something."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     t, row, made = 5_000_000_000, {"p": False, "q": True, "x": 0.5, "go": False}, []
     for _ in range(400):
-        row = {**row, "go": dice.random() < 0.03}
-        if dice.random() < 0.2:
-            row["p"], row["q"] = dice.random() < 0.5, dice.random() < 0.5
-            row["x"] = dice.choice([0.5, 1.5, -3.0])
+        row = {**row, "go": rng.random() < 0.03}
+        if rng.random() < 0.2:
+            row["p"], row["q"] = rng.random() < 0.5, rng.random() < 0.5
+            row["x"] = rng.choice([0.5, 1.5, -3.0])
         made.append({"t_ns": t, **row})
-        t += dice.choice([1, 70_000_000, 800_000_000])
+        t += rng.choice([1, 70_000_000, 800_000_000])
     return made
 
 

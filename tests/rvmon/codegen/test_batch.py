@@ -14,10 +14,10 @@ import rvmon
 from rvmon.codegen.c_build import built
 from rvmon.monitor import compile_spec
 from rvmon.monitor.columns import evaluate as arrays
-from rvmon.monitor.columns import rows
+from rvmon.monitor.engines import row_judge
 from rvmon.testing.compare import differences
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 SPEC = """
 spec watch "A base"
@@ -47,18 +47,18 @@ requirement R5 "e"
 
 def recording(seed: int, rows: int = 3000) -> dict[str, np.ndarray]:
     """Random walks at 20 Hz with gaps, jitter and unknown values."""
-    dice = np.random.default_rng(seed)
-    t = np.cumsum(dice.choice([0.05, 0.0499999995, 0.6, 3e-9], rows, p=[0.6, 0.3, 0.05, 0.05]))
-    speed = np.abs(np.cumsum(dice.normal(0, 0.02, rows)))
-    speed[dice.random(rows) < 0.01] = np.nan
+    rng = np.random.default_rng(seed)
+    t = np.cumsum(rng.choice([0.05, 0.0499999995, 0.6, 3e-9], rows, p=[0.6, 0.3, 0.05, 0.05]))
+    speed = np.abs(np.cumsum(rng.normal(0, 0.02, rows)))
+    speed[rng.random(rows) < 0.01] = np.nan
     return {
         "t": t,
-        "p": np.repeat(dice.random(rows // 10 + 1) < 0.5, 10)[:rows],
+        "p": np.repeat(rng.random(rows // 10 + 1) < 0.5, 10)[:rows],
         "speed": speed,
-        "load": np.round(dice.random(rows), 1),
-        "count": np.repeat(dice.integers(0, 5, rows // 7 + 1), 7)[:rows],
-        "stop": dice.random(rows) < 0.01,
-        "go": dice.random(rows) < 0.05,
+        "load": np.round(rng.random(rows), 1),
+        "count": np.repeat(rng.integers(0, 5, rows // 7 + 1), 7)[:rows],
+        "stop": rng.random(rows) < 0.01,
+        "go": rng.random(rows) < 0.05,
         "unheard": np.zeros(rows),
     }
 
@@ -74,7 +74,7 @@ def one_by_one(spec: rvmon.Spec, columns: dict[str, np.ndarray]) -> rvmon.Report
 def test_the_report_is_that_of_the_samples(time, extra, monkeypatch):
     """Verdicts, records, reasons and health are the same, whatever rows are passed over."""
     monkeypatch.setattr(arrays, "CHUNK", 517)
-    monkeypatch.setattr(rows, "CHUNK", 131)
+    monkeypatch.setattr(row_judge, "CHUNK", 131)
     spec = rvmon.loads(SPEC.format(time=time, extra=extra))
     columns = recording(3)
     slow, fast = one_by_one(spec, columns), spec.evaluate(columns)
@@ -92,9 +92,9 @@ def test_most_rows_are_passed_over(monkeypatch):
     columns |= {"stop": np.zeros(3000, bool), "go": columns["t"] < 0, "count": np.zeros(3000, int)}
     columns["speed"] = np.linspace(0.3, 0.4, 3000)
     taken = []
-    real = rows._rows_that_matter
+    real = row_judge._rows_that_matter
     monkeypatch.setattr(
-        rows, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
+        row_judge, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
     )
     report = spec.evaluate(columns, engine="automaton")
     assert report == one_by_one(spec, columns)
@@ -103,9 +103,9 @@ def test_most_rows_are_passed_over(monkeypatch):
 
 def test_times_are_rounded_as_everywhere():
     """Seconds become ticks one rounding at a time, halves to the even one."""
-    dice = np.random.default_rng(5)
+    rng = np.random.default_rng(5)
     seconds = np.concatenate(
-        [dice.random(2000) * 1e9, dice.random(2000), [0.5e-9, 1.5e-9, 2.5e-9, -0.5e-9, 4e6 + 0.3]]
+        [rng.random(2000) * 1e9, rng.random(2000), [0.5e-9, 1.5e-9, 2.5e-9, -0.5e-9, 4e6 + 0.3]]
     )
     from rvmon.readers.ticks import ticks_of_column
     from rvmon.trace.stamps import stamps_of

@@ -17,12 +17,12 @@ MODES = ("idle", "stopped")
 
 def rows(seed: int):
     """Random rows: decimal time, and text by column."""
-    dice = random.Random(seed)
-    t = dice.choice([0, 1_700_000_000 * 10**9, -5 * 10**9])
+    rng = random.Random(seed)
+    t = rng.choice([0, 1_700_000_000 * 10**9, -5 * 10**9])
     row = None
     for _ in range(400):
-        t += dice.choice([0, 1, 50_000_000, 123_456_789, 900_000_000])
-        if row is not None and dice.random() < 0.4:
+        t += rng.choice([0, 1, 50_000_000, 123_456_789, 900_000_000])
+        if row is not None and rng.random() < 0.4:
             yield t, row
             continue
         row = dict.fromkeys(COLUMNS, "")
@@ -34,12 +34,12 @@ def rows(seed: int):
             ("halt", ("1", "", "False")),
             ("x", ("what, ever", 'so "so"')),
         ]:
-            if dice.random() < 0.4:
-                row[name] = dice.choice(values)
-        if dice.random() < 0.2:
-            row["pick.id"] = dice.choice(["3", "4"])
-            row["pick.force"] = dice.choice(["4.5", "4.75", "nan", ""])
-            row["pick"] = dice.choice(["", "1", "0"])
+            if rng.random() < 0.4:
+                row[name] = rng.choice(values)
+        if rng.random() < 0.2:
+            row["pick.id"] = rng.choice(["3", "4"])
+            row["pick.force"] = rng.choice(["4.5", "4.75", "nan", ""])
+            row["pick"] = rng.choice(["", "1", "0"])
         yield t, row
 
 
@@ -142,15 +142,15 @@ def test_it_says_what_rvmon_run_says(program, tmp_path, capsys, ending, text, se
 
 def test_lines_that_say_what_earlier_ones_said(program, tmp_path, capsys):
     """Few values, again and again, also at one instant: the same from all that is read."""
-    dice = random.Random(7)
+    rng = random.Random(7)
     names = ["open_door", "mode", "parts", "halt"]
     csv, jsonl, packed = ["t_ns," + ",".join(names)], [], b"rvmonbin" + struct.pack("=I", 4)
     packed += b"".join(struct.pack("=I", len(name)) + name.encode() for name in names)
     t = 0
     for _ in range(2000):
-        t += dice.choice([0, 1, 50_000_000, 700_000_000, 1_000_000_000])
-        door, parts = dice.choice([(0, None), (1, None), (0, 2), (1, 2), (None, 1), (None, None)])
-        halt = 1 if dice.random() < 0.05 else None
+        t += rng.choice([0, 1, 50_000_000, 700_000_000, 1_000_000_000])
+        door, parts = rng.choice([(0, None), (1, None), (0, 2), (1, 2), (None, 1), (None, None)])
+        halt = 1 if rng.random() < 0.05 else None
         cells = [door, None, parts, halt]
         csv.append(f"{t}," + ",".join("" if cell is None else str(cell) for cell in cells))
         entry = {"t_ns": t} | ({"open_door": bool(door)} if door is not None else {})

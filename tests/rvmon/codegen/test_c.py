@@ -13,8 +13,8 @@ from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_program import built_program, program_source
 from rvmon.codegen.c_source import c_files
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 pytestmark = pytest.mark.compiler
 

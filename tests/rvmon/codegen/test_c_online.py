@@ -52,7 +52,7 @@ import sys
 import rvmon
 from pathlib import Path
 spec = rvmon.loads(Path("spec.rv").read_text())
-dice = random.Random(1)
+rng = random.Random(1)
 odd = [None, float("nan"), 7, 1 << 61, "red", "none", {"k": 3, "where": "left"}, {"k": None}, {},
        {"z": 1}, (), ({"k": 1},), [], True, False, 0.5, object(), b"red"]
 names = ["p", "q", "x", "n", "mode", "e", "f", "z", 3]
@@ -61,9 +61,9 @@ kept, refused = [], 0
 for run in range(3):
     t = 0
     for row in range(3000):
-        t += dice.choice([1, 10**8, 10**9, -1])
-        count = dice.randint(0, 12)
-        values = {dice.choice(names): dice.choice(odd) for _ in range(count)}
+        t += rng.choice([1, 10**8, 10**9, -1])
+        count = rng.randint(0, 12)
+        values = {rng.choice(names): rng.choice(odd) for _ in range(count)}
         try:
             kept += monitor.step_ns(t, values)
         except rvmon.RvmonError:

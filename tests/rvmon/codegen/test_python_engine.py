@@ -8,8 +8,8 @@ from tests.tools.differential import campaign
 import rvmon
 from rvmon.codegen import python_nodes, python_visit
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 TEXT = """
 spec door "A door"

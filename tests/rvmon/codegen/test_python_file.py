@@ -12,8 +12,8 @@ import rvmon
 from rvmon.cli import main
 from rvmon.codegen.python_file import python_file
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 SPEC = """
 spec door "A door"

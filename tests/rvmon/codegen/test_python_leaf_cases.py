@@ -8,7 +8,7 @@ import rvmon
 from rvmon.codegen import python_leaf_cases
 from rvmon.errors import TraceError
 from rvmon.runtime.unit import Unit, closures
-from rvmon.testing.generate_formula import Shape, formula
+from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.show import show
 from rvmon.trace.time import TIME_LIMIT
 
@@ -18,17 +18,17 @@ SIGNALS = ("p", "q", "r")
 SHAPE = Shape(future=False, numbers=False, events=False)
 
 
-def many(dice, time, count):
+def many(rng, time, count):
     """A specification of so many past formulas, and samples of which each brings a new value."""
     signals = [f"signal {name} : bool" for name in SIGNALS]
-    texts = [f"requirement R{n}\n  always ({show(formula(dice, SHAPE, 3))})" for n in range(count)]
+    texts = [f"requirement R{n}\n  always ({show(formula(rng, SHAPE, 3))})" for n in range(count)]
     samples = [(0, dict.fromkeys(SIGNALS, False))]
     values = dict(samples[0][1])
     for _ in range(40):
-        t = samples[-1][0] + dice.choice((1, 1, 1, 2, 3, 7))
-        name = dice.choice(SIGNALS)
-        values[name] = None if dice.random() < 0.03 else not values[name]
-        samples.append((t, dict(values) if dice.random() < 0.5 else {name: values[name]}))
+        t = samples[-1][0] + rng.choice((1, 1, 1, 2, 3, 7))
+        name = rng.choice(SIGNALS)
+        values[name] = None if rng.random() < 0.03 else not values[name]
+        samples.append((t, dict(values) if rng.random() < 0.5 else {name: values[name]}))
     return "\n".join(["spec many", f"time {time}", *signals, *texts]), samples
 
 
@@ -49,8 +49,8 @@ def test_they_judge_as_tables_do(time, count, monkeypatch):
         Unit, "meets", lambda unit, t, cone: met.add(found := meets(unit, t, cone)) or found
     )
     for seed in range(25):
-        dice = random.Random(f"{time}/{count}/{seed}")
-        text, samples = many(dice, time, count)
+        rng = random.Random(f"{time}/{count}/{seed}")
+        text, samples = many(rng, time, count)
         spec = rvmon.loads(text)
         assert judged(spec, samples, "python") == judged(spec, samples, "automaton"), text
     assert met == {False, True}

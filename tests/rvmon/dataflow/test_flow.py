@@ -109,12 +109,12 @@ def test_an_update_without_effect_changes_no_node():
 @pytest.mark.parametrize(("low", "high"), [(0, 1_000), (700, 1_000), (999, 1_000), (5, None)])
 def test_the_memory_of_a_window_is_bounded(low, high):
     """Stretches are merged: their number depends on the window's proportions, not on samples."""
-    dice = random.Random(1)
+    rng = random.Random(1)
     node = Since(low, high, 1)
     t, most = 0, 0
     for _ in range(3_000):
-        t += dice.randint(2, 5)
-        node.step(t, t - 1, TRUE, dice.choice((FALSE, UNKNOWN, TRUE)))
+        t += rng.randint(2, 5)
+        node.step(t, t - 1, TRUE, rng.choice((FALSE, UNKNOWN, TRUE)))
         most = max(most, len(node.runs), len(node.better.runs) if node.better else 0)
     width = None if high is None else high - low
     assert most <= (2 if width is None else low / max(width, 1) + 3)

@@ -17,8 +17,8 @@ from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.scale import in_units, scaled
 
 SECOND = 10**9
@@ -140,7 +140,7 @@ def test_memory_is_bounded_by_the_window():
 def calls_per_change(low, high, time):
     """How many functions are called for a change, once the window is full."""
     monitor = spec_of(f"whenever a then F[{low}, {high}] b", time).monitor(engine="network")
-    dice = random.Random(1)
+    rng = random.Random(1)
     count, changes = 0, 60
 
     def hear(frame, event, _):
@@ -149,7 +149,7 @@ def calls_per_change(low, high, time):
 
     values = {"a": False, "b": False}
     for k in range(300 + changes):
-        name = dice.choice("ab")
+        name = rng.choice("ab")
         values[name] = not values[name]
         if k == 300:
             sys.setprofile(hear)
@@ -183,11 +183,11 @@ def test_deadlines_of_records_are_those_of_automata(time):
     """What is noted of a decision does not depend on who made it."""
     noted = 0
     for seed in range(70):
-        dice = random.Random(f"deadlines/{seed}")
-        formula = random_mtl(dice, 2)
+        rng = random.Random(f"deadlines/{seed}")
+        formula = random_mtl(rng, 2)
         spec = Spec(build.spec_of(build.requirement(formula, upon=build.start), time=time))
-        stamps = list(accumulate(dice.choice((1, 1, 2, 3, 5)) for _ in range(10)))
-        samples = [(t, {name: dice.random() < 0.5 for name in "pqr"}) for t in stamps]
+        stamps = list(accumulate(rng.choice((1, 1, 2, 3, 5)) for _ in range(10)))
+        samples = [(t, {name: rng.random() < 0.5 for name in "pqr"}) for t in stamps]
         found = []
         for engine in ("network", "automaton"):
             monitor = spec.monitor(engine=engine)

@@ -27,14 +27,14 @@ LAST = 25
 CASES = range(150)
 
 
-def random_known(dice):
+def random_known(rng):
     """Where something is true and where false, on 0 … LAST, with gaps."""
     true, false = [], []
     left = 0
     while left <= LAST:
-        right = min(LAST, left + dice.randint(0, 4))
-        line = dice.choice([(PAST, 0), (dice.randint(-10, 30), 0), (dice.choice([1, 4, 9]), 2)])
-        kind = dice.random()
+        right = min(LAST, left + rng.randint(0, 4))
+        line = rng.choice([(PAST, 0), (rng.randint(-10, 30), 0), (rng.choice([1, 4, 9]), 2)])
+        kind = rng.random()
         if kind < 0.8:
             append(true if kind < 0.4 else false, left, right, *line)
         left = right + 1
@@ -50,9 +50,9 @@ def at(pieces, position):
 @pytest.mark.parametrize("seed", CASES)
 def test_points(seed):
     """Minima, maxima, shifts and limits are what they are at each position."""
-    dice = random.Random(seed)
-    one, other = random_known(dice)[0], random_known(dice)[0]
-    offset, first, last = dice.randint(-5, 5), dice.randint(0, 10), dice.randint(4, 20)
+    rng = random.Random(seed)
+    one, other = random_known(rng)[0], random_known(rng)[0]
+    offset, first, last = rng.randint(-5, 5), rng.randint(0, 10), rng.randint(4, 20)
     assert all(left <= right for left, right, _, _ in clip(one, first, last))
     for i in range(-8, LAST + 9):
         assert at(soonest(one, other), i) == min(at(one, i), at(other, i))
@@ -68,9 +68,9 @@ def test_points(seed):
 @pytest.mark.parametrize("seed", CASES)
 def test_what_is_known_stays_and_the_rest_is_taken_out(seed):
     """Of a stretch what is not known at a stamp goes, and can be put back; the rest is settled."""
-    dice = random.Random(seed)
-    known = random_known(dice)
-    first, last, limit = dice.randint(-2, 10), dice.randint(10, LAST + 2), dice.randint(-5, 40)
+    rng = random.Random(seed)
+    known = random_known(rng)
+    first, last, limit = rng.randint(-2, 10), rng.randint(10, LAST + 2), rng.randint(-5, 40)
     left = [list(side) for side in known]
     gone = [retract(side, (first, last), limit) for side in left]
     free = gaps(left, (first, last))
@@ -96,10 +96,10 @@ def test_what_is_known_stays_and_the_rest_is_taken_out(seed):
 @pytest.mark.parametrize("seed", CASES)
 def test_windows(seed):
     """A window knows of some as of the first, of all as of the last."""
-    dice = random.Random(seed)
-    pieces = random_known(dice)[0]
-    low = dice.randint(-6, 4)
-    high = low + dice.randint(0, 7)
+    rng = random.Random(seed)
+    pieces = random_known(rng)[0]
+    low = rng.randint(-6, 4)
+    high = low + rng.randint(0, 7)
     some, every = some_of_window(pieces, low, high), all_of_window(pieces, low, high)
     for i in range(-12, LAST + 12):
         stamps = [at(pieces, j) for j in range(i + low, i + high + 1)]
@@ -124,10 +124,10 @@ def step(left, right, k, true, false):
 @pytest.mark.parametrize("seed", CASES)
 def test_sweeps(seed):
     """`until` and `since` are what their recursion gives, on any stretch, from any edge."""
-    dice = random.Random(seed)
-    left, right = random_known(dice), random_known(dice)
-    edge = dice.choice([None, (True, 12), (False, 7), (False, PAST)])
-    first, last = dice.randint(0, 8), dice.randint(10, LAST)
+    rng = random.Random(seed)
+    left, right = random_known(rng), random_known(rng)
+    edge = rng.choice([None, (True, 12), (False, 7), (False, PAST)])
+    first, last = rng.randint(0, 8), rng.randint(10, LAST)
     outside = (
         edge[1] if edge and edge[0] else NEVER,
         edge[1] if edge and not edge[0] else NEVER,

@@ -13,13 +13,13 @@ LAST = 25
 @pytest.mark.parametrize("seed", range(60))
 def test_a_stretch_is_as_long_as_nothing_changes(seed):
     """All its integers are in the same pieces, and those beside it are not."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     known = ([], [])
-    left = dice.randint(0, 5)
+    left = rng.randint(0, 5)
     while left <= LAST:
-        right = left + dice.randint(0, 4)
-        if dice.random() < 0.7:
-            append(known[dice.random() < 0.5], left, right, dice.choice([PAST, 3, 8]), 0)
+        right = left + rng.randint(0, 4)
+        if rng.random() < 0.7:
+            append(known[rng.random() < 0.5], left, right, rng.choice([PAST, 3, 8]), 0)
         left = right + 1
 
     def pieces_at(integer):

@@ -10,12 +10,12 @@ from rvmon.explain.spans import both, outside, union, until
 from rvmon.explain.truth_over_trace import Eye, subformulas
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.generate_trace import TraceProfile, random_trace
-from rvmon.testing.kleene import Truth
-from rvmon.testing.sample_words import word_of
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.law.kleene import Truth
+from rvmon.testing.law.sample_words import word_of
+from rvmon.testing.law.truths import Truths
 from rvmon.testing.show import show_case
-from rvmon.testing.truths import Truths
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
@@ -32,11 +32,11 @@ def ticks(spans):
 @pytest.mark.parametrize("seed", range(4))
 def test_subformulas_have_the_truth_of_the_oracle(time, seed):
     """At every position of a random recording, for every subformula of a random requirement."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     compared = set()
     for _ in range(25):
-        spec = random_spec(dice, Profile(**{**_fields(PROFILE), "time": time}))
-        case = random_trace(dice, spec, TraceProfile(samples=6, span=14, advances=False))
+        spec = random_spec(rng, Profile(**{**_fields(PROFILE), "time": time}))
+        case = random_trace(rng, spec, TraceProfile(samples=6, span=14, advances=False))
         samples = [action for action in case.actions if isinstance(action, Sample)]
         if not samples:
             continue
@@ -71,10 +71,10 @@ def _shown(sure, may, t):
 @pytest.mark.parametrize("seed", range(3))
 def test_spans_are_sets(seed):
     """Union, intersection, complement and `until` as on sets of ticks."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
 
     def some():
-        pairs = [(dice.randint(0, 12), dice.randint(0, 4)) for _ in range(dice.randint(0, 4))]
+        pairs = [(rng.randint(0, 12), rng.randint(0, 4)) for _ in range(rng.randint(0, 4))]
         return union((low, low + size) for low, size in pairs)
 
     for _ in range(200):
@@ -82,8 +82,8 @@ def test_spans_are_sets(seed):
         assert ticks(union([*left, *right])) == ticks(left) | ticks(right)
         assert ticks(both(left, right)) == ticks(left) & ticks(right)
         assert ticks(outside(left, 0, 20)) == set(range(21)) - ticks(left)
-        low = dice.randint(0, 3)
-        high = dice.choice([None, low + dice.randint(0, 4)])
+        low = rng.randint(0, 3)
+        high = rng.choice([None, low + rng.randint(0, 4)])
         expected = {
             t
             for t in range(-10, 30)

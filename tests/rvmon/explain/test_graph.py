@@ -12,7 +12,7 @@ from rvmon.explain.example import Budget
 from rvmon.explain.graph import graph_of
 from rvmon.explain.search import shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
-from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.show import show_spec
 
 pytestmark = pytest.mark.law
@@ -21,11 +21,11 @@ pytestmark = pytest.mark.law
 @pytest.mark.parametrize("seed", range(5))
 def test_cubes_cover_exactly(seed):
     """Random sets of vectors: their cubes cover them and, but for what never is, nothing else."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     for _ in range(40):
-        size = dice.randint(1, 4)
+        size = rng.randint(1, 4)
         everything = [tuple(n >> k & 1 for k in range(size)) for n in range(1 << size)]
-        kinds = {vector: dice.choice(("in", "out", "never")) for vector in everything}
+        kinds = {vector: rng.choice(("in", "out", "never")) for vector in everything}
         wanted = [v for v, kind in kinds.items() if kind == "in"]
         never = [v for v, kind in kinds.items() if kind == "never"]
         cubes = cubes_of(wanted, never)
@@ -55,10 +55,10 @@ def test_a_response():
 
 def test_random_automata_are_drawn():
     """Every automaton of a random requirement is drawn: each edge between places, none empty."""
-    dice = random.Random(3)
+    rng = random.Random(3)
     drawn = 0
     for _ in range(40):
-        spec = random_spec(dice, Profile(requirements=1, depth=2, mixed=False))
+        spec = random_spec(rng, Profile(requirements=1, depth=2, mixed=False))
         one = compile_spec(spec).requirements["R1"]
         if one.automaton is None:
             continue
@@ -73,10 +73,10 @@ def test_random_automata_are_drawn():
 @pytest.mark.parametrize("seed", range(3))
 def test_what_is_said_to_be_impossible_is_not_found(seed):
     """Random requirements: no run shows what the automaton excludes."""
-    dice = random.Random(50 + seed)
+    rng = random.Random(50 + seed)
     excluded = 0
     for _ in range(40):
-        spec = random_spec(dice, Profile(requirements=1, depth=2, mixed=False))
+        spec = random_spec(rng, Profile(requirements=1, depth=2, mixed=False))
         compiled = compile_spec(spec)
         one = compiled.requirements["R1"]
         can = possible(spec, one.obligation.trigger, one.automaton, one.requirement.at_end)

@@ -9,7 +9,7 @@ import rvmon
 from rvmon.explain.example import Budget
 from rvmon.explain.search import difference_of, shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
-from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec
 
@@ -29,10 +29,10 @@ def examples_of(checked, name="R", budget=None):
 @pytest.mark.parametrize("seed", range(8))
 def test_examples_of_random_requirements(seed):
     """Whatever the requirement: the oracle gives each example the verdict it is shown for."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     shown = 0
     for _ in range(12):
-        spec = random_spec(dice, Profile(requirements=1, depth=2, mixed=False))
+        spec = random_spec(rng, Profile(requirements=1, depth=2, mixed=False))
         for kind, example in examples_of(spec, "R1", SMALL).examples.items():
             report = evaluate(spec, example.samples, end=example.end)
             assert report.verdicts["R1"].value == kind, (show_spec(spec), example)
@@ -45,10 +45,10 @@ def test_examples_of_random_requirements(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_random_differences(seed):
     """On a timeline that tells two random requirements apart, the oracle says so too."""
-    dice = random.Random(100 + seed)
+    rng = random.Random(100 + seed)
     shown = 0
     for _ in range(12):
-        spec = random_spec(dice, Profile(requirements=3, depth=2, mixed=False))
+        spec = random_spec(rng, Profile(requirements=3, depth=2, mixed=False))
         if len(spec.requirements) < 2:
             continue
         compiled = compile_spec(spec)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from tests.tools.timed_dice import random_model
+from tests.tools.timed_generate import random_model
 
 from handover.model import handover_network
 from rvmon.export.network_dot import network_dot

@@ -34,10 +34,10 @@ def test_an_ending_trigger_reads_unknown_as_not_false():
     found = alphabet(eventually(q), whenever=p)
     place = [state.leaf for state in found.propositions].index(p)
     for weights in (found.pessimistic[place], found.optimistic[place]):
-        cell = found.cells_of(weights[UNKNOWN])[found.propositions[place]]
-        assert not holds(Sense.KNOWN_FALSE, cell)
-    worse = found.cells_of(found.pessimistic[place][UNKNOWN])[found.propositions[place]]
-    better = found.cells_of(found.optimistic[place][UNKNOWN])[found.propositions[place]]
+        truth = found.valuation(weights[UNKNOWN])[found.propositions[place]]
+        assert not holds(Sense.KNOWN_FALSE, truth)
+    worse = found.valuation(found.pessimistic[place][UNKNOWN])[found.propositions[place]]
+    better = found.valuation(found.optimistic[place][UNKNOWN])[found.propositions[place]]
     assert (holds(Sense.FALSE, worse), holds(Sense.FALSE, better)) == (False, True)
 
 

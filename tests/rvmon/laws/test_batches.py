@@ -14,7 +14,7 @@ from rvmon.testing.case import Case
 from rvmon.testing.compare import differences
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate.spec import Profile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report

@@ -18,6 +18,6 @@ def test_filling_in_what_was_lost(subject: Any, holds: Any) -> None:
     def _(data: st.DataObject) -> None:
         case = data.draw(cases(subject.profile))
         assume(is_spoken_of(case.spec))
-        dice = data.draw(st.randoms(use_true_random=False))
-        _, overturning = overturned(dice, case, 4, subject.judge)
+        rng = data.draw(st.randoms(use_true_random=False))
+        _, overturning = overturned(rng, case, 4, subject.judge)
         assert overturning is None

@@ -8,8 +8,8 @@ from typing import Any
 from hypothesis import strategies as st
 
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.attempts import is_upon_end
 from rvmon.testing.compare import differences, outcomes
+from rvmon.testing.law.attempts import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision

@@ -20,13 +20,13 @@ def test_advance_changes_no_record(time, engine):
     """Reasons, deadlines and blame are the same, however finely a stretch of time is split."""
     decided = 0
     for seed in range(60):
-        dice = random.Random(f"advance/{seed}")
-        formula = random_mtl(dice, dice.randint(1, 3))
+        rng = random.Random(f"advance/{seed}")
+        formula = random_mtl(rng, rng.randint(1, 3))
         upon = requirement(formula, upon=EventAtom("e"))
         spec = Spec(spec_of(upon, time=time, period=1 if time is TimeModel.CLOCKED else None))
-        stamps = list(accumulate(dice.randint(1, 6) for _ in range(8)))
+        stamps = list(accumulate(rng.randint(1, 6) for _ in range(8)))
         samples = [
-            (t, {**{name: dice.random() < 0.5 for name in "pqr"}, "e": dice.random() < 0.5})
+            (t, {**{name: rng.random() < 0.5 for name in "pqr"}, "e": rng.random() < 0.5})
             for t in stamps
         ]
         found = []
@@ -35,7 +35,7 @@ def test_advance_changes_no_record(time, engine):
             for t, values in samples:
                 monitor.step_ns(t, values)
                 if split:
-                    for later in sorted({t + dice.randint(1, 5), t + dice.randint(1, 5)}):
+                    for later in sorted({t + rng.randint(1, 5), t + rng.randint(1, 5)}):
                         if all(later < other or t >= other for other in stamps):
                             monitor.advance_ns(later)
             attempts = monitor.finish_ns(stamps[-1] + 9).attempts

@@ -13,10 +13,10 @@ from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
 from rvmon.testing.drive import drive
 from rvmon.testing.forms import Maker
-from rvmon.testing.generate_spec import Profile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.law.walk import numerics, parts_of
 from rvmon.testing.scale import compact, in_units, scaled
 from rvmon.testing.strategies import cases
-from rvmon.testing.walk import numerics, parts_of
 from rvmon.verdict.report import Report
 
 SPARSE = 1_000

@@ -13,8 +13,8 @@ from tests.tools.build import start
 from rvmon.spec.checked.formula import Probe, ProbeAtom
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Event, Mode, Type
 from rvmon.testing.compare import outcomes
+from rvmon.testing.law.walk import subformulas
 from rvmon.testing.strategies import specs, traces
-from rvmon.testing.walk import subformulas
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Decision

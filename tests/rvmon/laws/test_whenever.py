@@ -15,10 +15,10 @@ from rvmon.spec.checked.specification import Mode
 from rvmon.spec.checked.tense import subformulas
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Outcome, outcomes
-from rvmon.testing.generate_trace import TraceProfile
-from rvmon.testing.pulse import is_pulse
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.vocabulary import signals
+from rvmon.testing.law.pulse import is_pulse
 from rvmon.testing.strategies import specs, traces
-from rvmon.testing.vocabulary import signals
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict

@@ -35,15 +35,15 @@ requirement R3 "c"
 
 def csv_text(seed: int, rows: int = 2000) -> str:
     """A plain file: every cell is filled."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     t, speed, p, count = 0, 0.3, False, 0
     lines = ["t,ignored,speed,p,stop,count"]
     for _ in range(rows):
-        t += dice.choice([1, 50_000_000, 49_999_999, 600_000_000])
-        speed += dice.choice([0, 0, 0.01, -0.01])
-        p ^= dice.random() < 0.05
-        count = dice.randrange(5) if dice.random() < 0.1 else count
-        stop = int(dice.random() < 0.02)
+        t += rng.choice([1, 50_000_000, 49_999_999, 600_000_000])
+        speed += rng.choice([0, 0, 0.01, -0.01])
+        p ^= rng.random() < 0.05
+        count = rng.randrange(5) if rng.random() < 0.1 else count
+        stop = int(rng.random() < 0.02)
         lines.append(f"{t // 10**9}.{t % 10**9:09d},7,{speed:.3f},{p:d},{stop},{count}")
     return "\n".join(lines) + "\n"
 
@@ -107,10 +107,10 @@ def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
 def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
     """Empty cells: signals hold, events do not occur; the same as row by row."""
     monkeypatch.setattr(module, "BLOCK", 997)
-    dice = random.Random(5)
+    rng = random.Random(5)
     first, second, *rest = csv_text(4).splitlines()
     rest = [
-        ",".join(c if n == 0 or dice.random() < 0.3 else "" for n, c in enumerate(row.split(",")))
+        ",".join(c if n == 0 or rng.random() < 0.3 else "" for n, c in enumerate(row.split(",")))
         for row in rest
     ]
     (tmp_path / "a.csv").write_text("\n".join([first, second, *rest]) + "\n")
@@ -144,13 +144,13 @@ def test_parquet_says_what_csv_says(time, tmp_path, monkeypatch):
     assert spec.evaluate(tmp_path / "a.parquet") == expected
     assert by_rows(spec, tmp_path / "a.parquet") == expected
 
-    dice = random.Random(6)
+    rng = random.Random(6)
     for first in (True, False):
         gaps = table
         for place, name in enumerate(table.column_names):
             if name not in ("t", "ignored"):
                 cells = table.column(name).to_pylist()
-                cells[1:] = [cell if dice.random() < 0.2 else None for cell in cells[1:]]
+                cells[1:] = [cell if rng.random() < 0.2 else None for cell in cells[1:]]
                 cells[0] = cells[0] if first else None
                 kept = pyarrow.array(cells, table.schema.field(name).type)
                 gaps = gaps.set_column(place, name, kept)
@@ -235,12 +235,12 @@ def cells(texts: list[str]) -> Cells:
 
 def test_numbers_are_exact():
     """Decimals are the nearest doubles, seconds the nearest ticks, as read one by one."""
-    dice = random.Random(3)
+    rng = random.Random(3)
     texts = ["0", "-0", "+5", "-0.0", ".5", "5.", "000.250", "999999999999999", "-1.000000001"]
     for _ in range(500):
-        whole, part = dice.randrange(10 ** dice.randint(1, 6)), dice.randint(0, 9)
-        behind = f".{dice.randrange(10**part):0{part}d}" if part else ""
-        texts.append(f"{dice.choice(['', '-', '+'])}{whole}{behind}")
+        whole, part = rng.randrange(10 ** rng.randint(1, 6)), rng.randint(0, 9)
+        behind = f".{rng.randrange(10**part):0{part}d}" if part else ""
+        texts.append(f"{rng.choice(['', '-', '+'])}{whole}{behind}")
     read = decimals(cells(texts))
     assert read is not None
     assert [repr(x) for x in read.tolist()] == [repr(float(text)) for text in texts]

@@ -13,8 +13,8 @@ from tests.tools.doors import content_of, doors, whole
 import rvmon
 from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
 from rvmon.session import Spec
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 NAN = float("nan")
 BASE = """

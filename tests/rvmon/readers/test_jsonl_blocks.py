@@ -34,18 +34,18 @@ ALL = frozenset({"p", "n", "x", "go"})
 
 def lines(seed: int, *, gaps: bool = False, rows: int = 2000) -> list[dict]:
     """A plain recording: nested names, an undeclared one, whole numbers among the others."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     t, speed, p, count = 0, 0.3, False, 0
     made = []
     for row in range(rows):
-        t += dice.choice([1, 50_000_000, 49_999_999, 600_000_000])
-        speed = dice.choice([speed, speed, speed + 0.01, speed - 0.01, 0, 1])
-        p ^= dice.random() < 0.05
-        count = dice.randrange(5) if dice.random() < 0.1 else count
-        line = {"t_ns": t, "arm": {"speed": speed, "more": [1]}, "p": dice.choice([p, int(p)])}
-        line |= {"count": count, "stop": dice.random() < 0.02, "note": dice.choice(["a", 1, None])}
+        t += rng.choice([1, 50_000_000, 49_999_999, 600_000_000])
+        speed = rng.choice([speed, speed, speed + 0.01, speed - 0.01, 0, 1])
+        p ^= rng.random() < 0.05
+        count = rng.randrange(5) if rng.random() < 0.1 else count
+        line = {"t_ns": t, "arm": {"speed": speed, "more": [1]}, "p": rng.choice([p, int(p)])}
+        line |= {"count": count, "stop": rng.random() < 0.02, "note": rng.choice(["a", 1, None])}
         if gaps and row:
-            line = {k: v for k, v in line.items() if k == "t_ns" or dice.random() < 0.4}
+            line = {k: v for k, v in line.items() if k == "t_ns" or rng.random() < 0.4}
         made.append(line)
     return made
 

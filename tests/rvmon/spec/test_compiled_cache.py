@@ -9,7 +9,7 @@ from rvmon.errors import SpecError
 from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.compile import compile_text
 from rvmon.spec.compiled_cache import compile_cached
-from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]
 TEXT = (

@@ -63,11 +63,11 @@ def test_any_words(words):
 @pytest.mark.parametrize("seed", range(200))
 def test_mutated_specifications(seed):
     """Specifications with words dropped, doubled, exchanged."""
-    dice = random.Random(seed)
-    words = WORD.findall(dice.choice(SEEDS))
-    for _ in range(dice.randint(1, 6)):
-        place = dice.randrange(len(words))
-        words[place] = dice.choice(("", dice.choice(WORDS), words[place] * 2, dice.choice(words)))
+    rng = random.Random(seed)
+    words = WORD.findall(rng.choice(SEEDS))
+    for _ in range(rng.randint(1, 6)):
+        place = rng.randrange(len(words))
+        words[place] = rng.choice(("", rng.choice(WORDS), words[place] * 2, rng.choice(words)))
     text = "".join(words)
     answer(text)
     try:

@@ -36,8 +36,8 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.law.sample_words import MOST_TICKS
 from rvmon.testing.oracle import evaluate
-from rvmon.testing.sample_words import MOST_TICKS
 from rvmon.trace.sample import Sample, Trace
 
 ALL = frozenset({"p", "q", "r", "x", "y", "mode", "e", "f", "g"})

@@ -9,8 +9,8 @@ from tests.tools.law import judge
 import rvmon
 from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.compare import differences
-from rvmon.testing.generate_spec import Profile
-from rvmon.testing.generate_trace import TraceProfile
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.oracle import evaluate
 from rvmon.testing.show import show_spec
 

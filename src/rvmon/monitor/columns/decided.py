@@ -12,8 +12,8 @@ from rvmon.automaton.machine import Token
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.columns.tables import Table
 from rvmon.monitor.columns.track import UNSEEN
-from rvmon.monitor.reasons import Finding, Reasons
-from rvmon.monitor.witness import Witness
+from rvmon.monitor.records.deferred_reasons import DeferredReasons
+from rvmon.monitor.records.reasons import Finding, Reasons
 from rvmon.verdict.attempt import Attempt, decided_attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -54,7 +54,7 @@ class DecidedAttempts(Sequence[Attempt]):
     """The decided attempts of one requirement, by number.
 
     Args:
-        witness: of the requirement.
+        deferred: has the reasons, of the requirement.
         clocked: per location of the automaton, whether it has a clock.
         decisions: of the attempts.
 
@@ -63,17 +63,19 @@ class DecidedAttempts(Sequence[Attempt]):
         id: of the requirement.
     """
 
-    def __init__(self, witness: Witness, clocked: Sequence[bool], decisions: Decisions) -> None:
+    def __init__(
+        self, deferred: DeferredReasons, clocked: Sequence[bool], decisions: Decisions
+    ) -> None:
         self.decisions = decisions
-        self._witness = witness
+        self._deferred = deferred
         self._clocked = clocked
         self._failed = np.cumsum(~decisions.passed) - 1
-        self.id = witness.compiled.requirement.id
+        self.id = deferred.compiled.requirement.id
 
     @property
     def reasons(self) -> Reasons:
         """Of the requirement's decisions."""
-        return self._witness.reasons
+        return self._deferred.reasons
 
     def __len__(self) -> int:
         return len(self.decisions.number)
@@ -93,7 +95,7 @@ class DecidedAttempts(Sequence[Attempt]):
             decisions.triggered.item(index),
             decisions.decided.item(index),
             Verdict.PASS if passed else Verdict.FAIL,
-            self._witness.details,
+            self._deferred.details,
             self._noted(index, passed=passed),
         )
 
@@ -112,11 +114,11 @@ class DecidedAttempts(Sequence[Attempt]):
         return location, (self.decisions.anchor.item(index),) if self._clocked[location] else ()
 
     def _noted(self, index: int, *, passed: bool) -> tuple[Any, ...]:
-        """What `Witness.details` reads."""
-        decisions, witness = self.decisions, self._witness
+        """What `DeferredReasons.details` reads."""
+        decisions, deferred = self.decisions, self._deferred
         t = decisions.decided.item(index)
         letter = decisions.letter.item(index)
-        count = len(witness.places)
+        count = len(deferred.places)
         values, since, until = [UNKNOWN] * count, [t] * count, [None] * (2 * count)
         if not passed:
             rows = decisions.history[self._failed.item(index)].tolist()
@@ -130,7 +132,7 @@ class DecidedAttempts(Sequence[Attempt]):
             letter,
             letter,
             t - 1,
-            *witness.unpacked(decisions.seen.item(index)),
+            *deferred.unpacked(decisions.seen.item(index)),
             *values,
             *since,
             *until,

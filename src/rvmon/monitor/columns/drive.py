@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rvmon.automaton.ages import NEVER
 from rvmon.automaton.location import PASSED
+from rvmon.automaton.moves import Moves
 from rvmon.formula.state import TRUE, UNKNOWN
 from rvmon.monitor.columns.attempts import Tokens
 from rvmon.monitor.columns.axis import FAR, Axis
-from rvmon.monitor.columns.moves import Moves
 from rvmon.monitor.columns.row_letters import Letters
 from rvmon.monitor.columns.tables import Table
 
@@ -87,7 +88,7 @@ class Driver:
                 self._moves.bases[now.location] + now.region, now.place + 1
             )
             cut = self._moves.cuts[now.location, now.region]
-            border = np.where(cut == FAR, FAR, now.anchor + cut)
+            border = np.where(cut == NEVER, FAR, now.anchor + cut)
             crosses = (border <= self._axis.instants(leads)) & (border <= self._limit)
             steps = ~crosses & (leads < self._axis.stop)
             rests = ~(crosses | steps)
@@ -156,7 +157,7 @@ class Driver:
             row = moves.bases.item(location) + region
             leads, stretch = letters.next_for_one(row, place + 1)
             cut = moves.cuts.item(location, region)
-            border = FAR if cut == FAR else anchor + cut
+            border = FAR if cut == NEVER else anchor + cut
             if border <= axis.instant(leads) and border <= self._limit:
                 at = axis.place_from(border)
                 region, place = region + 1, at - 1

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.dataflow.inputs import Inputs
-from rvmon.monitor.codegen_support import plan_requirements
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
@@ -17,9 +16,10 @@ from rvmon.monitor.columns.outages import ColumnOutages
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
-from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.health import HealthLog, holds_nan
-from rvmon.monitor.ledger import Ledger
+from rvmon.monitor.compiled.code_plan import plan_requirements
+from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.inputs.health import HealthLog, holds_nan
+from rvmon.monitor.records.ledger import Ledger
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -34,7 +34,7 @@ _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 
 class ColumnJudge:
-    """Judges requirements by columns: those that `rvmon.monitor.engines.refusal.of_columns` lets.
+    """Judges requirements by columns: those that `rvmon.monitor.compiled.refusal.of_columns` lets.
 
     Args:
         compiled: the specification.

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rvmon.automaton.moves import Moves
 from rvmon.formula.alphabet import Alphabet
 from rvmon.monitor.columns.axis import Axis
 from rvmon.monitor.columns.leaves import Truth
-from rvmon.monitor.columns.moves import Moves
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,1 +1,1 @@
-"""The engines: one file for each, `registry` for all of them, `refusal` for what they cannot do."""
+"""The engines: one file for each, `registry` for all of them, `choice` for what `auto` takes."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from rvmon.monitor.columns.leaves import NotByColumnsError
-from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.columns import judge_columns
 from rvmon.monitor.engines.python import generated_or_tables
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import columns_of, judge_columns_by_rows, judge_samples
-from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report

@@ -6,13 +6,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rvmon.monitor.engines.registry import Asked, engine_named
+from rvmon.monitor.engines.rows import columns_of
 from rvmon.readers.blocks import NotPlainError
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled import CompiledRequirement
-    from rvmon.monitor.compiled_spec import CompiledSpec
-    from rvmon.monitor.engines.refusal import Refusal
-    from rvmon.monitor.monitor import Monitor
+    from rvmon.monitor.compiled.refusal import Refusal
+    from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.monitor.compiled.specification import CompiledSpec
+    from rvmon.monitor.online.monitor import Monitor
     from rvmon.readers.source import Source
     from rvmon.verdict.report import Report
 
@@ -24,7 +25,7 @@ class C:
 
     def refuses(self, requirement: CompiledRequirement) -> Refusal | None:
         """What has no automaton, or needs Python beside it."""
-        from rvmon.monitor.engines.refusal import of_c
+        from rvmon.monitor.compiled.refusal import of_c
 
         return of_c(requirement)
 
@@ -33,8 +34,8 @@ class C:
         chosen = compiled.chosen(asked.only)
         if not chosen:  # nothing to compile
             return engine_named("auto").online(compiled, asked)
-        from rvmon.monitor.engines.refusal import no_dropping
-        from rvmon.monitor.online_c import compiled_monitor
+        from rvmon.monitor.c.monitor import compiled_monitor
+        from rvmon.monitor.compiled.refusal import no_dropping
 
         if asked.keep is not None:
             raise no_dropping(self.name)
@@ -47,18 +48,20 @@ class C:
         if asked.only == ():
             return engine_named("auto").judge(compiled, source, asked)
         if source.is_alone:
-            from rvmon.monitor.engines.c_alone import judged_by_program
+            from rvmon.monitor.c.program import judged_by_program
 
             try:
                 return replace(judged_by_program(compiled, source, asked.only), engine=self.name)
             except NotPlainError:
                 pass
-        from rvmon.monitor.batch_c import evaluate_columns, evaluate_samples
+        from rvmon.monitor.c.batch import evaluate_columns, evaluate_samples, library_of
 
+        checked, library = compiled.checked, library_of(compiled, asked.only)
         try:
-            report = evaluate_columns(compiled, source, asked)
+            columns = columns_of(compiled, source, asked)
+            report = evaluate_columns(checked, library, columns, source.end)
         except NotPlainError:
-            report = evaluate_samples(compiled, source, asked)
+            report = evaluate_samples(checked, library, source)
         return replace(report, engine=self.name)
 
 

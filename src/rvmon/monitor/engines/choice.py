@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.engines import refusal
-from rvmon.monitor.engines.refusal import Refusal
+from rvmon.monitor.compiled import refusal
+from rvmon.monitor.compiled.refusal import Refusal
+from rvmon.monitor.compiled.requirement import CompiledRequirement
 
 
 @dataclass(frozen=True, slots=True)

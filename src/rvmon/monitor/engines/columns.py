@@ -6,12 +6,12 @@ from dataclasses import replace
 
 from rvmon.monitor.columns.evaluate import ColumnJudge
 from rvmon.monitor.columns.leaves import NotByColumnsError
-from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.engines.refusal import Refusal, no_columns, no_stream, of_columns
+from rvmon.monitor.compiled.refusal import Refusal, no_columns, no_stream, of_columns, refuse
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, Engine
 from rvmon.monitor.engines.rows import columns_of
-from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.source import Columns, Source
 from rvmon.verdict.report import Report
@@ -36,10 +36,7 @@ class ByColumns:
 
     def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
         """See `rvmon.monitor.engines.registry.Engine`."""
-        for one in compiled.chosen(asked.only):
-            refusal = self.refuses(one)
-            if refusal is not None:
-                raise refusal.error(one.requirement.id, "the engine `columns`")
+        refuse(compiled.chosen(asked.only), self.refuses, "the engine `columns`")
         try:
             columns = columns_of(compiled, source, asked)
             return judge_columns(compiled, columns, asked, source.end)
@@ -76,7 +73,7 @@ def judge_columns(
     rest = tuple(name for name in ids if name not in own)
     rows = None
     if rest and beside is not None:
-        from rvmon.monitor.columns.rows import RowJudge
+        from rvmon.monitor.engines.row_judge import RowJudge
 
         rows = RowJudge(compiled, beside, columns.names, replace(asked, only=rest))
     for block in columns.read():

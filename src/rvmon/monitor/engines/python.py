@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.compiled.refusal import MOST_GENERATED, Refusal, of_generated, too_many
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.choice import judged_by
-from rvmon.monitor.engines.refusal import MOST_GENERATED, Refusal, of_generated, too_many
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import judge_rows
-from rvmon.monitor.generated import Forms, GeneratedMonitor
-from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.online.generated import Forms, GeneratedMonitor
+from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
 
@@ -52,13 +52,14 @@ def generated_or_tables(
     how = (asked.settle, asked.sources, asked.keep)
     if len(chosen) > MOST_GENERATED or not any(one.is_fed for one in chosen):
         monitor = Monitor(compiled, chosen, engine, *how)
-        monitor.judged_by = judged_by(chosen)
-        return monitor
-    key = (tuple(one.requirement.id for one in chosen), asked.sources)
-    forms = compiled.forms.get(key)
-    if not isinstance(forms, Forms):
-        forms = compiled.forms[key] = Forms(compiled, chosen, asked.sources)
-    return GeneratedMonitor(forms, compiled, chosen, engine, *how)
+    else:
+        key = (tuple(one.requirement.id for one in chosen), asked.sources)
+        forms = compiled.forms.get(key)
+        if not isinstance(forms, Forms):
+            forms = compiled.forms[key] = Forms(compiled, chosen, asked.sources)
+        monitor = GeneratedMonitor(forms, compiled, chosen, engine, *how)
+    monitor.judged_by = judged_by(chosen)
+    return monitor
 
 
 ENGINES = {"python": Python()}

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Protocol
 from rvmon.errors import UnknownNameError
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled import CompiledRequirement
-    from rvmon.monitor.compiled_spec import CompiledSpec
-    from rvmon.monitor.engines.refusal import Refusal
-    from rvmon.monitor.monitor import Monitor
+    from rvmon.monitor.compiled.refusal import Refusal
+    from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.monitor.compiled.specification import CompiledSpec
+    from rvmon.monitor.online.monitor import Monitor
     from rvmon.readers.source import Source
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report

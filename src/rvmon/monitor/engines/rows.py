@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, Engine
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.source import Columns, Source
@@ -24,7 +24,7 @@ def columns_of(compiled: CompiledSpec, source: Source, asked: Asked) -> Columns:
 
 def fillable(compiled: CompiledSpec, only: tuple[str, ...] | None) -> frozenset[str]:
     """The names of which only the present value matters, not whether there was an update."""
-    from rvmon.monitor.codegen_support import plan_requirements
+    from rvmon.monitor.compiled.code_plan import plan_requirements
 
     spec = compiled.checked
     chosen = compiled.chosen(only)
@@ -60,7 +60,7 @@ def judge_columns_by_rows(
     Raises:
         NotPlainError: they turn out to be none.
     """
-    from rvmon.monitor.columns.rows import RowJudge
+    from rvmon.monitor.engines.row_judge import RowJudge
 
     judge = RowJudge(compiled, engine, columns.names, asked)
     for block in columns.read():

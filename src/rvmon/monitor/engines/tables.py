@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rvmon.monitor.compiled import CompiledRequirement
-from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.engines.refusal import Refusal, of_automaton, of_network, of_progression
+from rvmon.monitor.compiled.refusal import Refusal, of_automaton, of_network, of_progression, refuse
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import judge_rows
-from rvmon.monitor.monitor import Monitor
+from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
 
@@ -30,8 +30,7 @@ class Tables:
     def online(self, compiled: CompiledSpec, asked: Asked) -> Monitor:
         """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
         chosen = compiled.chosen(asked.only)
-        for one in chosen:
-            one.engine(self.name)
+        refuse(chosen, self.refuses, f"the engine `{self.name}`")
         monitor = Monitor(compiled, chosen, self.name, asked.settle, asked.sources, asked.keep)
         monitor.judged_by = self.name
         return monitor

@@ -19,11 +19,11 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.specification import Mode, Requirement, TimeModel
 from rvmon.testing.case import Case
+from rvmon.testing.law.walk import intervals, numerics, subformulas
 from rvmon.testing.peers.client import Peer
 from rvmon.testing.peers.core import names_in
 from rvmon.testing.peers.ways import Cell, Way, truths
 from rvmon.testing.scale import retimed
-from rvmon.testing.walk import intervals, numerics, subformulas
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report

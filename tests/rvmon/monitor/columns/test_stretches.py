@@ -15,9 +15,9 @@ from rvmon.monitor.columns.stretches import (
 PLACES = np.arange(3, 30)
 
 
-def random_set(dice: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def random_set(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Truth values of the places, and the same as toggles."""
-    truth = np.repeat(dice.random(27) < 0.5, dice.integers(1, 4, 27))[: len(PLACES)]
+    truth = np.repeat(rng.random(27) < 0.5, rng.integers(1, 4, 27))[: len(PLACES)]
     steps = np.diff(truth.astype(int), prepend=0, append=0)
     return truth, np.flatnonzero(steps) + PLACES[0]
 
@@ -25,8 +25,8 @@ def random_set(dice: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("seed", range(40))
 def test_operators_do_place_by_place_what_they_say(seed):
     """Complement, union, intersection and clipping agree with truth values."""
-    dice = np.random.default_rng(seed)
-    sets = [random_set(dice) for _ in range(dice.integers(1, 4))]
+    rng = np.random.default_rng(seed)
+    sets = [random_set(rng) for _ in range(rng.integers(1, 4))]
     truths = np.array([truth for truth, _ in sets])
     toggles = [own for _, own in sets]
     start, stop = int(PLACES[0]), int(PLACES[-1]) + 1
@@ -36,7 +36,7 @@ def test_operators_do_place_by_place_what_they_say(seed):
         assert (np.diff(found) > 0).all()
         assert len(found) % 2 == 0
     assert (holds_at(complement(toggles[0], start, stop), PLACES) == ~truths[0]).all()
-    low, high = sorted(dice.integers(start, stop, 2).tolist())
+    low, high = sorted(rng.integers(start, stop, 2).tolist())
     inside = (low <= PLACES) & (high > PLACES)
     assert (holds_at(clipped(toggles[0], low, high), PLACES) == (truths[0] & inside)).all()
     assert (holds_at(between(low, high), PLACES) == inside).all()

@@ -45,12 +45,12 @@ def spec_of(form):
 
 def samples_of(seed):
     """A short trace in which all is updated in each sample."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     t, made = 0, []
     for _ in range(14):
-        values = {name: dice.random() < 0.5 for name in ("p", "q", "e")}
-        made.append(Sample(t, {**values, "x": float(dice.randrange(5))}))
-        t += dice.randint(1, 4)
+        values = {name: rng.random() < 0.5 for name in ("p", "q", "e")}
+        made.append(Sample(t, {**values, "x": float(rng.randrange(5))}))
+        t += rng.randint(1, 4)
     return made
 
 

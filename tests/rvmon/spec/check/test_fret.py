@@ -187,12 +187,12 @@ def test_translation(scope, condition, timing):
     requirement = translated(scope, condition, timing).replace("3 s", f"{N} ns")
     head = "time sampled every 1 ns\nsignal m, c, r, s : bool\n"
     spec, _ = compile_text(head + requirement.replace("D", "1 ns"))
-    dice = random.Random(f"{scope} {condition} {timing}")
+    rng = random.Random(f"{scope} {condition} {timing}")
     seen = set()
     for number in range(300):
-        length = dice.randint(3, 8)
-        likely = {name: dice.choice((0.1, 0.4, 0.8)) for name in "mcrs"}
-        run = {name: [dice.random() < likely[name] for _ in range(length)] for name in "mcrs"}
+        length = rng.randint(3, 8)
+        likely = {name: rng.choice((0.1, 0.4, 0.8)) for name in "mcrs"}
+        run = {name: [rng.random() < likely[name] for _ in range(length)] for name in "mcrs"}
         samples = [Sample(t, {name: run[name][t] for name in "mcrs"}) for t in range(length)]
         failed = oracle.evaluate(spec, samples).verdicts["R"] == "F"
         assert failed == fails(scope, condition, timing, run), run

@@ -87,15 +87,15 @@ def test_next_has_no_meaning_in_held_time():
 # Against the definitions, on random structures.
 
 
-def random_property(dice, depth):
+def random_property(rng, depth):
     """A universal property as text, linear or not."""
-    if depth == 0 or dice.random() < 0.15:
-        return dice.choice(["a", "b", "not a", "not b", "(a and b)", "(a or not b)"])
-    below = [random_property(dice, depth - 1) for _ in range(2)]
+    if depth == 0 or rng.random() < 0.15:
+        return rng.choice(["a", "b", "not a", "not b", "(a and b)", "(a or not b)"])
+    below = [random_property(rng, depth - 1) for _ in range(2)]
     forms = ("({} and {})", "({} or {})", "({} -> {})", "A[{} U {}]", "A[{} W {}]", "A[{} R {}]")
     unary = ("AG {}", "AF {}", "AX {}", "not EF not {}")
     guarded = ("A[(a and {}) U (not a and {})]", "((a and {}) or (not a and {}))")
-    form = dice.choice((*forms, *unary, *unary, *guarded))
+    form = rng.choice((*forms, *unary, *unary, *guarded))
     return "(" + form.format(*(f"({part})" for part in below)) + ")"
 
 
@@ -198,10 +198,10 @@ def on_all_paths(structure, tableau):
     return frozenset(labels) - broken
 
 
-def random_structure(dice):
-    worlds = range(dice.randint(2, 4))
-    labels = {w: "".join(name for name in "ab" if dice.random() < 0.5) for w in worlds}
-    after = {w: dice.sample(list(worlds), dice.randint(1, 2)) for w in worlds}
+def random_structure(rng):
+    worlds = range(rng.randint(2, 4))
+    labels = {w: "".join(name for name in "ab" if rng.random() < 0.5) for w in worlds}
+    after = {w: rng.sample(list(worlds), rng.randint(1, 2)) for w in worlds}
     return labels, after
 
 
@@ -209,10 +209,10 @@ def random_structure(dice):
 @pytest.mark.parametrize("seed", range(4))
 def test_a_structure_has_the_property_iff_all_its_runs_fulfil_the_formula(seed):
     """On random structures CTL and its linear form agree wherever a form is given."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     linear = refused = 0
     while linear < 25:
-        text = random_property(dice, 2)
+        text = random_property(rng, 2)
         checked, _ = compile_text(f"{HEAD}property P1: {text}")
         property_ = checked.properties["P1"]
         try:
@@ -225,7 +225,7 @@ def test_a_structure_has_the_property_iff_all_its_runs_fulfil_the_formula(seed):
             continue
         linear += 1
         for _ in range(15):
-            structure = random_structure(dice)
+            structure = random_structure(rng)
             wanted = holds_everywhere(structure, property_.formula)
             assert on_all_paths(structure, tableau) == wanted, (text, structure)
     assert refused > 5

@@ -77,11 +77,11 @@ def reopens(words):
 def test_scope_is_the_published_formula(call, scope):
     """A requirement with a scope has the verdict of the published formula on every run."""
     formula = PUBLISHED[call, scope]
-    dice = random.Random(f"{call} {scope}")
+    rng = random.Random(f"{call} {scope}")
     alphabet = ["".join(w) for n in range(3) for w in itertools.combinations("pqrs", n)]
     seen = set()
     for _ in range(60):
-        words = [dice.choice(alphabet) for _ in range(dice.randint(2, 7))]
+        words = [rng.choice(alphabet) for _ in range(rng.randint(2, 7))]
         if call in OPENS_ONCE and "q" in scope and reopens(words):
             continue
         if scope == "before (r)" and "r" in words[0]:

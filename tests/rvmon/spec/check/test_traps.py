@@ -12,9 +12,9 @@ from rvmon.spec.check.traps import traps_at_start, traps_at_trigger
 from rvmon.spec.checked.formula import Constant, Unary, UnaryOp, UpdateValue
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.compile import compile_text
-from rvmon.testing.generate_spec import Profile, random_spec
-from rvmon.testing.generate_trace import TraceProfile, random_trace
-from rvmon.testing.walk import numerics
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.law.walk import numerics
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
 
@@ -168,13 +168,13 @@ def test_the_mend_is_of_the_language(time, body, codes):
 
 def owed_first():
     """Random formulas of the past, owed at each instant from the first on."""
-    dice = random.Random(5)
+    rng = random.Random(5)
     for _ in range(300):
-        spec = random_spec(dice, Profile(future=False, captures=False, for_each=False))
+        spec = random_spec(rng, Profile(future=False, captures=False, for_each=False))
         for requirement in spec.requirements.values():
             part = requirement.consequent
-            looked = build.once(part, dice.choice([0, 0, 1, 3]), 4)
-            yield spec.time, spec.period, dice.choice([looked, build.held(part, 2), part])
+            looked = build.once(part, rng.choice([0, 0, 1, 3]), 4)
+            yield spec.time, spec.period, rng.choice([looked, build.held(part, 2), part])
 
 
 def born(case):
@@ -214,8 +214,8 @@ def test_what_is_said_of_the_trigger_holds_on_every_run():
     """Where a warning says that it fails each time, no attempt passes on random runs."""
     warned = attempts = 0
     for seed in range(1500):
-        dice = random.Random(seed)
-        spec = random_spec(dice, Profile(captures=False, for_each=False, policies=False))
+        rng = random.Random(seed)
+        spec = random_spec(rng, Profile(captures=False, for_each=False, policies=False))
         said = {
             name
             for name, one in spec.requirements.items()
@@ -224,7 +224,7 @@ def test_what_is_said_of_the_trigger_holds_on_every_run():
         }
         warned += len(said)
         for _ in range(8 if said else 0):
-            report = judge(random_trace(dice, spec, TraceProfile()))
+            report = judge(random_trace(rng, spec, TraceProfile()))
             mine = [a for a in report.attempts if a.requirement in said]
             attempts += len(mine)
             assert all(a.verdict is not Verdict.PASS for a in mine)

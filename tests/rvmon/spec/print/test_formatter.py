@@ -9,7 +9,7 @@ from tests.tools.spec_text import meaning, scribbled, spec_text
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
-from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate.spec import Profile, random_spec
 
 EXAMPLE = """# Head
 
@@ -76,8 +76,8 @@ def test_canonical_form():
 @pytest.mark.parametrize("seed", range(120))
 def test_laws(seed):
     """Of random specifications in random writing meaning and comments are kept."""
-    dice = random.Random(seed)
-    text = scribbled(spec_text(random_spec(dice, Profile())), dice)
+    rng = random.Random(seed)
+    text = scribbled(spec_text(random_spec(rng, Profile())), rng)
     once = format_text(text)
     assert format_text(once) == once
     assert meaning(compile_text(once)[0]) == meaning(compile_text(text)[0])

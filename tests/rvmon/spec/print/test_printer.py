@@ -10,7 +10,7 @@ from rvmon.spec.checked.tense import subformulas
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
 from rvmon.spec.syntax.units import unit_table
-from rvmon.testing.generate_spec import Profile, random_spec
+from rvmon.testing.generate.spec import Profile, random_spec
 
 
 @pytest.mark.parametrize("seed", range(150))

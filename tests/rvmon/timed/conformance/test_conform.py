@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from tests.tools.timed_dice import random_model
+from tests.tools.timed_generate import random_model
 
 from rvmon.errors import ModelError
 from rvmon.timed.conformance.conform import conform

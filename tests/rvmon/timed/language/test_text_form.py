@@ -251,12 +251,12 @@ query Q3: E<> (A.c
 @pytest.mark.parametrize("seed", range(40))
 def test_what_is_damaged_is_told_and_nothing_else(seed):
     """Of a model with some edges damaged, each of these is told and no other."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     lines = ["clock x", "automaton A {", "  location a", "  start a"]
     lines += ["  edge a -> a when x > 1 do x = 0"] * 12 + ["}", "query: E<> A.a"]
-    damaged = sorted(dice.sample(range(4, 15), dice.randint(1, 4)))
+    damaged = sorted(rng.sample(range(4, 15), rng.randint(1, 4)))
     for row in damaged:
-        lines[row] = dice.choice(["  edge a -> a when x > > 1", "  edge a -> a do x = ) 0"])
+        lines[row] = rng.choice(["  edge a -> a when x > > 1", "  edge a -> a do x = ) 0"])
     assert [line for _, line, _ in findings("\n".join(lines))] == [row + 1 for row in damaged]
 
 
@@ -360,3 +360,9 @@ def test_a_division_by_zero_has_its_place(guard):
 def test_what_is_no_name_is_mended(text, name):
     """Dashes and digits in front are no part of names; one that would do is given."""
     assert f"first a letter: `{name}`" in one(text).help
+
+
+@pytest.mark.parametrize("text", ["t,b", '"', "x", "=1"])
+def test_a_text_in_which_nothing_begins_is_refused_like_any_other(text):
+    """It has a mistake at its first word that does not fit."""
+    assert [code for code, *_ in findings(text)] == ["TA001"]

@@ -4,7 +4,7 @@ import mmap
 from pathlib import Path
 
 import pytest
-from tests.tools.timed_dice import random_model
+from tests.tools.timed_generate import random_model
 
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.search.outcome import Policy

@@ -1,7 +1,7 @@
 """The model checker agrees with the region graph, which shares no code with its search."""
 
 import pytest
-from tests.tools.timed_dice import random_model
+from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import TooManyRegionsError, decide
 from tests.tools.timed_runs import shows
 

@@ -1,7 +1,7 @@
 """Cases in which the model checker once was wrong, found by comparison with the region graph."""
 
 import pytest
-from tests.tools.timed_dice import random_model
+from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import decide
 from tests.tools.timed_runs import shows
 

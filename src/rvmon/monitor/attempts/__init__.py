@@ -1,0 +1,1 @@
+"""Open attempts: what judges them, in lanes that are driven through time."""

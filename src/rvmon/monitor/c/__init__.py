@@ -1,0 +1,1 @@
+"""Compiled C as a monitor: of streams, of columns, of one recording alone."""

@@ -1,0 +1,321 @@
+"""A specification made ready for monitors: formulas, alphabets, engines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.bulk import moves_in_runs
+from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
+from rvmon.automaton.forecast import Forecaster
+from rvmon.automaton.location import PASSED
+from rvmon.automaton.machine import Machine
+from rvmon.automaton.progression import Progression
+from rvmon.automaton.reduce import reduce
+from rvmon.automaton.table import TableMachine
+from rvmon.dataflow.graph import Graph, graph_of, leaf_texts
+from rvmon.dataflow.network_plan import plan_of
+from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.numbers import events_of, inputs_of
+from rvmon.errors import RvmonError
+from rvmon.formula.alphabet import Alphabet, alphabet_of
+from rvmon.formula.factory import Factory
+from rvmon.formula.horizon import horizon
+from rvmon.formula.lower import lower
+from rvmon.formula.obligation import Obligation, UnmonitorableError
+from rvmon.formula.state import State
+from rvmon.monitor.reasons.obligation_words import Words
+from rvmon.spec.checked.formula import Compare
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+
+RUN_BYTES = 20
+"""Of an attempt in a run: the instant of its trigger, its number, what was seen."""
+
+MOST_SEEN = 19
+"""So many truth values, seen at the trigger, fit into a number of 32 bits."""
+
+_BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
+"""What judges attempts in doubt has to be small: it is rarely asked for, and built beside each."""
+
+
+@dataclass(frozen=True, slots=True)
+class CompileReport:
+    """What became of a requirement.
+
+    Attributes:
+        engine: `automaton`, or `network` where that does not close.
+        why: why it has no automaton; empty if it has one.
+        letters: what its propositions can be, as its formula tells them apart.
+        horizon: ticks from the trigger within which an attempt is decided; `None` if unbounded.
+        locations: of the automaton, both verdicts included; 0 without one. So are the others.
+        clocks: the largest number that an attempt has.
+        classes: of letters that lead the same way everywhere.
+        in_runs: whether attempts are kept in runs, so that a sample costs the same however many of
+            them are open.
+        bytes_per_attempt: of memory, while it is open; `None` if it is an object of its own.
+        steps: what is looked at when something changes or a time is due: parts of runs; without
+            runs, so many for each open attempt.
+    """
+
+    engine: str
+    why: str
+    letters: int
+    horizon: int | None
+    locations: int = 0
+    clocks: int = 0
+    classes: int = 0
+    in_runs: bool = False
+    bytes_per_attempt: int | None = None
+    steps: int = 0
+
+
+class CompiledRequirement:
+    """One requirement, ready to be judged by any engine; what an engine needs is made at first use.
+
+    Attributes:
+        rank: its place in the file.
+        spec: the specification that it is of.
+        requirement: as checked.
+        obligation: its formulas.
+        alphabet: of what it owes.
+        gap: ticks between two positions; `None` if only samples are positions.
+        is_beside: whether this judges the attempts in doubt of a requirement.
+    """
+
+    def __init__(
+        self,
+        rank: int,
+        spec: CheckedSpec,
+        requirement: Requirement,
+        obligation: Obligation,
+        factory: Factory,
+        *,
+        is_beside: bool = False,
+    ) -> None:
+        self._factory = factory
+        self.is_beside = is_beside
+        self.rank = rank
+        self.spec = spec
+        self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+        self.requirement = requirement
+        self.obligation = obligation
+        self.alphabet: Alphabet = alphabet_of(obligation.owed)
+        self._owed = factory.next(obligation.owed)
+
+    @cached_property
+    def _built(self) -> Automaton | DoesNotCloseError:
+        if self.network_plan.looks_back:
+            return DoesNotCloseError("something of the future below an operator of the past")
+        try:
+            budget = _BESIDE if self.is_beside else Budget()
+            return reduce(construct(self._owed, self.alphabet, budget), self.words.told)
+        except DoesNotCloseError as error:
+            return error.with_traceback(None)  # which would keep the frames of whoever asked
+
+    @property
+    def automaton(self) -> Automaton | None:
+        """Its automaton; `None` if that does not close."""
+        return self._built if isinstance(self._built, Automaton) else None
+
+    @cached_property
+    def slim(self) -> Automaton | None:
+        """Its automaton for those who are told verdicts only: what is owed may be merged."""
+        return None if self.automaton is None else reduce(self.automaton)
+
+    @property
+    def refusal(self) -> str:
+        """Why it has no automaton, or empty."""
+        return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
+
+    def in_runs(self, automaton: Automaton | None) -> bool:
+        """Whether its open attempts are kept in runs if an automaton of it judges them."""
+        requirement = self.requirement
+        return (
+            automaton is not None
+            and self.obligation.trigger is not None
+            and not requirement.captures
+            and requirement.for_each is None
+            and len(self.leaves) <= MOST_SEEN
+            and moves_in_runs(automaton)
+        )
+
+    @property
+    def report(self) -> CompileReport:
+        """How it is judged, and at what cost."""
+        reach, letters = horizon(self.obligation.owed), self.alphabet.size
+        automaton = self.automaton
+        if automaton is None:
+            return CompileReport("network", self.refusal, letters, reach)
+        in_runs = self.in_runs(automaton)
+        live = automaton.locations[PASSED + 1 :]
+        parts = sum(len(place.cuts[0]) + 1 if place.cuts else 1 for place in live)
+        return CompileReport(
+            "automaton",
+            "",
+            letters,
+            reach,
+            len(automaton.locations),
+            automaton.clocks,
+            automaton.classes,
+            in_runs,
+            RUN_BYTES if in_runs else None,
+            parts - 1 if in_runs else 1,
+        )
+
+    @cached_property
+    def hidden(self) -> CompiledRequirement | None:
+        """What judges its attempts in doubt; `None` if there are none."""
+        return self._beside(self.obligation.hidden)
+
+    @cached_property
+    def doubted(self) -> CompiledRequirement | None:
+        """The same where no trigger is sure."""
+        return self._beside(self.obligation.doubted)
+
+    @property
+    def judges(self) -> Mapping[str, CompiledRequirement]:
+        """What judges its attempts: it, and those that are in doubt."""
+        beside = {"": self, "?": self.hidden, "??": self.doubted}
+        return {kind: one for kind, one in beside.items() if one is not None}
+
+    def _beside(self, obligation: Obligation | None) -> CompiledRequirement | None:
+        if obligation is None:
+            return None
+        return CompiledRequirement(
+            self.rank, self.spec, self.requirement, obligation, self._factory, is_beside=True
+        )
+
+    @cached_property
+    def _table(self) -> TableMachine | None:
+        return None if self.automaton is None else TableMachine(self.automaton)
+
+    @cached_property
+    def _progression(self) -> Progression:
+        return Progression(self._owed, self.alphabet, self.requirement.id)
+
+    @cached_property
+    def network_plan(self) -> Plan:
+        """The nodes of its delay network."""
+        return plan_of(self.obligation.owed, self.gap)
+
+    @property
+    def is_fed(self) -> bool:
+        """Whether generated code in this process can work out what it reads."""
+        return self.requirement.for_each is None and not self.requirement.captures
+
+    def engine(self, name: str) -> str:
+        """Which of `automaton`, `network` and `progression` judges it where no code is generated.
+
+        Args:
+            name: of the engine that was asked for, and that does not refuse this requirement.
+        """
+        if name in ("network", "progression"):
+            return name
+        return "network" if self.automaton is None else "automaton"
+
+    def machine(self, engine: str) -> Machine:
+        """The machine that judges its attempts, if it is none of `network`.
+
+        Args:
+            engine: as `engine` takes it.
+        """
+        if self.engine(engine) == "automaton" and self._table is not None:
+            return self._table
+        return self._progression
+
+    @cached_property
+    def forecaster(self) -> Forecaster:
+        """Tells what is still possible for its open attempts."""
+        return Forecaster()
+
+    @cached_property
+    def shared_graph(self) -> Graph:
+        """The state formulas of all its attempts: with `let`, only those of the trigger."""
+        return graph_of(self._shared)
+
+    @property
+    def _shared(self) -> Iterator[State]:
+        obligation = self.obligation
+        states = (obligation.trigger, obligation.told, obligation.doubt)
+        yield from (one for one in states if one is not None)
+        if not self.requirement.captures:
+            yield from self._own
+        for beside in (self.hidden, self.doubted):
+            if beside is not None:
+                yield from beside._shared
+
+    @property
+    def _own(self) -> Iterator[State]:
+        """The state formulas of an attempt."""
+        obligation = self.obligation
+        yield from self.alphabet.propositions
+        yield from (one for one in (obligation.again, obligation.unborn) if one is not None)
+        if self.requirement.mode is Mode.WHENEVER:
+            states = (obligation.trigger, obligation.running)
+            yield from (one for one in states if one is not None)
+
+    @cached_property
+    def leaves(self) -> tuple[tuple[State, str], ...]:
+        """What it reads of the input, with its text."""
+        trigger = [] if self.obligation.trigger is None else [self.obligation.trigger]
+        return leaf_texts(graph_of([*trigger, *self.alphabet.propositions]))
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The signals and events that it reads."""
+        graph = graph_of(state for state, _ in self.leaves)
+        return frozenset(graph.by_name) | frozenset(
+            name for capture in self.requirement.captures for name in inputs_of(capture.value)
+        )
+
+    @cached_property
+    def single_payloads(self) -> frozenset[str]:
+        """The events of which it can judge one payload at an instant only."""
+        own = self.requirement.for_each
+        read = {
+            event
+            for state, _ in self.leaves
+            if isinstance(state.leaf, Compare)
+            for event in events_of(state.leaf.left, state.leaf.right)
+        }
+        return frozenset(read) - frozenset([own.value.event] if own else [])
+
+    @cached_property
+    def words(self) -> Words:
+        """Names its parts."""
+        return Words(self.obligation.origins)
+
+    @cached_property
+    def consequent_graph(self) -> Graph:
+        """The propositions of what it owes."""
+        return graph_of(self._own)
+
+    def looks_back_beyond(self, followed: Graph) -> bool:
+        """Whether what it owes depends on what was before the trigger and `followed` lacks."""
+        graph = self.consequent_graph
+        if self.network_plan.looks_back or graph.remembers_captured:
+            return True
+        return any(graph.nodes[place] not in followed.index for place in graph.stateful)
+
+
+def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:
+    """The requirements of a specification, compiled, by id.
+
+    Raises:
+        RvmonError: one is beyond all engines; which and why is said.
+    """
+    factory = Factory()
+    made = {}
+    for rank, (name, requirement) in enumerate(checked.requirements.items()):
+        try:
+            obligation = lower(requirement, factory, checked.period)
+        except UnmonitorableError as error:
+            span = requirement.span
+            place = "" if span is None else f"{span.source.name}:{span.line}: "
+            raise RvmonError(
+                f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
+            ) from None
+        made[name] = CompiledRequirement(rank, checked, requirement, obligation, factory)
+    return made

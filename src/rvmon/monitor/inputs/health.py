@@ -1,0 +1,155 @@
+"""Input health of a run: what was not known, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rvmon.dataflow.inputs import Inputs, payloads_of
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.inputs.intake import MOST_HELD, Intake
+from rvmon.readers.alternation import Alternations
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Value
+from rvmon.trace.time import format_ticks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class HealthLog:
+    """Counts unknown values as they come.
+
+    Attributes:
+        began: the instant of the first sample; `None` before it.
+        alternations: how known and unknown values of columns follow each other.
+    """
+
+    STATE = ("began", "_seen")
+
+    def __init__(self) -> None:
+        self.began: int | None = None
+        self.alternations = Alternations()
+        self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
+
+    def note(self, t: int, values: Mapping[str, Value]) -> None:
+        """Look through a sample that was taken."""
+        if self.began is None:
+            self.began = t
+        for name, value in values.items():
+            if value is None or value != value:
+                self._add(name, name, value, t)
+            elif type(value) is dict or type(value) is tuple:
+                for payload in payloads_of(value):
+                    for field, scalar in (payload or {}).items():
+                        if scalar is None or scalar != scalar:
+                            self._add(f"{name}.{field}", name, scalar, t)
+
+    def count_columns(self, times: NDArray[Any], columns: Mapping[str, NDArray[Any]]) -> None:
+        """Look through columns for NaN.
+
+        Args:
+            times: int64[n] ticks, later than all before.
+            columns: of signals and events by name, of the same length.
+        """
+        import numpy as np
+
+        for name, column in columns.items():
+            if holds_nan(column):
+                unknown = np.isnan(column)
+                self.alternations.note_column(name, unknown)
+                rows = np.flatnonzero(unknown)
+                key = (HealthKind.NAN, name, name)
+                count, first = self._seen.get(key, (0, int(times[rows[0]])))
+                self._seen[key] = (count + len(rows), first)
+            elif column.dtype.kind == "f":
+                self.alternations.note_known(name, len(column))
+
+    def _add(self, shown: str, name: str, value: object, t: int) -> None:
+        key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
+        count, first = self._seen.get(key, (0, t))
+        self._seen[key] = (count + 1, first)
+
+    def report(
+        self,
+        requirements: Sequence[CompiledRequirement],
+        inputs: Inputs,
+        intake: Intake | None,
+    ) -> list[Health]:
+        """All findings of the run.
+
+        Args:
+            requirements: that were judged.
+            inputs: of the run, at its end.
+            intake: of the run, if samples were held back.
+        """
+        readers = _readers(requirements)
+        found = self.seen(requirements)
+        found += self._unfed(readers, inputs)
+        found += [
+            Health(HealthKind.STALE, name, count, first, readers.get(name, ()))
+            for name, (count, first) in inputs.expired.items()
+        ]
+        if intake is not None:
+            found += [
+                replace(one, requirements=readers.get(one.name, ()))
+                for one in intake.conflicts.health()
+            ]
+            if intake.late is not None:
+                count, first = intake.late
+                found.append(Health(HealthKind.LATE, "samples", count, first, remark="left out"))
+            if intake.crowded is not None:
+                count, first = intake.crowded
+                early = f"judged before the delay was over: {MOST_HELD:,} samples were waiting"
+                found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
+        return sorted(found, key=by_name)
+
+    def seen(self, requirements: Sequence[CompiledRequirement]) -> list[Health]:
+        """The unknown values that were counted."""
+        readers = _readers(requirements)
+        return [
+            Health(kind, shown, count, first, readers.get(name, ()))
+            for (kind, shown, name), (count, first) in self._seen.items()
+        ]
+
+    def _unfed(self, readers: Mapping[str, tuple[str, ...]], inputs: Inputs) -> list[Health]:
+        """Names without a source, and signals that were unknown at first."""
+        found = []
+        for name, ids in readers.items():
+            slot = inputs.slots.get(name)
+            if name in inputs.absent:
+                found.append(Health(HealthKind.ABSENT, name, 1, None, ids))
+            elif slot is not None and self.began is not None and slot.first_at != self.began:
+                since = "no value" if slot.first_at is None else "first value at "
+                when = "" if slot.first_at is None else format_ticks(slot.first_at)
+                found.append(
+                    Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since + when)
+                )
+        return found
+
+
+def holds_nan(column: NDArray[Any]) -> bool:
+    """Whether a column of signals or events holds NaN."""
+    import numpy as np
+
+    if column.dtype.kind != "f":
+        return False
+    # Mostly one sum tells that there is none; that of infinities may be NaN, too.
+    with np.errstate(invalid="ignore", over="ignore"):
+        total = np.add.reduce(column)
+    return bool(np.isnan(total) and np.isnan(column).any())
+
+
+def by_name(entry: Health) -> tuple[str, HealthKind]:
+    """The order of findings."""
+    return entry.name, entry.kind
+
+
+def _readers(requirements: Sequence[CompiledRequirement]) -> dict[str, tuple[str, ...]]:
+    """By name the requirements that read it."""
+    readers: dict[str, tuple[str, ...]] = {}
+    for compiled in requirements:
+        for name in compiled.reads:
+            readers[name] = (*readers.get(name, ()), compiled.requirement.id)
+    return readers

@@ -1,0 +1,334 @@
+"""Monitors that run generated code where they can; records and findings are made as ever."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from rvmon.automaton.machine import Machine
+from rvmon.codegen.python_unit import unit_class
+from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
+from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
+from rvmon.monitor.attempts.judges import judge_of
+from rvmon.monitor.compiled.code_plan import plan_requirements
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.online.generated_records import GeneratedRecords, Hearing, UnitStanding
+from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.monitor import Monitor
+from rvmon.monitor.online.one_call import overlap
+from rvmon.monitor.records.ledger import Ledger
+from rvmon.runtime.nodes import BUSY, LIMIT
+from rvmon.runtime.rule import Rule
+from rvmon.runtime.unit import Unit
+from rvmon.runtime.values import NEVER
+from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import Value
+from rvmon.verdict.attempt import Attempt
+
+Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
+Told = Callable[[int], Sequence[Attempt]]
+
+_HELD = BUSY + 1
+"""As `BUSY`, while the monitor is called itself; behind a call that was interrupted as it ended."""
+
+
+class Forms:
+    """What is generated for one choice of requirements and sources; serves any number of monitors.
+
+    Attributes:
+        requirements: those that generated code judges, or feeds a judge of.
+        others: those that it can do nothing for.
+        plan: of `requirements`.
+        unit: the generated class.
+        machines: per requirement, what judges its attempts; `None`: a judge.
+
+    Args:
+        compiled: the specification.
+        requirements: chosen from it.
+        sources: the names that can arrive; `None`: all.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        sources: frozenset[str] | None,
+    ) -> None:
+        self.requirements = [one for one in requirements if one.is_fed]
+        self.others = [one for one in requirements if not one.is_fed]
+        self.plan = plan_requirements(compiled, self.requirements)
+        self.unit = unit_class(self.plan, sources)
+        self.machines: list[Machine | None] = [
+            None if rule.automaton is None else one.machine("auto")
+            for one, rule in zip(self.requirements, self.plan.rules, strict=True)
+        ]
+        # What judges attempts in doubt is made when one comes up.
+        self.machines += [None for _ in self.plan.hidden_of]
+
+
+class GeneratedLanes(Lanes):
+    """Lanes of which one is generated code; the others are for what that cannot judge.
+
+    Args:
+        forms: what was generated.
+        unit: of these; begins a run.
+        compiled: the specification.
+        engine: judges the others.
+        sources: the names that can arrive; `None`: all.
+        ledger: takes the records.
+        other: takes the samples that need a closer look.
+    """
+
+    STATE = ("outages", "unit", "_counts", *Lanes.STATE)
+
+    def __init__(
+        self,
+        forms: Forms,
+        unit: Unit,
+        compiled: CompiledSpec,
+        engine: str,
+        sources: frozenset[str] | None,
+        ledger: Ledger,
+        other: Step,
+    ) -> None:
+        self.other = other
+        self.told: Told = self._told
+        spec = compiled.checked
+        super().__init__(spec, forms.others, engine, sources, ledger)
+        self.alone = not forms.others
+        self.unit = unit
+        absent = frozenset() if sources is None else {*spec.signals, *spec.events} - sources
+        self.outages = outages_at_first(spec, absent)
+        self._counts = [0] * len(forms.requirements)
+        clerks: list[Any] = [None] * (len(forms.requirements) + len(forms.plan.hidden_of))
+        unit.restart(self, clerks)
+        standing = UnitStanding(forms.plan, unit)
+        self._seats = [
+            GeneratedRecords(one, forms.plan, unit, standing, ledger, self._counts, noted)
+            for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
+        ]
+        judged: list[CompiledRequirement | None] = [*forms.requirements]
+        judged += [forms.requirements[index].hidden for index in forms.plan.hidden_of]
+        hearing = Hearing(unit, ledger)
+        for index, one in enumerate(judged):
+            if forms.machines[index] is not None:
+                unit.rules[index].clerk = self._seats[index]
+            elif one is not None:
+                hidden = index >= len(forms.requirements)
+                judge = judge_of(one, "auto", standing, hearing, {}, index=index, hidden=hidden)
+                unit.rules[index] = judge
+                judge.restless = judge.watches
+                unit.note(judge)
+
+    # What the unit calls.
+
+    def lost(self, signal: int, t: int, why: str) -> None:
+        """Hear that a signal is not known from `t` on."""
+        note_lost(self.outages, self.spec, self.unit.SIGNALS[signal], HealthKind(why), t)
+
+    def _told(self, t: int) -> Sequence[Attempt]:
+        """What a sample at `t` has decided; it is over."""
+        decided = self.ledger.flush()
+        self.unit.after = t
+        return decided
+
+    def found(self, signal: int, t: int) -> None:
+        """Hear that a signal has a value from `t` on."""
+        note_found(self.outages, self.unit.SIGNALS[signal], t)
+
+    # What the monitor calls.
+
+    @property
+    def judges(self) -> Sequence[AttemptJudge]:
+        """The judges of all lanes."""
+        return [*(self._judge_now(rule) for rule in self.unit.rules), *super().judges]
+
+    def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
+        """See `Lanes`."""
+        own = [
+            (rule.compiled.requirement.id, rule, rule.running_attempt)
+            if isinstance(rule, AttemptJudge)
+            else (self._seats[rule.index].id, rule, rule.running_attempt)
+            for rule in self.unit.rules
+        ]
+        return [*own, *super().holders()]
+
+    def _judge_now(self, rule: Rule) -> AttemptJudge:
+        """A rule that knows its requirement, or how one would stand in its place."""
+        if isinstance(rule, AttemptJudge):
+            return rule
+        return self._seats[rule.index].judge_now(rule)
+
+    def take_along(self, t: int) -> None:
+        """See `Lanes`."""
+        for rule in self.unit.rules:
+            if rule.slides:
+                rule.pass_to(t)
+        super().take_along(t)
+
+    def through(self, limit: int) -> None:
+        """Let time pass up to `limit`."""
+        self.unit.through(limit)
+        super().through(limit)
+
+    def reach(self, t: int) -> None:
+        """Let time come to `t`, from the instant before."""
+        if t >= self.unit.wake:
+            self.unit.reach(t)
+            self.unit.set_alarm()
+        super().reach(t)
+
+    def sample(self, t: int, values: Mapping[str, Value]) -> None:
+        """Take a valid sample; time has come to `t − 1` before."""
+        self.unit.take(t, values)
+        self.unit.after = _HELD  # the call goes on
+        super().sample(t, values)
+
+    def finish(self, end: int, reached: int) -> None:
+        """Settle what is undecided; time has come to `end` before."""
+        self.unit.close(end, reached)
+        for rule in self.unit.rules:
+            judge = self._judge_now(rule)
+            rule.attempts = judge.attempts
+            rule.settle_flags()
+            for attempt in judge.attempts:
+                self.ledger.ended(judge, attempt, end, reached)
+            rule.attempts, rule.runs = [], {}
+        super().finish(end, reached)
+        if self.alone:
+            self._show_inputs()
+
+    def untold(self) -> list[str]:
+        """See `Lanes`."""
+        own = [
+            seat.compiled.requirement.id
+            for index, seat in enumerate(self._seats)
+            if not self.unit.is_told(index)
+        ]
+        return [*own, *super().untold()]
+
+    def _show_inputs(self) -> None:
+        """Note what the unit saw of the inputs where their health is reported from."""
+        inputs = self.main.flow.inputs
+        for name, first in zip(self.unit.SIGNALS, self.unit.first, strict=True):
+            inputs.slots[name].first_at = first
+        inputs.expired = {
+            self.unit.SIGNALS[signal]: found for signal, found in self.unit.expired.items()
+        }
+
+
+class GeneratedMonitor(Monitor):
+    """A monitor whose `step_ns` is generated code.
+
+    Samples that need a closer look (the first, unknown values, payloads, what is wrong) take the
+    way of every monitor.
+
+    Args:
+        forms: what was generated.
+        compiled: the specification.
+        requirements: to be judged.
+        engine: judges what cannot be generated.
+        settle: see `build_monitor`.
+        sources: the names that can arrive; `None`: all.
+        keep: see `build_monitor`.
+    """
+
+    STATE = (*Monitor.STATE, "_floor")
+
+    def __init__(
+        self,
+        forms: Forms,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        engine: str,
+        settle: str,
+        sources: frozenset[str] | None,
+        keep: int | None,
+    ) -> None:
+        names = {*compiled.checked.signals, *compiled.checked.events}
+        absent = frozenset() if sources is None else frozenset(names - sources)
+        self._forms = forms
+        self._unit = forms.unit(forms.machines, absent)
+        super().__init__(compiled, requirements, engine, settle, sources, keep)
+        self._by_unit = not forms.others and self._intake is None
+        """Whether the unit alone takes samples as they come."""
+        # Generated code looks and closes in one go only where one thread has a turn at a time.
+        if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
+            self.__dict__["step_ns"] = self._unit.step
+
+    def _make_lanes(self) -> Lanes:
+        self._unit_lanes = GeneratedLanes(
+            self._forms,
+            self._unit,
+            self.options.compiled,
+            self.options.engine,
+            self.options.sources,
+            self._ledger,
+            super().step_ns,
+        )
+        return self._unit_lanes
+
+    def _attend(self) -> None:
+        attends = self._listeners or self.options.keep is not None
+        self._unit_lanes.told = self._hear if attends else self._unit_lanes._told
+
+    def _begin(self) -> None:
+        super()._begin()
+        self._floor = self._unit.after
+
+    def _enter(self) -> None:
+        """Note the samples that the generated code took by itself, and have it take no more."""
+        unit = self._unit
+        after = unit.after
+        if after == BUSY:
+            raise overlap()
+        unit.after = _HELD
+        if after not in (self._floor, _HELD):
+            self._last = self._reached = self._floor = after
+        if self._health.began is None:
+            self._health.began = unit.began
+        if self._torn is None:
+            self._torn = unit.torn
+
+    def _leave(self) -> None:
+        """Have the generated code take samples behind what was taken, and what time has come to."""
+        after = -LIMIT if self._last is None else self._last
+        if self._reached is not None:
+            after = max(after, self._reached - 1)
+        self._unit.after = self._floor = after if self._report is None else LIMIT
+
+    def _hear(self, t: int) -> Sequence[Attempt]:
+        """Give out what the generated code has decided by itself, of a sample at `t`."""
+        self._last = self._reached = t
+        decided = self._flush()
+        self._unit.after = self._floor = t
+        self._listeners.tell(decided)
+        return decided
+
+    def _flush(self) -> Sequence[Attempt]:
+        self._unit.news = False
+        return super()._flush()
+
+    def _advance(self, t_ns: int) -> Sequence[Attempt]:
+        if not (self._by_unit and type(t_ns) is int and self._floor < t_ns < self._unit.wake):
+            return super()._advance(t_ns)
+        self._reached = t_ns  # nothing happens up to then
+        return ()
+
+    def _put_away(self) -> bytes:
+        # Generated code may take samples meanwhile: what it has taken is part of what is put away.
+        self._unit.after = self._floor
+        data = super()._put_away()
+        if self._unit.after != self._floor:
+            raise overlap()
+        return data
+
+    def _next_due(self) -> int | None:
+        own = min(self._unit.next_position(), self._unit.next_due())
+        others = super()._next_due()
+        found = own if others is None else min(own, others)
+        if found >= NEVER or self._reached is None or self._report is not None:
+            return None
+        return max(found, self._reached + 1)

@@ -1,0 +1,402 @@
+"""The online monitor of a specification."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NoReturn
+
+from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.inputs.health import HealthLog
+from rvmon.monitor.inputs.intake import Intake
+from rvmon.monitor.inputs.validate import Validator
+from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.listeners import Callback, Listeners
+from rvmon.monitor.online.one_call import OneCall
+from rvmon.monitor.online.options import Options
+from rvmon.monitor.online.retention import Kept
+from rvmon.monitor.online.snapshot import snapshot
+from rvmon.monitor.online.torn import capped, not_passed
+from rvmon.monitor.records.ledger import Ledger
+from rvmon.runtime.values import NEVER
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report, report_of
+from rvmon.verdict.verdict import Verdict
+
+
+class Monitor:
+    """Judges a stream of samples; made by `rvmon.monitor.build`.
+
+    Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
+    methods that end in `_ns`.
+
+    Attributes:
+        judged_by: the engines that judge its requirements, as its report says them.
+    """
+
+    STATE: tuple[str, ...] = (
+        *("_ledger", "_kept", "_lanes"),
+        *("_intake", "_health", "_last", "_reached", "_torn"),
+    )
+
+    judged_by = ""
+
+    def __init__(
+        self,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        engine: str,
+        settle: str,
+        sources: frozenset[str] | None,
+        keep: int | None,
+    ) -> None:
+        self.options = Options(compiled, requirements, engine, settle, sources, keep)
+        single = frozenset().union(*(one.single_payloads for one in requirements))
+        self._validator = Validator(compiled.checked, sources, single)
+        self._listeners = Listeners()
+        self.one_call = OneCall(self)
+        self._begin()
+
+    def _enter(self) -> None:
+        """Begin a call: learn what was done without one."""
+
+    def _leave(self) -> None:
+        """End a call."""
+
+    def reset(self) -> None:
+        """Forget the run; the next sample starts another. Callbacks stay."""
+        self.one_call(self._begin)
+
+    def _begin(self) -> None:
+        self._ledger = Ledger()
+        self._lanes = self._make_lanes()
+        self._kept = Kept(self._ledger, self.options.keep)
+        delay = self.options.compiled.checked.max_delay or 0
+        holds_back = delay or self.options.settle == "next"
+        self._intake = Intake(delay, self.options.compiled.checked.events) if holds_back else None
+        self._health = HealthLog()
+        self._last: int | None = None
+        self._reached: int | None = None
+        self._report: Report | None = None
+        self._torn: int | None = None
+        self._attend()
+
+    def _attend(self) -> None:
+        """Have what is decided heard of, if it is to be told or bounded."""
+
+    def _make_lanes(self) -> Lanes:
+        return Lanes(
+            self.options.compiled.checked,
+            self.options.requirements,
+            self.options.engine,
+            self.options.sources,
+            self._ledger,
+        )
+
+    def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take one sample; see `step_ns`.
+
+        Args:
+            t: seconds.
+            values: what was updated or occurred.
+        """
+        if type(values) is not dict and not isinstance(values, Mapping):
+            raise TraceError(f"sample at {t} s: expected values by name, found {values!r}")
+        return self.step_ns(ticks_of_seconds(t), values)
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take one sample and return the attempts that it decided.
+
+        Args:
+            t_ns: ticks, later than all samples before.
+            values: what was updated or occurred: signals by value, `None` or NaN if it became
+                unknown; events `True`, or their payload.
+
+        Raises:
+            TimeOrderError: the time is not later, or an `advance` said that nothing would come.
+            TraceError: a name or a value that the specification does not know, or a time that is
+                no whole number.
+            OverlapError: another call is under way. In all cases the monitor is as it was.
+        """
+        decided = self.one_call(self._step, t_ns, values)
+        self._listeners.tell(decided)
+        return decided
+
+    def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        t_ns = self._taken_time(t_ns)
+        if self._intake is not None:
+            checked = self.one_call.spare(self._validator.check, t_ns, values)
+            ready = self._intake.take(t_ns, checked)
+            return self._settled(ready, self._intake.floor)
+        if self._last is not None and t_ns <= self._last:
+            raise TimeOrderError(
+                f"sample at {format_ticks(t_ns)} is not after the one at "
+                f"{format_ticks(self._last)}: merge what has equal stamps (settle='next' does), "
+                "sort what is out of order"
+            )
+        if self._reached is not None and t_ns < self._reached:
+            raise TimeOrderError(
+                f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) said "
+                "that none before would come: advance later, or drop the sample"
+            )
+        self._judge(t_ns, self.one_call.spare(self._validator.check, t_ns, values))
+        return self._flush()
+
+    def _flush(self) -> Sequence[Attempt]:
+        """What was decided since the last call."""
+        decided = self._ledger.flush()
+        self._kept.bound(self._lanes)
+        return decided
+
+    def on_decided(self, callback: Callback) -> Callable[[], None]:
+        r"""Have a function called with each attempt that passes or fails, as it is decided.
+
+        `step`, `advance` and `finish` call it when all their records are made, in the order in
+        which they return them, in the thread that called them; it may look at the monitor. An
+        attempt that ends undecided is only in the report. What a callback raises comes out of
+        that call when all callbacks were called for all attempts (several errors as an
+        `ExceptionGroup`); the sample was taken nevertheless. Callbacks stay over `reset`, and are
+        no part of snapshots: register them again after `Spec.restore`.
+
+        Args:
+            callback: takes an attempt.
+
+        Returns:
+            A function without arguments that ends this; to call it again does nothing.
+
+        Raises:
+            RvmonError: it cannot be called.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> stop = monitor.on_decided(lambda attempt: print(attempt.name, attempt.verdict.name))
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        R1#1 FAIL
+        >>> _ = monitor.finish(5)
+        R1#2 PASS
+        >>> stop()
+        """
+        return self._listeners.add(callback, self._attend, failures_only=False)
+
+    def on_failure(self, callback: Callback) -> Callable[[], None]:
+        """Have a function called with each attempt that fails; otherwise as `on_decided`."""
+        return self._listeners.add(callback, self._attend, failures_only=True)
+
+    def _judge(self, t: int, values: Mapping[str, Value]) -> None:
+        self._lanes.through(t - 1)
+        try:
+            self._lanes.instances.admit(t, values)
+        except TraceError:
+            self._pass_to(t)
+            raise
+        self._health.note(t, values)
+        self._lanes.sample(t, values)
+        self._last = self._reached = t
+
+    def _settled(self, samples: Sequence[Sample], floor: int) -> Sequence[Attempt]:
+        """Judge samples that were held back, then let time come to `floor`."""
+        for sample in samples:
+            self._judge(sample.t, sample.values)
+        self._pass_to(floor)
+        return self._flush()
+
+    def advance(self, t: float) -> Sequence[Attempt]:
+        """Say that no sample before `t` (seconds) will come; see `advance_ns`."""
+        return self.advance_ns(ticks_of_seconds(t))
+
+    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
+        """Say that no sample before `t_ns` will come, and return the attempts that this decided.
+
+        A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
+        """
+        decided = self.one_call(self._advance, t_ns)
+        self._listeners.tell(decided)
+        return decided
+
+    def _advance(self, t_ns: int) -> Sequence[Attempt]:
+        t_ns = self._taken_time(t_ns)
+        held_back = () if self._intake is None else self._intake.settle(t_ns)
+        return self._settled(held_back, t_ns)
+
+    def _pass_to(self, t: int) -> None:
+        if self._reached is None or t > self._reached:
+            self._lanes.through(t - 1)
+            self._lanes.reach(t)
+            self._reached = t
+
+    def _taken_time(self, t: int) -> int:
+        """A time that was given, as a plain integer."""
+        if self._report is not None:
+            raise TraceError("the run is finished: call reset() before the next")
+        return whole_ticks(t)
+
+    def finish(self, t: float | None = None) -> Report:
+        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        return self.finish_ns(None if t is None else ticks_of_seconds(t))
+
+    def finish_ns(self, t_ns: int | None = None) -> Report:
+        """End the run and judge it.
+
+        Args:
+            t_ns: the end of the trace in ticks, if it is later than all so far.
+
+        Returns:
+            The report; the same again if the run was finished before.
+        """
+        report, decided = self.one_call(self._finish, t_ns)
+        self._listeners.tell(decided)
+        return report
+
+    def _finish(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        if self._report is not None:
+            return self._report, ()
+        if t_ns is not None:
+            t_ns = self._taken_time(t_ns)
+        for sample in () if self._intake is None else self._intake.close():
+            self._judge(sample.t, sample.values)
+        report, decided = self._conclude(t_ns)
+        if self._torn is not None:
+            report = capped(report, self._torn)
+        self._report = replace(report, engine=self.judged_by)
+        return self._report, decided
+
+    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        """Judge the run that ends, all samples of which were taken; also what this decided."""
+        end = self._end(t_ns)
+        if end is not None:
+            reached = end if self._reached is None else max(end, self._reached)
+            self._lanes.through(end)
+            self._lanes.finish(end, reached)
+        decided = self._ledger.close()
+        self._kept.trim()
+        report = report_of(
+            self._names,
+            self._ledger.attempts,
+            dropped=self._kept.dropped,
+            untold=self._lanes.untold(),
+            health=self._health.report(
+                self.options.requirements, self._lanes.main.flow.inputs, self._intake
+            ),
+            origin=self._health.began or 0,
+            end=end,
+        )
+        return report, decided
+
+    @property
+    def _names(self) -> list[str]:
+        return [compiled.requirement.id for compiled in self.options.requirements]
+
+    @property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        r"""The verdict of each requirement so far: the fold of the attempts decided by now.
+
+        `F` if an attempt has failed, else `P` if one has passed, else `NT`. What is undecided does
+        not count, so that this is not what `finish` would say: it may call a run `I` or `F` that
+        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's. After
+        a call that an interrupt tore, what has not failed is `I`.
+        A call costs what was decided since the last one.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        ...     print(monitor.verdicts["R1"])
+        NT
+        F
+        F
+        """
+        return self.one_call(self._verdicts)
+
+    def _verdicts(self) -> Mapping[str, Verdict]:
+        if self._report is not None:
+            return self._report.verdicts
+        found = self._verdicts_so_far()
+        return found if self._torn is None else not_passed(found)
+
+    def _verdicts_so_far(self) -> Mapping[str, Verdict]:
+        return self._kept.verdicts(self._names)
+
+    def _end(self, t: int | None) -> int | None:
+        """The last instant of the trace; `None` if there was no sample."""
+        if self._last is None:
+            return None
+        known = [self._last]
+        if t is not None:
+            known.append(t)
+        if (
+            self._reached is not None
+            and self.options.compiled.checked.time is not TimeModel.SAMPLED
+        ):
+            known.append(self._reached - 1)
+        return max(known)
+
+    @property
+    def lanes(self) -> Lanes:
+        """What judges the run."""
+        return self._lanes
+
+    def snapshot(self) -> bytes:
+        """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
+
+        It holds the open attempts, held values, samples held back and all records so far, and no
+        code; another specification or version refuses it.
+
+        Raises:
+            SnapshotError: the run is finished.
+        """
+        return self.one_call(self._put_away)
+
+    def __reduce__(self) -> NoReturn:
+        """Refused: pickles and copies would share or lack what is under way.
+
+        Raises:
+            RvmonError: always; it says what to do.
+        """
+        raise RvmonError(
+            "a monitor is neither pickled nor copied: monitor.snapshot() gives the run as bytes, "
+            "and spec.restore(data) makes a monitor of them, in this process or another"
+        )
+
+    def _put_away(self) -> bytes:
+        if self._report is not None:
+            raise SnapshotError("the run is finished: keep its report, or call reset()")
+        if self._torn is not None:
+            self._flush()  # what the torn call has decided is not lost
+        self._kept.tidy(self._lanes)
+        return snapshot(self.options, self._lanes, self)
+
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """The attempts that are undecided now."""
+        return self.one_call(self._open)
+
+    def _open(self) -> Sequence[Attempt]:
+        if self._reached is None:
+            return []
+        known = self._reached == self._last
+        now = 2 * self._reached + known
+        self._lanes.take_along(self._reached - (not known))
+        return [
+            self._ledger.open_record(judge, attempt, now)
+            for judge in self._lanes.judges
+            for attempt in judge.attempts
+        ] + [*self._ledger.void_records]
+
+    @property
+    def next_due(self) -> int | None:
+        """The next instant (ticks) at which time alone can decide something."""
+        return self.one_call(self._next_due)
+
+    def _next_due(self) -> int | None:
+        if self._reached is None or self._report is not None:
+            return None
+        found = min(lane.next_decision for lane in self._lanes.all)
+        return max(found, self._reached + 1) if found < NEVER else None

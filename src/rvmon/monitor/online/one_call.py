@@ -1,0 +1,100 @@
+"""One call at a time: a monitor has no room for two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ParamSpec, Protocol, TypeVar
+
+from rvmon.errors import OverlapError, RvmonError, SnapshotError
+from rvmon.monitor.online.torn import BEFORE_ALL
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Guarded(Protocol):
+    """What is entered by one call at a time.
+
+    Attributes:
+        _reached: how far its run has come, ticks.
+        _torn: how far it had come when a call was interrupted or failed; `None`: none was.
+    """
+
+    _reached: int | None
+    _torn: int | None
+
+    def _enter(self) -> None:
+        """Begin a call."""
+
+    def _leave(self) -> None:
+        """End it, however it ends."""
+
+
+class OneCall:
+    """Refuses a call that comes while another is under way, from whatever thread.
+
+    Args:
+        guarded: what is called.
+
+    Attributes:
+        restored: whether its state came from outside, and so may fit no monitor after all.
+    """
+
+    def __init__(self, guarded: Guarded) -> None:
+        self.restored = False
+        self._guarded = guarded
+        self._turn: dict[None, object] = {}
+        self._spared: BaseException | None = None
+
+    def __call__(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
+        """Make a call, and no other until it is over.
+
+        Raises:
+            OverlapError: another one is under way.
+        """
+        # An interrupt strikes where a call begins or ends. So that none can come between taking the
+        # turn and seeing that it is given back, one call takes it within the `try`, and none is
+        # needed to tell whose it is, or to give it back.
+        own = object()
+        try:
+            if self._turn.setdefault(None, own) is not own:
+                raise overlap()
+            self._guarded._enter()
+            try:
+                return call(*args, **kwargs)
+            finally:
+                self._guarded._leave()
+        except RvmonError:
+            raise
+        except BaseException as error:
+            # No function is called up to the mark: another interrupt cannot come before it.
+            if self._guarded._torn is None and error is not self._spared:
+                reached = self._guarded._reached
+                self._guarded._torn = BEFORE_ALL if reached is None else reached
+            if not (self.restored and isinstance(error, Exception)):
+                raise
+            raise SnapshotError(
+                "the snapshot that this monitor was made of was damaged: what it held fits no "
+                "monitor; begin a new run"
+            ) from error
+        finally:
+            self._spared = None
+            if None in self._turn and self._turn[None] is own:
+                del self._turn[None]
+
+    def spare(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
+        """Make a part of the call under way that changes nothing, whatever it raises."""
+        try:
+            return call(*args, **kwargs)
+        except BaseException as error:
+            self._spared = error
+            raise
+
+
+def overlap() -> OverlapError:
+    """The error of a call that comes while another is under way."""
+    return OverlapError(
+        "another call of this monitor is under way, in another thread or in what a signal handler "
+        "has interrupted; this one was not taken: give each thread a monitor of its own "
+        "(spec.monitor()), or hold a lock round the calls"
+    )

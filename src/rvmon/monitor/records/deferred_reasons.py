@@ -1,0 +1,153 @@
+"""What is told of a decision, from what was noted when it was made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+from rvmon.automaton.machine import Machine
+from rvmon.codegen.unit_plan import Plan
+from rvmon.dataflow.outages import Outage
+from rvmon.dataflow.standing import Standing
+from rvmon.monitor.attempts.attempt_judge import Clerk, Open
+from rvmon.monitor.attempts.machine_judge import MachineJudge
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.records.explain_machine import explained, just_before
+from rvmon.monitor.records.ledger import truths_shown
+from rvmon.monitor.records.reasons import Reasons
+from rvmon.runtime.bulk import FROM_TRIGGER, unpacked
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.verdict import Verdict
+
+
+class DeferredReasons:
+    """Tells of the decisions of one requirement that something else than its judge has made.
+
+    A record costs little until someone asks for its reason: what that needs is noted.
+
+    Args:
+        compiled: the requirement.
+        plan: that it is part of.
+        clerk: whom a judge would tell.
+
+    Attributes:
+        leaves: the nodes of the plan that it reads of the input.
+        places: the nodes of the plan that its letters are made of.
+    """
+
+    def __init__(self, compiled: CompiledRequirement, plan: Plan, clerk: Clerk) -> None:
+        self.compiled = compiled
+        self._plan = plan
+        self._clerk = clerk
+        index = plan.graph.index
+        self.places = tuple(index[state] for state in compiled.alphabet.propositions)
+        read = [(index[leaf], text) for leaf, text in compiled.leaves if leaf in index]
+        self.leaves = tuple(leaf for leaf, _ in read)
+        self._texts = tuple(text for _, text in read)
+        self.details = self._details
+
+    @cached_property
+    def _machine(self) -> Machine:
+        return self.compiled.machine("auto")
+
+    @cached_property
+    def reasons(self) -> Reasons:
+        """Of its decisions; they are rarely asked for where attempts are in doubt."""
+        return Reasons(self.compiled, self._machine)
+
+    def judge(
+        self,
+        flow: Standing,
+        letters: tuple[int, int],
+        position: int,
+        attempts: list[Open],
+    ) -> MachineJudge:
+        """The judge of the requirement, as it would stand if it had judged.
+
+        Args:
+            flow: as it stood.
+            letters: of the position.
+            position: the instant that the values are of.
+            attempts: the open ones.
+        """
+        judge = MachineJudge(self.compiled, self._machine, flow, self._clerk, {})
+        judge.letter, judge.other = letters
+        judge.position = position
+        judge.attempts = attempts
+        return judge
+
+    def unpacked(self, seen: tuple[int, ...] | int) -> tuple[int, ...]:
+        """The values of the leaves, where they may be packed."""
+        return unpacked(seen, len(self.leaves)) if isinstance(seen, int) else seen
+
+    def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
+        """All that a record says beside the verdict, from what was noted at the decision."""
+        seen_then, t, before, letter, other, position, *rest = noted
+        seen_then = self.unpacked(seen_then)
+        if before[1] == FROM_TRIGGER:
+            before = (before[0], (attempt.triggered,))
+        leaves, count = len(self.leaves), len(self.places)
+        seen = tuple(rest[:leaves])
+        values, since = rest[leaves:][:count], rest[leaves + count :][:count]
+        until = rest[leaves + 2 * count :]
+        nodes: dict[int, int] = dict(zip(self.leaves, seen, strict=True))
+        nodes |= zip(self.places, values, strict=True)
+        instants = {}
+        for index, place in enumerate(self.places):
+            instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
+        kept = dict(zip(self.places, since, strict=True))
+        flow = Stood(self._plan, nodes, kept, instants, {}, position)
+        passed = attempt.verdict is Verdict.PASS
+        letter = letter if passed else other
+        token = just_before(self._machine, before, letter, position, t, self._plan.gap)
+        why = explained(self.reasons, token, letter, passed, t, attempt.triggered, flow)
+        return {
+            "reason": why.reason,
+            "deadline": why.deadline,
+            "at_trigger": truths_shown(self._texts, seen_then),
+            "at_decision": truths_shown(self._texts, seen),
+            "owed": why.owed,
+            "captured": {},
+            "blame": why.blame,
+            "forecast": None,
+            "robustness": None,
+        }
+
+
+class Stood:
+    """The values of state formulas as they stood; see `rvmon.dataflow.standing.Standing`.
+
+    Args:
+        plan: has the nodes.
+        values: by node, its truth.
+        since: by node of a letter, the position from which on it has had that.
+        until: by three times the node plus a truth, the last position at which it had that before.
+        outages: by name what was not known.
+        position: that the values are of.
+    """
+
+    begun = None
+    is_cut = False
+
+    def __init__(
+        self,
+        plan: Plan,
+        values: Any,
+        since: Any,
+        until: Any,
+        outages: Mapping[str, Outage],
+        position: int,
+    ) -> None:
+        self.graph = plan.graph
+        self.gap = plan.gap
+        self.values = values
+        self.since = since
+        self.outages = outages
+        self.position = position
+        self._until = until
+
+    def last_with(self, place: int, value: int, t: int) -> int | None:
+        """See `Standing`; of the propositions that the requirement owes."""
+        found: int | None = t if self.values[place] == value else self._until[3 * place + value]
+        return found

@@ -1,0 +1,1 @@
+"""How far attempts are from the other verdict, followed beside the verdicts."""

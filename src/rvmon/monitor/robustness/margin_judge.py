@@ -1,0 +1,253 @@
+"""Attempts whose robustness is followed, beside a judge that follows their truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.leaves import reads
+from rvmon.dataflow.margin_nodes import Rest
+from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
+from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.piecewise import FAR
+from rvmon.dataflow.robust import Gauge
+from rvmon.dataflow.steps import INFINITE, Step, add
+from rvmon.formula.core import Constant, Literal, Sense
+from rvmon.formula.state import FALSE, TRUE
+from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.robustness.values import Robustness
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.sample import Scalar
+
+_SIDES = {Rest.LEAST: 0, Rest.GREATEST: 1, Rest.END: 0}
+
+
+class Gauger(Clerk, Protocol):
+    """Keeps the figures.
+
+    Attributes:
+        heard: the instant of the sample that came last.
+    """
+
+    heard: int
+
+    def settled(self, judge: MarginJudge, attempt: Open, found: Robustness) -> None:
+        """Take the figure of an attempt that nothing can change any more."""
+
+    def passed(self, judge: MarginJudge, t: int, found: Robustness) -> None:
+        """Take the figure of a position that nothing can change any more."""
+
+
+class MarginJudge(AttemptJudge):
+    """Follows the robustness of attempts: its least value, and its greatest if that differs.
+
+    The attempts are those of another judge, which knows what becomes of them.
+
+    Args:
+        compiled: the requirement.
+        plan: of the nodes of what it owes.
+        flow: gives what is read.
+        clerk: takes the figures.
+        captured: values of `let` and `for each`.
+        spec: gives the units.
+        every: whether each position of a sample is measured, and not those of attempts alone.
+
+    Attributes:
+        positions: of its attempts, where each of them begins.
+
+    Memory: what is not settled of the formula's operators; nothing while nothing is asked for.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledRequirement,
+        plan: Plan,
+        flow: Flow,
+        clerk: Gauger,
+        captured: Mapping[str, Scalar],
+        spec: CheckedSpec,
+        *,
+        every: bool,
+    ) -> None:
+        super().__init__(compiled, None, flow, clerk, captured)
+        self.trigger = self.again = -1  # the other judge starts them
+        self.watches = True
+        self.inputs = flow.inputs
+        self.restless = True
+        self.gauger = clerk
+        self.every = every
+        self.positions: dict[Open, int] = {}
+        self._gap = flow.gap or 1
+        self._plan = plan
+        self._readers = [self._reader(core, spec) for _, core in plan.leaves]
+        self._least: Gauge | None = None
+        self._greatest: Gauge | None = None
+        self._own: list[Margin] = []
+        """What the leaves are at the position that was read last."""
+        self._later: list[Margin] = []
+        """What they are behind it."""
+        self._at = -FAR
+        """That position."""
+        self._known = -FAR - 1
+        """The integer up to which the gauges know the leaves."""
+        self._lows: dict[int, float] = {}
+        self._highs: dict[int, float] = {}
+
+    def _reader(
+        self, core: Literal | Constant, spec: CheckedSpec
+    ) -> tuple[Callable[[], Margin], Margin | None]:
+        """Reads a leaf; and what it is at the next position, if that is not the same."""
+        if isinstance(core, Constant):
+            fixed = OF_TRUTH[TRUE if core.value else FALSE]
+            return (lambda: fixed), None
+        flow, inputs, state = self.flow, self.inputs, core.proposition
+        place = flow.graph.index[state]
+
+        def truth() -> int:
+            found: int = flow.values[place]
+            return found
+
+        if core.sense is Sense.KNOWN_FALSE:
+            return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
+        later = None
+        if state.leaf is None:
+            read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
+        else:
+            read = margin_reader(state.leaf, truth, inputs, self.captured, spec)
+            about = reads(state.leaf)
+            if about.momentary and not about.names & inputs.absent:
+                later = OF_TRUTH[FALSE]
+        if core.sense is Sense.TRUE:
+            return read, later
+        return (lambda: _negated(read())), None if later is None else _negated(later)
+
+    def measure(self, attempt: Open, t: int) -> None:
+        """Measure an attempt of the other judge from the position `t` on."""
+        if self.position < t or self._least is None:
+            self.position = t
+            self._enter(t // self._gap)
+        self._ask(t // self._gap)
+        self.attempts.append(attempt)
+        self.positions[attempt] = t // self._gap * self._gap
+
+    def visit(self, t: int) -> None:
+        """Note what all leaves are at the position `t`, which the flow is at."""
+        self.position = t
+        position = t // self._gap
+        self._pass(position - 1, t)
+        if self.every or self._plan.looks_back or self._least is not None:
+            self._enter(position)
+        if self.every and t - self._gap < self.gauger.heard:
+            self._ask(position)
+
+    def _enter(self, position: int) -> None:
+        """Read the leaves at a position; up to the one before it, they are known."""
+        self._at = position
+        self._own = [read() for read, _ in self._readers]
+        self._later = [
+            own if later is None else later
+            for own, (_, later) in zip(self._own, self._readers, strict=True)
+        ]
+        if self._least is None:
+            self._least = Gauge(self._plan, self.flow.gap)
+            self._known = -FAR - 1
+        if self._greatest is None and any(low != high for low, high in self._own):
+            self._greatest = self._least.copy()
+        for gauge in self._gauges:
+            gauge.visit(position)
+
+    @property
+    def _gauges(self) -> list[Gauge]:
+        return [gauge for gauge in (self._least, self._greatest) if gauge is not None]
+
+    def _ask(self, position: int) -> None:
+        for gauge in self._gauges:
+            gauge.ask(position)
+
+    def settle(self, reached: int) -> None:
+        """Tell what has become known, all positions up to an instant having been visited."""
+        if self.compiled.obligation.trigger is None:
+            return  # The last position may be asked for when all is over.
+        seen = reached if self.position == reached else reached - 1
+        self._pass(seen // self._gap, reached)
+
+    def _pass(self, now: int, reached: int) -> None:
+        """Let the leaves be known up to an integer."""
+        if self._least is None or now < self._known:
+            return
+        lows = self._least.take(self._steps(now, 0), now, reached)
+        self._lows.update(lows)
+        if self._greatest is not None:
+            lows_or_highs = self._greatest.take(self._steps(now, 1), now, reached)
+        else:
+            lows_or_highs = lows
+        self._highs.update(lows_or_highs)
+        self._known = now
+        for position in sorted(self._lows.keys() & self._highs.keys()):
+            low, high = self._lows.pop(position), self._highs.pop(position)
+            self._tell(position * self._gap, self._figure(low, high, low))
+        if not (self.attempts or self.every or self._plan.looks_back):
+            self._least = self._greatest = None
+
+    def _tell(self, t: int, found: Robustness) -> None:
+        while self.attempts and self.positions[self.attempts[0]] == t:
+            attempt = self.attempts.pop(0)
+            del self.positions[attempt]
+            self.gauger.settled(self, attempt, found)
+        if self.every:
+            self.gauger.passed(self, t, found)
+
+    def _steps(self, last: int, side: int) -> list[list[Step]]:
+        """The leaves behind what is known, up to an integer."""
+        at = self._at
+        made = []
+        for own, later in zip(self._own, self._later, strict=True):
+            steps: list[Step] = []
+            add(steps, self._known + 1, min(at, last), own[side])
+            add(steps, max(self._known, at) + 1, last, later[side])
+            made.append(steps)
+        return made
+
+    def figures(self, end: int, reached: int) -> dict[int, Robustness]:
+        """The robustness at each instant that is asked for, if the trace has ended.
+
+        Args:
+            end: the last instant of the trace.
+            reached: the instant that time has come to.
+        """
+        if self._least is None:
+            return {}
+        found: dict[Rest, dict[int, float]] = {}
+        for rest, side in _SIDES.items():
+            gauge = self._least if self._greatest is None or not side else self._greatest
+            told = self._highs if side else self._lows
+            values = gauge.copy().finish(self._steps(FAR, side), end, reached, rest)
+            found[rest] = {**told, **dict(values)}
+        return {
+            position * self._gap: self._figure(low, found[Rest.GREATEST][position], kept)
+            for (position, low), kept in zip(
+                sorted(found[Rest.LEAST].items()), _in_order(found[Rest.END]), strict=True
+            )
+        }
+
+    def _figure(self, low: float, high: float, kept: float) -> Robustness:
+        # Behind the cut it is owed with values that nobody knows.
+        if self.flow.is_cut:
+            return Robustness(-INFINITE, high, -INFINITE)
+        return Robustness(low, high, kept)
+
+    def pass_to(self, t: int) -> None:
+        """Nothing is decided by time here."""
+
+    def reach(self, t: int) -> None:
+        """Nothing is decided by time here."""
+
+
+def _in_order(values: Mapping[int, float]) -> list[float]:
+    return [value for _, value in sorted(values.items())]
+
+
+def _negated(margin: Margin) -> Margin:
+    return -margin[1], -margin[0]

@@ -1,0 +1,1 @@
+"""Random formulas, specifications and traces, biased towards what monitors get wrong."""

@@ -1,0 +1,216 @@
+"""Random specifications, biased towards what monitors get wrong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Captured,
+    Compare,
+    CompareOp,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Numeric,
+    SignalAtom,
+    SignalValue,
+)
+from rvmon.spec.checked.specification import (
+    Capture,
+    CheckedSpec,
+    EndPolicy,
+    ForEach,
+    Mode,
+    Requirement,
+    TimeModel,
+)
+from rvmon.testing.generate.formula import (
+    Shape,
+    arithmetic,
+    comparison,
+    consequent,
+    formula,
+    past_unary,
+)
+from rvmon.testing.generate.rng import Rng, chance, pick, weighted
+from rvmon.testing.generate.vocabulary import (
+    BOOLS,
+    CARRIER,
+    EVENTS,
+    FIELD,
+    LABEL,
+    NUMBERS,
+    events,
+    signals,
+)
+from rvmon.testing.law.pulse import is_pulse
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """What random specifications may hold.
+
+    Attributes:
+        time: the time model; `None`: any.
+        depth: of the deepest consequent.
+        requirements: at most so many.
+        numbers: whether comparisons and probes may occur.
+        past: whether past operators may occur.
+        future: whether future operators may occur.
+        events: whether events may be read.
+        mixed: whether future operators may stand below past ones.
+        captures: whether requirements may hold `let`.
+        for_each: whether requirements may hold `for each`.
+        policies: whether requirements may hold `at end`.
+        stale: whether signals may be `stale after`.
+        ignoring: whether signals may `ignore NaN`.
+    """
+
+    time: TimeModel | None = None
+    depth: int = 4
+    requirements: int = 2
+    numbers: bool = True
+    past: bool = True
+    future: bool = True
+    events: bool = True
+    mixed: bool = True
+    captures: bool = True
+    for_each: bool = True
+    policies: bool = True
+    stale: bool = True
+    ignoring: bool = True
+
+
+def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
+    """A random specification over a fixed small vocabulary, with bounds of a few ticks.
+
+    Args:
+        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        profile: what may occur.
+    """
+    time = profile.time or pick(rng, tuple(TimeModel))
+    found = [
+        _requirement(rng, profile, time, f"R{number}")
+        for number in range(1, rng.randint(1, profile.requirements) + 1)
+    ]
+    return CheckedSpec(
+        name="random",
+        title="",
+        time=time,
+        signals=signals(_stale(rng, profile), _ignoring(rng, profile)),
+        events=events(),
+        requirements={requirement.id: requirement for requirement in found},
+        period=rng.randint(1, 4) if time is TimeModel.CLOCKED else None,
+    )
+
+
+def _stale(rng: Rng, profile: Profile) -> dict[str, int]:
+    names = (*BOOLS, *NUMBERS, LABEL)
+    return {n: rng.randint(1, 9) for n in names if profile.stale and chance(rng, 10)}
+
+
+def _ignoring(rng: Rng, profile: Profile) -> frozenset[str]:
+    return frozenset(n for n in NUMBERS[:1] if profile.ignoring and chance(rng, 25))
+
+
+def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
+    captures = _captures(rng) if profile.captures and chance(rng, 12) else ()
+    for_each = None
+    if profile.for_each and chance(rng, 12):
+        for_each = ForEach("each", FieldValue(CARRIER, FIELD))
+    instance = (for_each.name,) if for_each else ()
+    shape = Shape(
+        step=time is not TimeModel.HELD,
+        past=profile.past,
+        future=profile.future,
+        mixed=profile.mixed,
+        numbers=profile.numbers,
+        events=profile.events,
+        captured=(*instance, *(capture.name for capture in captures)),
+    )
+    seen = Shape(
+        step=shape.step,
+        past=profile.past,
+        future=False,
+        numbers=profile.numbers,
+        events=profile.events,
+        captured=instance,
+    )
+    trigger = _trigger(rng, seen, for_each)
+    at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
+    mode = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
+    owed = consequent(rng, shape, rng.randint(1, profile.depth))
+    if captures and chance(rng, 70):
+        op = pick(rng, (BinaryOp.AND, BinaryOp.OR))
+        owed = Binary(op, owed, comparison(rng, shape))
+    policy = EndPolicy.DEFAULT
+    if profile.policies and chance(rng, 35):
+        policy = pick(rng, tuple(EndPolicy)[1:])
+    return Requirement(
+        name,
+        mode,
+        trigger,
+        owed,
+        at_end=policy,
+        pulse=is_pulse(trigger),
+        captures=captures,
+        for_each=for_each,
+    )
+
+
+def _captures(rng: Rng) -> tuple[Capture, ...]:
+    found: list[Capture] = []
+    for name in ("v", "w")[: 2 if chance(rng, 25) else 1]:
+        earlier = Shape(captured=tuple(capture.name for capture in found))
+        simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
+        value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
+        found.append(Capture(name, value))
+    return tuple(found)
+
+
+def _trigger(rng: Rng, shape: Shape, for_each: ForEach | None) -> Formula:
+    if for_each:
+        compared = Compare(CompareOp.EQ, for_each.value, Captured(for_each.name))
+        further = Binary(BinaryOp.AND, compared, formula(rng, shape, 1))
+        level = SignalAtom(pick(rng, BOOLS))
+        either = Binary(BinaryOp.OR, level, compared)
+        options: tuple[Formula, ...] = (EventAtom(CARRIER), compared, further, level, either)
+        if shape.past:
+            earlier = past_unary(rng, shape, 1)
+            options += (
+                Binary(BinaryOp.AND, compared, earlier),
+                Binary(BinaryOp.OR, earlier, compared),
+            )
+        return pick(rng, options)
+    kind = weighted(
+        rng,
+        (
+            (28 if shape.events else 0, "event"),
+            (16 if shape.events else 0, "event and"),
+            (12, "level"),
+            (14, "start"),
+            (18, "any"),
+            (10 if shape.past else 0, "since when"),
+            (6, "end"),
+        ),
+    )
+    match kind:
+        case "event":
+            return EventAtom(pick(rng, EVENTS))
+        case "event and":
+            occurs = EventAtom(pick(rng, EVENTS))
+            return Binary(BinaryOp.AND, occurs, formula(rng, shape, 1))
+        case "level":
+            return SignalAtom(pick(rng, BOOLS))
+        case "start":
+            return BoundAtom(Bound.START)
+        case "any":
+            return formula(rng, shape, rng.randint(1, 2))
+        case "since when":
+            return past_unary(rng, shape, 1)
+        case _:
+            return BoundAtom(Bound.END)

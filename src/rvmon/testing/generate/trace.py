@@ -1,0 +1,177 @@
+"""Random traces for a specification, biased towards its bounds and thresholds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rvmon.spec.checked.formula import Interval, Literal
+from rvmon.spec.checked.specification import CheckedSpec, Type
+from rvmon.testing.case import Case
+from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.law.walk import intervals, numerics
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.schema import Kind
+
+
+@dataclass(frozen=True, slots=True)
+class TraceProfile:
+    """What random traces may hold.
+
+    Attributes:
+        samples: at most so many.
+        span: as many ticks from the first to the last sample, about.
+        unknowns: whether values may be `None` or NaN and sources absent.
+        advances: whether `advance` is called.
+    """
+
+    samples: int = 12
+    span: int = 40
+    unknowns: bool = True
+    advances: bool = True
+
+
+def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
+    """A random trace for a specification, with what else a monitor is told.
+
+    Gaps between samples are often a bound of the spec, or one tick more; numbers lie at and
+    beside its literals.
+
+    Args:
+        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        spec: any; its bounds should be a few ticks if the oracle is to judge.
+        profile: what may occur.
+    """
+    gaps = _gaps(spec)
+    numbers = _numbers(spec)
+    names = None
+    if profile.unknowns and chance(rng, 8):
+        names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(rng, 20))
+    # Some sensors fail often: what was known before they did then matters, above all to instances
+    # that begin later.
+    often = 40 if any(one.for_each for one in spec.requirements.values()) else 25
+    unknown = (30 if chance(rng, often) else 5) if profile.unknowns else 0
+    late = {name: rng.randint(1, 5) for name in spec.signals if chance(rng, 20)}
+    values = _Values(spec, numbers, names, unknown, _several(spec), late)
+    time = start = pick(rng, (0, 1, 5, -3))
+    actions: list[Sample | int] = []
+    for index in range(rng.randint(0 if chance(rng, 5) else 1, profile.samples)):
+        if index:
+            gap = _gap(rng, gaps)
+            if profile.advances and chance(rng, 15):
+                actions.append(time + rng.randint(0, gap))
+            time += gap
+        if time - start > profile.span:
+            break
+        actions.append(Sample(time, values.sample(rng, index)))
+    if profile.advances and chance(rng, 25):
+        time += _gap(rng, gaps)
+        actions.append(time)
+    end = time + _gap(rng, gaps) * rng.randint(0, 2) if chance(rng, 45) else None
+    return Case(spec, tuple(actions), end, names)
+
+
+def _gap(rng: Rng, gaps: Sequence[int]) -> int:
+    return pick(rng, gaps) if chance(rng, 40) else rng.randint(1, 3)
+
+
+def _gaps(spec: CheckedSpec) -> list[int]:
+    """One tick, each bound of the spec, the tick after it, and the same for staleness."""
+    gaps = {1}
+    for window in _intervals(spec):
+        for bound in (window.low, window.high):
+            if bound is not None:
+                gaps |= {bound, bound + 1}
+    for signal in spec.signals.values():
+        if signal.stale_after is not None:
+            gaps |= {signal.stale_after, signal.stale_after + 1}
+    return sorted(gap for gap in gaps if gap > 0)
+
+
+def _intervals(spec: CheckedSpec) -> list[Interval]:
+    return [
+        window
+        for requirement in spec.requirements.values()
+        for part in (requirement.trigger, requirement.consequent)
+        for window in intervals(part)
+    ]
+
+
+def _numbers(spec: CheckedSpec) -> list[int | float]:
+    """Each literal that the spec compares with, and its neighbours; a few small numbers."""
+    found: set[int | float] = {0, 1}
+    for requirement in spec.requirements.values():
+        for part in (requirement.trigger, requirement.consequent):
+            for expression in numerics(part):
+                match expression:
+                    case Literal(value=int() | float() as value):
+                        found |= {value - 1, value, value + 1}
+                    case _:
+                        pass
+    return sorted(found)
+
+
+def _several(spec: CheckedSpec) -> frozenset[str]:
+    """The events that may occur more than once at an instant: every requirement is `for each`."""
+    found = [requirement.for_each for requirement in spec.requirements.values()]
+    return frozenset() if None in found else frozenset(one.value.event for one in found if one)
+
+
+@dataclass(frozen=True, slots=True)
+class _Values:
+    """How to draw the values of one sample; `unknown` per cent of them are not known.
+
+    Signals that are `late` have nothing to say before so many samples, or that it is not known.
+    """
+
+    spec: CheckedSpec
+    numbers: Sequence[int | float]
+    names: frozenset[str] | None
+    unknown: int
+    several: frozenset[str]
+    late: Mapping[str, int]
+
+    def sample(self, rng: Rng, index: int) -> dict[str, Value]:
+        """Random updates; most signals get a value in the first sample that may bring one."""
+        values: dict[str, Value] = {}
+        for name, signal in self.spec.signals.items():
+            first = self.late.get(name, 0)
+            if not self._has_source(name):
+                continue
+            if index < first:
+                if self.unknown and chance(rng, 10):
+                    values[name] = None
+            elif chance(rng, 85 if index == first else 35):
+                values[name] = self._scalar(rng, signal.type)
+        for name, event in self.spec.events.items():
+            if self._has_source(name) and chance(rng, 30):
+                values[name] = self._occurrence(rng, name, event.fields)
+        return values
+
+    def _has_source(self, name: str) -> bool:
+        return self.names is None or name in self.names
+
+    def _scalar(self, rng: Rng, type_: Type) -> Scalar:
+        if chance(rng, self.unknown):
+            return float("nan") if type_.kind is Kind.REAL and chance(rng, 50) else None
+        match type_.kind:
+            case Kind.BOOL:
+                return chance(rng, 50)
+            case Kind.LABEL:
+                return pick(rng, type_.labels)
+            case Kind.INT:
+                return int(pick(rng, self.numbers))
+            case Kind.REAL:
+                return pick(rng, self.numbers)
+
+    def _occurrence(self, rng: Rng, name: str, fields: Mapping[str, Type]) -> Value:
+        if chance(rng, self.unknown):
+            return None
+        if chance(rng, 5):
+            return False
+        if not fields or chance(rng, 5):
+            return True
+        payload = {name: self._scalar(rng, type_) for name, type_ in fields.items()}
+        if name in self.several and chance(rng, 25):
+            return (payload, {name: self._scalar(rng, t) for name, t in fields.items()})
+        return payload

@@ -1,0 +1,313 @@
+"""Where attempts start, what each owes, and when a whenever episode ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from rvmon.spec.checked.formula import Bound, BoundAtom, Compare, FieldValue, SignalAtom
+from rvmon.spec.checked.specification import Mode, Requirement
+from rvmon.testing.law.kleene import Truth, conjunction, disjunction, negation
+from rvmon.testing.law.numbers import is_born, known_scalar, number
+from rvmon.testing.law.truths import Rest, Truths
+from rvmon.testing.law.walk import subformulas
+from rvmon.testing.law.word import EventState, Letter, Word
+from rvmon.trace.sample import Payload, Scalar
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Start:
+    """One attempt at its trigger.
+
+    Attributes:
+        view: the requirement on the trace as this instance of it sees it.
+        position: of the trigger; of an attempt in doubt, the first at which there may be one.
+        owes: the positions at which something is owed; of a `whenever`, of its episode.
+        captured: values of `let` and `for each`.
+        blurred: the position from which on it is not known which values of `let` are owed.
+        stop: the first position that is none of its own, where it is over; `None` if none is known.
+        sure: the first of its positions at which the trigger is TRUE; `None`: it is in doubt.
+    """
+
+    view: View
+    position: int
+    owes: Sequence[int]
+    captured: Mapping[str, Scalar]
+    blurred: int | None
+    stop: int | None = None
+    sure: int | None = None
+
+    @property
+    def word(self) -> Word:
+        """The trace as this instance sees it."""
+        return self.view.word
+
+    @property
+    def triggered(self) -> int:
+        """The instant of the trigger, ticks."""
+        return self.word.letters[self.position].instant
+
+    @property
+    def may_be_over(self) -> bool:
+        """Whether it is an episode that ran to the end, and may have been over before."""
+        if self.view.requirement.mode is Mode.UPON or self.stop is not None:
+            return False
+        return any(self.view.trigger[k] is Truth.UNKNOWN for k in self.owes)
+
+    def restarted(self, position: int) -> Start:
+        """What goes on of the episode as a new attempt."""
+        owes = [k for k in self.owes if k >= position]
+        known = (k for k in owes if self.blurred is None or k < self.blurred)
+        return replace(self, position=position, owes=owes, sure=self.view.first_true(known))
+
+
+class View:
+    """A requirement on a word, or an instance of it, and the truth of its formulas there.
+
+    Args:
+        requirement: as checked.
+        word: the trace as it sees it.
+        captured: the value of its `for each`.
+        first: no attempt starts before this position.
+        doubted: whether it is not known that there is such an instance.
+    """
+
+    def __init__(
+        self,
+        requirement: Requirement,
+        word: Word,
+        captured: Mapping[str, Scalar] | None = None,
+        first: int = 0,
+        *,
+        doubted: bool = False,
+    ) -> None:
+        self.requirement = requirement
+        self.word = word
+        self.captured = captured or {}
+        self.first = first
+        self.doubted = doubted
+        self._readings: dict[Rest, Readings] = {}
+
+    def readings(self, rest: Rest = Rest.UNKNOWN) -> Readings:
+        """The truth of formulas under an assumption on what is not known yet."""
+        return self._readings.setdefault(rest, Readings(self.word, rest))
+
+    @cached_property
+    def trigger(self) -> Sequence[Truth]:
+        """Of the trigger, at each position; what is not born is FALSE for it."""
+        if is_upon_end(self.requirement):
+            return [Truth.FALSE for _ in self.word.letters]
+        return [Truth.FALSE if one is Truth.UNBORN else one for one in self._trigger]
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the trigger was ever TRUE or FALSE."""
+        if is_upon_end(self.requirement):
+            return bool(self.word.letters)
+        return any(one in (Truth.TRUE, Truth.FALSE) for one in self._trigger)
+
+    @cached_property
+    def _trigger(self) -> Sequence[Truth]:
+        truths = Truths(self.word, self.captured)
+        return [truths.state(self.requirement.trigger, k) for k in range(len(self.word.letters))]
+
+    def edge(self, k: int) -> Truth:
+        """Whether an attempt `upon` the trigger starts at a position."""
+        now = self.trigger[k]
+        if self.requirement.pulse:
+            return now
+        return conjunction([now, negation(self.trigger[k - 1]) if k else Truth.TRUE])
+
+    def stretch(self, k: int) -> tuple[Sequence[int], int | None]:
+        """The positions from `k` on at which the trigger is not FALSE, and the one behind them."""
+        later = (j for j in range(k, len(self.trigger)) if self.trigger[j] is Truth.FALSE)
+        stop = next(later, None)
+        return range(k, len(self.trigger) if stop is None else stop), stop
+
+    def begin(self, position: int, owes: Sequence[int], stop: int | None) -> Start:
+        """An attempt that captures its values at a position."""
+        captured = self._captures(position)
+        lets = [capture.name for capture in self.requirement.captures]
+        hidden = (k for k in owes if self.doubted or self.edge(k) is Truth.UNKNOWN)
+        other = (k for k in hidden if not _same(captured, self._captures(k), lets))
+        blurred = next(other, None) if lets else None
+        known = (k for k in owes if blurred is None or k < max(blurred, position + 1))
+        return Start(self, position, owes, captured, blurred, stop, self.first_true(known))
+
+    def first_true(self, positions: Iterable[int]) -> int | None:
+        """The first of some positions at which the trigger is surely TRUE."""
+        if self.doubted:
+            return None
+        return next((k for k in positions if self.trigger[k] is Truth.TRUE), None)
+
+    def _captures(self, position: int) -> dict[str, Scalar]:
+        letter = self.word.letters[position]
+        payloads = {
+            event: state.occurrences[-1].payload
+            for event, state in letter.events.items()
+            if state.occurrences
+        }
+        captured: dict[str, Scalar] = dict(self.captured)
+        for capture in self.requirement.captures:
+            captured[capture.name] = number(capture.value, letter, payloads, captured)
+        return captured
+
+    def is_unborn(self, position: int) -> bool:
+        """Whether something that the consequent reads has had no value by a position."""
+        letter = self.word.letters[position]
+        for part in subformulas(self.requirement.consequent):
+            if isinstance(part, SignalAtom) and not letter.signals[part.name].born:
+                return True
+            if isinstance(part, Compare) and not is_born(part, letter):
+                return True
+        return False
+
+
+def _same(one: Mapping[str, Scalar], other: Mapping[str, Scalar], names: Iterable[str]) -> bool:
+    return all(one[name] is not None and one[name] == other[name] for name in names)
+
+
+class Readings:
+    """The truth of formulas on a word by captured values; what is asked for often is kept.
+
+    Args:
+        word: the trace.
+        rest: what is assumed of what is not known yet.
+    """
+
+    def __init__(self, word: Word, rest: Rest) -> None:
+        self._word = word
+        self._rest = rest
+        self._reached = word.reached
+        self._made: dict[tuple[object, ...], Truths] = {}
+
+    def reach(self, reached: int) -> None:
+        """Speak of the prefix that is known at an instant; instants may only grow."""
+        self._reached = reached
+        for truths in self._made.values():
+            truths.reach(reached)
+
+    def of(self, captured: Mapping[str, Scalar], *, favour: bool = False) -> Truths:
+        """The truths under captured values."""
+        key = (favour, *((name, type(value), value) for name, value in captured.items()))
+        found = self._made.get(key)
+        if found is None:
+            found = self._made[key] = Truths(self._word, captured, self._rest, favour=favour)
+            found.reach(self._reached)
+        return found
+
+
+def obligation(start: Start, readings: Readings) -> Truth:
+    """The truth of what an attempt owes, after the prefix that the readings speak of.
+
+    Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, `whenever`); decision record 4.
+    """
+    requirement, view = start.view.requirement, start.view
+    if is_upon_end(requirement):
+        value = readings.of(start.captured).truth(requirement.consequent, start.position)
+        return Truth.UNKNOWN if value is Truth.FALSE and start.sure is None else value
+    truths = readings.of(start.captured)
+    ended = start.stop is not None and start.stop < truths.known
+    owed = [_owed(start, readings, k) for k in start.owes if k < truths.known]
+    if requirement.mode is Mode.UPON and start.sure is not None:
+        return owed[0]
+    rest = Truth.TRUE if ended else truths.release_rest(opened=True)
+    value = conjunction([*owed, rest])
+    if value is Truth.FALSE and start.sure is None:
+        return Truth.UNKNOWN
+    if value is Truth.TRUE and counts_in_favour(requirement):
+        last = start.stop if ended and start.stop is not None else truths.known - 1
+        return Truth.UNKNOWN if view.is_unborn(last) else value
+    return value
+
+
+def _owed(start: Start, readings: Readings, k: int) -> Truth:
+    requirement = start.view.requirement
+    if start.blurred is not None and k >= start.blurred:
+        return Truth.UNKNOWN
+    truths = readings.of(start.captured, favour=counts_in_favour(requirement))
+    consequent = truths.truth(requirement.consequent, k)
+    if requirement.mode is Mode.UPON:
+        return consequent
+    return disjunction([negation(start.view.trigger[k]), consequent])
+
+
+def counts_in_favour(requirement: Requirement) -> bool:
+    """Whether what is not born counts in favour: in the episodes of a level `whenever`."""
+    return requirement.mode is Mode.WHENEVER and not requirement.pulse
+
+
+def starts_upon(view: View) -> list[Start]:
+    """The attempts of a requirement `upon` a trigger, those in doubt included."""
+    if is_upon_end(view.requirement):
+        last = len(view.word.letters) - 1
+        if last < view.first:
+            return []
+        sure = None if view.doubted else last
+        return [replace(view.begin(last, [last], None), sure=sure)]
+    found = []
+    edges = [view.edge(k) for k in range(len(view.trigger))]
+    k = view.first
+    while k < len(edges):
+        owes, stop = view.stretch(k)
+        certain = [] if view.doubted else [j for j in owes if edges[j] is Truth.TRUE]
+        found += [view.begin(j, [j], j + 1) for j in certain]
+        hidden = [j for j in owes if edges[j] is not Truth.FALSE and j not in certain]
+        if hidden:
+            one = view.begin(hidden[0], hidden, stop)
+            found.append(replace(one, sure=None))
+        k = (owes[-1] if owes else k) + 1
+    return found
+
+
+def views(requirement: Requirement, word: Word) -> list[View]:
+    """The instances of a requirement on a word: of `for each` one per value, else one.
+
+    That of occurrences whose value is unknown comes first; it is doubted.
+
+    Source: SEMANTICS, section 3 (Doubt); decision record 1 (`for each`).
+    """
+    each = requirement.for_each
+    if each is None:
+        return [View(requirement, word)]
+    first_at: dict[Scalar, int] = {}
+    for position, letter in enumerate(word.letters):
+        for occurrence in letter.events[each.value.event].occurrences:
+            first_at.setdefault(_field(occurrence.payload, each.value), position)
+    return [
+        View(
+            requirement,
+            replace(word, letters=tuple(_only(one, each.value, value) for one in word.letters)),
+            {each.name: value},
+            first_at.get(value, len(word.letters)),
+            doubted=value is None,
+        )
+        for value in (None, *(value for value in first_at if value is not None))
+    ]
+
+
+def _field(payload: Payload, field: FieldValue) -> Scalar:
+    return known_scalar(payload.get(field.field))
+
+
+def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
+    """The letter with those occurrences of the event only whose field has the value.
+
+    Where the field is not known, it is not known whether the event occurs for the value, nor what
+    it says then.
+    """
+    whole = letter.events[field.event]
+    kept = tuple(
+        replace(occurrence, truth=Truth.UNKNOWN, payload={}) if found is None else occurrence
+        for occurrence in whole.occurrences
+        if (found := _field(occurrence.payload, field)) is None or found == value
+    )
+    state = EventState(updated=whole.updated and bool(kept), occurrences=kept)
+    return replace(letter, events={**letter.events, field.event: state})
+
+
+def is_upon_end(requirement: Requirement) -> bool:
+    """Whether the requirement is judged when the trace is finished."""
+    trigger = requirement.trigger
+    return isinstance(trigger, BoundAtom) and trigger.bound is Bound.END

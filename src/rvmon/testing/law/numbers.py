@@ -1,0 +1,191 @@
+"""Numbers and comparisons at one position."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from itertools import product
+from typing import assert_never
+
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
+    Arithmetic,
+    Captured,
+    Compare,
+    CompareOp,
+    FieldValue,
+    Literal,
+    Numeric,
+    SignalValue,
+    UpdateFunction,
+    UpdateValue,
+)
+from rvmon.testing.law.kleene import Truth, conjunction, disjunction, truth_of
+from rvmon.testing.law.walk import parts_of
+from rvmon.testing.law.word import Letter
+from rvmon.trace.sample import Payload, Scalar
+from rvmon.trace.time import TICKS_PER_SECOND
+
+
+def compare(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar]) -> Truth:
+    """The truth of a comparison; over fields of an event `e` it means `e and comparison`.
+
+    Of several occurrences (or pairs of occurrences of two events) one has to satisfy it.
+
+    Source: SEMANTICS, section 1 (Unknown, Birth).
+    """
+    events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
+    choices = product(*(letter.events[event].occurrences for event in events))
+    born = is_born(comparison, letter)
+
+    def holds(payloads: Mapping[str, Payload]) -> Truth:
+        if not born:
+            return Truth.UNBORN
+        left = number(comparison.left, letter, payloads, captured)
+        right = number(comparison.right, letter, payloads, captured)
+        if left is None or right is None:
+            return Truth.UNKNOWN
+        return truth_of(_related(comparison.op, left, right))
+
+    return disjunction(
+        conjunction(
+            [
+                *(occurrence.truth for occurrence in choice),
+                holds({e: o.payload for e, o in zip(events, choice, strict=True)}),
+            ]
+        )
+        for choice in choices
+    )
+
+
+def is_born(comparison: Compare, letter: Letter) -> bool:
+    """Whether all signals of a comparison have had what it reads of them."""
+    return all(
+        letter.signals[part.name].moved
+        if isinstance(part, UpdateValue)
+        else letter.signals[part.name].born
+        for side in (comparison.left, comparison.right)
+        for part in parts_of(side)
+        if isinstance(part, SignalValue | UpdateValue)
+    )
+
+
+def known_scalar(value: Scalar) -> Scalar:
+    """The value itself, or `None` for NaN."""
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def events_of(expression: Numeric) -> Iterator[str]:
+    """The events whose fields the expression reads."""
+    match expression:
+        case FieldValue(event=event):
+            yield event
+        case Arithmetic(args=args):
+            for arg in args:
+                yield from events_of(arg)
+        case _:
+            return
+
+
+def number(
+    expression: Numeric,
+    letter: Letter,
+    payloads: Mapping[str, Payload],
+    captured: Mapping[str, Scalar],
+) -> Scalar:
+    """The value of an expression at a position; `None` if it is unknown.
+
+    Args:
+        expression: over signals, fields and captured values.
+        letter: the position.
+        payloads: the occurrence that is spoken of, by event.
+        captured: values of `let` and `for each`.
+
+    Source: SEMANTICS, section 2; decision record 1 (Updates, Arithmetic).
+    """
+    match expression:
+        case Literal(value=value):
+            return value
+        case SignalValue(name=name):
+            return letter.signals[name].value
+        case FieldValue(event=event, field=field):
+            return known_scalar(payloads.get(event, {}).get(field))
+        case Captured(name=name):
+            return captured[name]
+        case UpdateValue(function=function, name=name):
+            return _of_updates(function, name, letter)
+        case Arithmetic(op=op, args=args):
+            return _arithmetic(op, [number(arg, letter, payloads, captured) for arg in args])
+        case _:
+            assert_never(expression)
+
+
+def _of_updates(function: UpdateFunction, name: str, letter: Letter) -> Scalar:
+    state = letter.signals[name]
+    last, before = state.last, state.before
+    if state.value is None or last is None or before is None or before.value is None:
+        return None
+    if function is UpdateFunction.PREV:
+        return before.value
+    delta = _arithmetic(NumericOp.SUB, [last.value, before.value])
+    if function is UpdateFunction.DELTA:
+        return delta
+    scaled = _arithmetic(NumericOp.MUL, [delta, TICKS_PER_SECOND])
+    return _arithmetic(NumericOp.DIV, [scaled, last.t - before.t])
+
+
+def _arithmetic(op: NumericOp, args: list[Scalar]) -> Scalar:
+    known = [arg for arg in args if arg is not None and not isinstance(arg, str)]
+    if len(known) < len(args):
+        return None
+    try:
+        result = _result(op, known)
+        return result if math.isfinite(result) else None
+    except (ArithmeticError, ValueError):
+        return None
+
+
+def _result(op: NumericOp, args: list[int | float]) -> int | float:
+    match op:
+        case NumericOp.ADD:
+            return args[0] + args[1]
+        case NumericOp.SUB:
+            return args[0] - args[1]
+        case NumericOp.MUL:
+            return args[0] * args[1]
+        case NumericOp.DIV:
+            return args[0] / args[1]
+        case NumericOp.NEG:
+            return -args[0]
+        case NumericOp.ABS:
+            return abs(args[0])
+        case NumericOp.MIN:
+            return min(args)
+        case NumericOp.MAX:
+            return max(args)
+        case NumericOp.SQRT:
+            return math.sqrt(args[0])
+        case NumericOp.HYPOT:
+            return math.hypot(*args)
+        case _:
+            assert_never(op)
+
+
+def _related(op: CompareOp, left: Scalar, right: Scalar) -> bool:
+    if op is CompareOp.EQ:
+        return left == right
+    if op is CompareOp.NE:
+        return left != right
+    if left is None or right is None or isinstance(left, str) or isinstance(right, str):
+        raise TypeError(f"`{left}` {op} `{right}`: labels have no order")
+    match op:
+        case CompareOp.LT:
+            return left < right
+        case CompareOp.LE:
+            return left <= right
+        case CompareOp.GE:
+            return left >= right
+        case CompareOp.GT:
+            return left > right
+        case _:
+            assert_never(op)

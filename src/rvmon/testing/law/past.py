@@ -1,0 +1,89 @@
+"""The operators of the past, from the truth of their operands at the positions so far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from rvmon.spec.checked.formula import Interval
+from rvmon.testing.law.kleene import (
+    Truth,
+    born_or_false,
+    born_or_true,
+    conjunction,
+    disjunction,
+    negation,
+    truth_of,
+)
+from rvmon.testing.law.word import Letter
+
+Operand = Callable[[int], Truth]
+"""The truth of an operand at a position."""
+
+
+def always_true(_: int) -> Truth:
+    """TRUE at each position."""
+    return Truth.TRUE
+
+
+def inverted(operand: Operand) -> Operand:
+    """The negation of an operand."""
+    return lambda k: negation(operand(k))
+
+
+def is_within(distance: int, interval: Interval) -> bool:
+    """Whether a distance in ticks lies in an interval."""
+    return interval.low <= distance and (interval.high is None or distance <= interval.high)
+
+
+def since(
+    letters: Sequence[Letter], left: Operand, right: Operand, i: int, interval: Interval
+) -> Truth:
+    """Some position of the window had `right`, and all after it, up to `i`, have `left`.
+
+    Positions at which an operand is not born are passed over; if `right` is at none of the
+    window, the whole is not.
+    """
+    now = letters[i].instant
+    value, so_far = Truth.FALSE, Truth.TRUE
+    unborn = 0
+    born = False
+    for j in range(i, -1, -1):
+        if is_within(now - letters[j].instant, interval):
+            there = right(j)
+            if there is Truth.UNBORN:
+                unborn += 1
+            else:
+                born = True
+                value = disjunction([value, conjunction([so_far, there])])
+        so_far = conjunction([so_far, born_or_true(left(j))])
+        if value is Truth.TRUE or (born and so_far is Truth.FALSE):
+            return value
+    return Truth.UNBORN if unborn and not born else value
+
+
+def historically(letters: Sequence[Letter], operand: Operand, i: int, interval: Interval) -> Truth:
+    """All positions of the window had it."""
+    return negation(since(letters, always_true, inverted(operand), i, interval))
+
+
+def held(
+    letters: Sequence[Letter], operand: Operand, i: int, interval: Interval, *, mortal: bool
+) -> Truth:
+    """All positions of the window had it, which has to lie behind its birth whole.
+
+    What is unknown may not be born either: it tells nothing of where the birth was.
+
+    Args:
+        letters: of the word.
+        operand: its truth at each position.
+        i: the position.
+        interval: the window.
+        mortal: whether the operand may be not born.
+    """
+    start, now = letters[0].instant, letters[i].instant
+    window = [k for k in range(i + 1) if is_within(now - letters[k].instant, interval)]
+    values = [operand(k) for k in window]
+    if mortal and not {Truth.TRUE, Truth.FALSE}.intersection(values):
+        return disjunction(values)
+    long_enough = interval.high is not None and now - start >= interval.high
+    return conjunction([truth_of(long_enough), *(born_or_false(value) for value in values)])

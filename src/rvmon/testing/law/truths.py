@@ -1,0 +1,362 @@
+"""The truth of formulas after a prefix, straight from their definitions.
+
+Operators are read here as SEMANTICS says, not by their entries: those are to be found right by it.
+So are they in `walk`, `ready` and `pulse` beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum, auto
+from typing import Protocol, assert_never
+
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Compare,
+    Constant,
+    EventAtom,
+    Formula,
+    Interval,
+    Probe,
+    ProbeAtom,
+    SignalAtom,
+    Unary,
+    UnaryOp,
+)
+from rvmon.testing.law.kleene import (
+    Truth,
+    born_or_false,
+    born_or_true,
+    conjunction,
+    disjunction,
+    negation,
+    truth_of,
+)
+from rvmon.testing.law.numbers import compare
+from rvmon.testing.law.past import (
+    Operand,
+    always_true,
+    held,
+    historically,
+    inverted,
+    is_within,
+    since,
+)
+from rvmon.testing.law.walk import is_proposition, speaks_of_future
+from rvmon.testing.law.word import Letter, Word
+from rvmon.trace.sample import Scalar
+
+EVER = Interval(0, None)
+
+
+class Rest(Enum):
+    """What is assumed of the part of an operator that lies behind the known positions."""
+
+    UNKNOWN = auto()
+    """Nothing: the truth after a prefix."""
+
+    END = auto()
+    """The trace has ended: an unbounded `always` that has begun counts as TRUE."""
+
+    WEAK = auto()
+    """All that is pending counts as TRUE."""
+
+    STRONG = auto()
+    """All that is pending counts as FALSE."""
+
+
+class Truths:
+    """The truth of formulas at positions of one word, after a prefix of it.
+
+    A truth other than UNKNOWN stays what it is when more becomes known; that alone is what the
+    memory over prefixes relies on.
+
+    Args:
+        word: the trace.
+        captured: values of `let` and `for each`.
+        rest: what is assumed of what is not known yet.
+        favour: whether a proposition that is not born counts in favour, or else as unknown.
+
+    Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
+    """
+
+    def __init__(
+        self,
+        word: Word,
+        captured: Mapping[str, Scalar],
+        rest: Rest = Rest.UNKNOWN,
+        *,
+        favour: bool = False,
+    ) -> None:
+        self._letters = word.letters
+        self._end = word.end
+        self._captured = captured
+        self._rest = rest
+        self._favour = favour
+        self._settled: dict[tuple[int, int, bool], Truth] = {}
+        self._pending: dict[tuple[int, int, bool], Truth] = {}
+        self._states: dict[tuple[int, int], Truth] = {}
+        self._reached = word.reached
+        self._known = 0
+        self.reach(word.reached)
+
+    def reach(self, reached: int) -> None:
+        """Speak of the prefix that is known at the instant `reached`.
+
+        Once a truth was asked for, instants may only grow.
+        """
+        self._reached = reached
+        self._known = sum(letter.instant <= reached for letter in self._letters)
+        self._pending.clear()
+
+    @property
+    def known(self) -> int:
+        """How many positions are known."""
+        return self._known
+
+    def truth(self, formula: Formula, i: int, *, positive: bool = True) -> Truth:
+        """The truth of what is owed, at a known position: never UNBORN.
+
+        Args:
+            formula: any.
+            i: the position.
+            positive: whether an even number of negations stands above the formula; it matters for
+                the rest of its operators, and for what counts in favour.
+        """
+        key = (id(formula), i, positive)
+        value = self._settled.get(key)
+        if value is None:
+            value = self._pending.get(key)
+        if value is None:
+            value = self._truth(formula, i, positive)
+            (self._pending if value is Truth.UNKNOWN else self._settled)[key] = value
+        return value
+
+    def _truth(self, formula: Formula, i: int, positive: bool) -> Truth:
+        if is_proposition(formula):
+            value = self.state(formula, i)
+            if value is not Truth.UNBORN:
+                return value
+            return truth_of(positive) if self._favour else Truth.UNKNOWN
+
+        def sub(part: Formula, k: int, same: bool = True) -> Truth:
+            return self.truth(part, k, positive=positive is same)
+
+        return self._composed(formula, i, positive, sub)
+
+    def state(self, formula: Formula, i: int) -> Truth:
+        """The truth of a formula of the present and past at a position; it may be UNBORN."""
+        key = (id(formula), i)
+        value = self._states.get(key)
+        if value is None:
+            value = self._states[key] = self._state(formula, i)
+        return value
+
+    def _state(self, formula: Formula, i: int) -> Truth:
+        letter = self._letters[i]
+        match formula:
+            case Constant(value=value):
+                return truth_of(value)
+            case SignalAtom(name=name):
+                state = letter.signals[name]
+                if state.value is None:
+                    return Truth.UNKNOWN if state.born else Truth.UNBORN
+                return truth_of(bool(state.value))
+            case EventAtom(name=name):
+                return disjunction(o.truth for o in letter.events[name].occurrences)
+            case Compare():
+                return compare(formula, letter, self._captured)
+            case ProbeAtom(probe=probe, name=name):
+                return _probe(probe, name, letter)
+            case BoundAtom(bound=bound):
+                if bound is Bound.END:
+                    raise ValueError("`end` stands alone as a trigger, never inside a formula")
+                return truth_of(i == 0)
+            case Unary() | Binary():
+                return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
+            case _:
+                assert_never(formula)
+
+    def release_rest(self, opened: bool) -> Truth:
+        """What the rest of an unbounded `R` counts as; `opened`: whether its window has."""
+        match self._rest:
+            case Rest.UNKNOWN:
+                return Truth.UNKNOWN
+            case Rest.END:
+                return Truth.TRUE if opened else Truth.UNKNOWN
+            case Rest.WEAK:
+                return Truth.TRUE
+            case Rest.STRONG:
+                return Truth.FALSE
+
+    def _other_rest(self) -> Truth:
+        """What the rest of any other pending operator counts as."""
+        return self.release_rest(opened=False)
+
+    def _composed(self, formula: Formula, i: int, positive: bool, sub: Sub) -> Truth:
+        """The truth of an operator, from that of its operands at positions."""
+        match formula:
+            case Unary():
+                return self._unary(formula, i, positive, sub)
+            case Binary():
+                return self._binary(formula, i, positive, sub)
+            case _:
+                raise AssertionError("atoms are not composed")
+
+    def _unary(self, formula: Unary, i: int, positive: bool, sub: Sub) -> Truth:
+        interval = formula.interval or EVER
+
+        def operand(k: int) -> Truth:
+            return sub(formula.operand, k)
+
+        def negated(k: int) -> Truth:
+            return negation(sub(formula.operand, k, False))
+
+        match formula.op:
+            case UnaryOp.NOT:
+                return negated(i)
+            case UnaryOp.NEXT:
+                return self._next(operand, i, positive)
+            case UnaryOp.EVENTUALLY:
+                return self._until(always_true, operand, i, interval, positive)
+            case UnaryOp.ALWAYS:
+                return self._release(_false, operand, i, interval, positive)
+            case UnaryOp.PREVIOUS:
+                return operand(i - 1) if i else Truth.FALSE
+            case UnaryOp.ONCE:
+                return since(self._letters, always_true, operand, i, interval)
+            case UnaryOp.HISTORICALLY:
+                return historically(self._letters, operand, i, interval)
+            case UnaryOp.HELD:
+                mortal = not speaks_of_future(formula.operand)
+                return held(self._letters, operand, i, interval, mortal=mortal)
+            case UnaryOp.RISE:  # φ and not previous φ
+                before = born_or_true(negated(i - 1)) if i else Truth.TRUE
+                return conjunction([operand(i), before])
+            case UnaryOp.FALL:  # not φ and previous φ
+                before = born_or_false(operand(i - 1)) if i else Truth.FALSE
+                return conjunction([negated(i), before])
+            case _:
+                assert_never(formula.op)
+
+    def _binary(self, formula: Binary, i: int, positive: bool, sub: Sub) -> Truth:
+        interval = formula.interval or EVER
+
+        def left(k: int) -> Truth:
+            return sub(formula.left, k)
+
+        def right(k: int) -> Truth:
+            return sub(formula.right, k)
+
+        def not_left(k: int) -> Truth:
+            return negation(sub(formula.left, k, False))
+
+        def not_right(k: int) -> Truth:
+            return negation(sub(formula.right, k, False))
+
+        match formula.op:
+            case BinaryOp.AND:
+                return conjunction([left(i), right(i)])
+            case BinaryOp.OR:
+                return disjunction([left(i), right(i)])
+            case BinaryOp.IMPLIES:
+                return disjunction([not_left(i), right(i)])
+            case BinaryOp.IFF:
+                same = conjunction([left(i), right(i)])
+                return disjunction([same, conjunction([not_left(i), not_right(i)])])
+            case BinaryOp.XOR:
+                one = conjunction([left(i), not_right(i)])
+                return disjunction([one, conjunction([not_left(i), right(i)])])
+            case BinaryOp.UNTIL:
+                return self._until(left, right, i, interval, positive)
+            case BinaryOp.RELEASE:
+                return self._release(left, right, i, interval, positive)
+            case BinaryOp.WEAK_UNTIL:  # ψ R (φ | ψ)
+                return self._release(
+                    right, lambda k: disjunction([left(k), right(k)]), i, interval, positive
+                )
+            case BinaryOp.STRONG_RELEASE:  # ψ U (φ & ψ)
+                return self._until(
+                    right, lambda k: conjunction([left(k), right(k)]), i, interval, positive
+                )
+            case BinaryOp.SINCE:
+                return since(self._letters, left, right, i, interval)
+            case _:
+                assert_never(formula.op)
+
+    def _next(self, operand: Operand, i: int, positive: bool) -> Truth:
+        if i + 1 < self._known:
+            return operand(i + 1)
+        rest = self._other_rest()
+        return rest if positive else negation(rest)
+
+    def _until(
+        self, left: Operand, right: Operand, i: int, interval: Interval, positive: bool
+    ) -> Truth:
+        """`left U right`: in negation normal form an `R` if it stands below a negation."""
+        if positive:
+            return self._some(left, right, i, interval, self._other_rest())
+        rest = self._rest_of_release(i, interval)
+        return self._some(left, right, i, interval, negation(rest))
+
+    def _release(
+        self, left: Operand, right: Operand, i: int, interval: Interval, positive: bool
+    ) -> Truth:
+        """`left R right` = `!(!left U !right)`."""
+        rest = self._rest_of_release(i, interval) if positive else negation(self._other_rest())
+        until = self._some(inverted(left), inverted(right), i, interval, negation(rest))
+        return negation(until)
+
+    def _rest_of_release(self, i: int, interval: Interval) -> Truth:
+        if interval.high is not None:
+            return self._other_rest()
+        opens = self._letters[i].instant + interval.low
+        return self.release_rest(opened=self._end is not None and opens <= self._end)
+
+    def _some(
+        self, left: Operand, right: Operand, i: int, interval: Interval, rest: Truth
+    ) -> Truth:
+        """Some position of the window has `right`, and all before it, from `i` on, have `left`.
+
+        While the window is not over, there may be one behind the known ones: `rest`.
+        """
+        now = self._letters[i].instant
+        value, so_far = Truth.FALSE, Truth.TRUE
+        for j in range(i, self._known):
+            if is_within(self._letters[j].instant - now, interval):
+                value = disjunction([value, conjunction([so_far, right(j)])])
+            so_far = conjunction([so_far, left(j)])
+            if value is Truth.TRUE or so_far is Truth.FALSE:
+                return value
+        over = interval.high is not None and self._reached > now + interval.high
+        return value if over else disjunction([value, conjunction([so_far, rest])])
+
+
+class Sub(Protocol):
+    """The truth of an operand at a position; `same`: no negation stands between."""
+
+    def __call__(self, part: Formula, k: int, same: bool = True, /) -> Truth:
+        """Work it out."""
+
+
+def _false(_: int) -> Truth:
+    return Truth.FALSE
+
+
+def _probe(probe: Probe, name: str, letter: Letter) -> Truth:
+    if name in letter.events:
+        event = letter.events[name]
+        if probe is Probe.UPDATED:
+            return truth_of(event.updated)
+        raise ValueError(f"`{probe}({name})`: only `updated` speaks of events")
+    signal = letter.signals[name]
+    match probe:
+        case Probe.UPDATED:
+            return truth_of(signal.updated)
+        case Probe.KNOWN:
+            return truth_of(signal.value is not None)
+        case Probe.CHANGED:
+            return signal.changed

@@ -1,0 +1,125 @@
+"""Instances of a `for each` that are over are let go of, and nothing can tell."""
+
+import random
+import re
+
+import pytest
+from tests.tools.differential import disagreements
+
+import rvmon
+from rvmon.errors import TraceError
+from rvmon.monitor.attempts import keyed as keyed_module
+from rvmon.testing.case import Case
+from rvmon.testing.forms import Maker
+from rvmon.trace.sample import Sample
+
+HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
+OWED = {
+    "another event with the key": "upon order\n  then within 3 s done.id == k",
+    "a signal": "upon order\n  then within 3 s ok",
+    "what was before": "upon order and once[1 s, 3 s] ok\n  then for 2 s not done",
+    "its own past": "upon order and not once[1 s, 4 s] order\n  then within 3 s ok",
+    "a past that knows the key": (
+        "upon order and not once[1 s, 9 s] done.id == k\n  then within 2 s ok"
+    ),
+    "stretches": "whenever order and ok\n  then within 2 s done.id == k",
+    "any time": "upon order or ok\n  then within 3 s done.id == k",
+    "a captured value": (
+        "upon order\n  then within 3 s (done.id == k and done.id == i)\n  let i = order.id"
+    ),
+    "the end": "upon end\n  then ok",
+}
+
+
+def text_of(owed, time=""):
+    return f"spec many\n{time}{HEAD}requirement R1\n  {owed}\n  for each k in order.id\n"
+
+
+def samples(rng, count):
+    """Many keys, most of which come once or twice; now and then one that is not known."""
+    t = 0
+    for number in range(count):
+        t += rng.choice([1, 5, 10, 25])
+        keys = [rng.choice([number, number - 1, number - 2, rng.randrange(6)]) for _ in "ab"]
+        values = {}
+        if rng.random() < 0.6:
+            orders = [{"id": None if rng.random() < 0.03 else key} for key in keys]
+            values["order"] = tuple(orders[: rng.choice([1, 1, 2])])
+        if rng.random() < 0.5:
+            values["done"] = {"id": rng.choice(keys)}
+        if rng.random() < 0.3:
+            values["ok"] = rng.choice([True, False, None])
+        yield Sample(t, values)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
+@pytest.mark.parametrize("name", OWED)
+@pytest.mark.parametrize("engine", ["auto", "network", "auto+interrupt"])
+def test_what_is_over_changes_no_record(name, time, engine):
+    """With many keys that come and go and come again, every record is that of the law."""
+    text = re.sub(r"(\d) s\b", r"\g<1>0 ns", text_of(OWED[name], time))
+    checked = rvmon.loads(text).checked
+    actions = tuple(samples(random.Random(f"{name}/{time}/{engine}"), 14))
+    assert disagreements(Case(checked, actions, None), Maker(engine), online=False) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 10 ms\n"])
+@pytest.mark.parametrize(
+    "name", ["another event with the key", "a signal", "what was before", "stretches"]
+)
+def test_what_is_kept_is_what_is_open(name, time):
+    """However many keys go by, no more lanes are kept than attempts may be open."""
+    monitor = rvmon.loads(text_of(OWED[name], time)).monitor(keep=5)
+    for number in range(300):
+        monitor.step(number, {"order": {"id": number}, "ok": number % 7 != 0})
+        assert len(monitor.lanes.all) < 12
+    assert len(monitor.snapshot()) < 100_000
+
+
+def test_a_value_that_comes_again_goes_on_being_numbered():
+    """A key that was let go of is ranked as it was, before those that came later."""
+    monitor = rvmon.loads(text_of(OWED["a signal"])).monitor()
+    for t, key in enumerate([7, 8, 9]):
+        monitor.step(10 * t, {"order": {"id": key}})
+    monitor.step(100, {"order": ({"id": 9}, {"id": 7})})
+    report = monitor.finish(200)
+    assert [one.captured["k"] for one in report.attempts] == [7, 8, 9, 7, 9]
+
+
+def test_a_reason_says_from_when_on_it_knows():
+    """What an instance saw before it was let go of is not told of as if it had not been."""
+    monitor = rvmon.loads(text_of(OWED["another event with the key"])).monitor()
+    monitor.step(0, {"order": {"id": 7}})
+    monitor.step(1, {"done": {"id": 7}})
+    monitor.step(50, {"order": {"id": 8}})
+    monitor.step(100, {"order": {"id": 7}})
+    *_, last = monitor.finish(200).attempts
+    assert "it had not been true since 50 s" in last.reason
+
+
+def test_too_many_open_at_once_are_refused(monkeypatch):
+    """An instance too many is an error that says what to do, and the monitor goes on."""
+    monkeypatch.setattr("rvmon.monitor.attempts.instances.MOST_OPEN", 3)
+    monitor = rvmon.loads(text_of(OWED["a signal"])).monitor()
+    for number in range(3):
+        monitor.step(0.1 * number, {"order": {"id": number}, "ok": False})
+    with pytest.raises(TraceError, match=r"R1 would have 4 instances of `order\.id` open"):
+        monitor.step(0.5, {"order": {"id": 3}})
+    monitor.step(0.6, {"order": {"id": 2}})
+    monitor.step(10, {"order": {"id": 4}})
+    assert len(monitor.finish(20).attempts) == 5
+
+
+@pytest.mark.slow
+def test_only_the_latest_that_are_over_are_remembered(monkeypatch):
+    """Values that are over are forgotten in the end, also what is I: a run of weeks is bounded."""
+    monkeypatch.setattr(keyed_module, "MOST_KNOWN", 5)
+    monitor = rvmon.loads(text_of(OWED["a signal"])).monitor(keep=0)
+    sizes = []
+    for number in range(1200):
+        monitor.step(10 * number, {"order": {"id": number}})
+        sizes.append(len(monitor.lanes.all))
+    assert max(sizes[600:]) <= max(sizes[:600])
+    assert len(monitor.snapshot()) < 20_000

@@ -1,0 +1,163 @@
+"""The engine `c`: what it refuses, and what it says where columns are missing."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.errors import UnknownNameError
+
+pytestmark = pytest.mark.compiler
+
+
+def spec_of(declared: str, owed: str) -> rvmon.Spec:
+    """A specification of one requirement."""
+    return rvmon.loads(f"spec s\n{declared}\nrequirement R1\n  {owed}\n")
+
+
+@pytest.mark.parametrize("form", ["columns", "csv", "parquet"])
+def test_without_a_declared_column_all_is_unknown(form, tmp_path):
+    """A name that has no column is unknown throughout, also if no name has one."""
+    spec = spec_of("event e", "upon start then for 2 s not e")
+    trace = {"t": np.array([0.0, 5.0]), "other": np.array([1.0, 2.0])}
+    if form == "csv":
+        trace = tmp_path / "a.csv"
+        trace.write_text("t\n0\n1\n5\n")
+    elif form == "parquet":
+        arrow = pytest.importorskip("pyarrow")
+        parquet = pytest.importorskip("pyarrow.parquet")
+        table, trace = arrow.table(trace), tmp_path / "a.parquet"
+        parquet.write_table(table, trace)
+    for engine in ("auto", "c"):
+        with pytest.raises(rvmon.MissingNameError, match="`e`, read by R1"):
+            spec.evaluate(trace, engine=engine)
+        report = spec.evaluate(trace, engine=engine, allow_missing=True)
+        assert report.verdicts == {"R1": "I"}, engine
+
+
+def test_what_was_met_is_carried_on_over_many_rows():
+    """Rows are looked at 64 at once: what an operator of the past knows goes on from there."""
+    spec = spec_of("signal p, q, r : bool", "whenever r then immediately q since p")
+    rows = np.arange(300)
+    trace = {"t": rows * 1e-9, "p": rows % 150 == 50, "q": rows % 150 != 20, "r": rows % 7 == 0}
+    found = [
+        [
+            (one.triggered, one.decided, one.verdict)
+            for one in spec.evaluate(trace, engine=engine).attempts
+        ]
+        for engine in ("automaton", "c")
+    ]
+    assert found[0] == found[1]
+    assert {verdict.value for _, _, verdict in found[0]} == {"P", "F"}
+
+
+def test_a_whole_number_without_a_column_is_unknown():
+    """Nothing is looked at of a column that is not there."""
+    spec = spec_of("signal n : int", "upon start then for 2 s (n + 1 < 3)")
+    table = {"t": np.array([0.0, 5.0])}
+    assert spec.evaluate(table, engine="c", allow_missing=["n"]).verdicts == {"R1": "I"}
+
+
+DECLARED = """signal x : real
+signal n : int
+signal b : bool
+signal mode : {red, green}
+event e
+event pay(k: int, m: {low, high})"""
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("x", "9"),
+        ("x", True),
+        ("x", [1.0]),
+        ("x", 1j),
+        ("n", 1.5),
+        ("n", True),
+        ("b", 2),
+        ("b", "yes"),
+        ("mode", "blue"),
+        ("mode", 1),
+        ("e", 5),
+        ("e", 0.5),
+        ("e", "no"),
+        ("e", ""),
+        ("pay", {"zz": 3}),
+        ("pay", {"k": 1.5}),
+        ("pay", {"m": "none"}),
+    ],
+)
+@pytest.mark.parametrize("form", ["columns", "samples"])
+def test_values_of_another_type_are_refused(name, value, form):
+    """What no engine takes is told with the sample and the name, not judged."""
+    spec = spec_of(DECLARED, "always (x < 5 or n > 2 or b or mode == red or e or pay.k > 2)")
+    if form == "columns":
+        trace = {"t": [0.0, 1.0], name: [None, value]}
+    else:
+        trace = [(0.0, {}), (1.0, {name: value})]
+    told = []
+    for engine in ("automaton", "c"):
+        with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}") as error:
+            spec.evaluate(trace, engine=engine, allow_missing=True)
+        told.append(str(error.value))
+    assert told[0] == told[1]
+
+
+def test_an_undeclared_name_in_a_sample_is_refused():
+    """A name that the specification does not know is an error that names it."""
+    spec = spec_of("signal x : real", "always x < 5")
+    with pytest.raises(rvmon.TraceError, match="sample at 1 s: no signal or event named `y`"):
+        spec.evaluate([(0.0, {"x": 1.0}), (1.0, {"y": 1.0})], engine="c")
+
+
+def test_strings_in_a_parquet_file_are_refused(tmp_path):
+    """A column of another type is refused in a file as in memory."""
+    arrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "a.parquet"
+    parquet.write_table(arrow.table({"t": [0.0, 1.0], "x": ["1", "9"]}), path)
+    with pytest.raises(rvmon.TraceError, match="`x`"):
+        spec_of("signal x : real", "always x < 5").evaluate(path, engine="c")
+
+
+@pytest.mark.parametrize("trace", [{"t": np.array([0.0])}, [(0.0, {})], "nowhere.csv"])
+def test_an_unknown_engine_is_told_which_there_are(trace):
+    """The engine `c` judges recordings and is stepped: it stands in both lists."""
+    spec = spec_of("signal x : real", "always x < 5")
+    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
+        spec.evaluate(trace, engine="nope")
+    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
+        spec.monitor(engine="nope")
+
+
+def test_lengths_of_vectors_are_those_of_python():
+    """`hypot` gives the number that all engines compute, to the last bit."""
+    rng = np.random.default_rng(1)
+    x = np.concatenate([rng.random(3000), [0.0, 3e200, 1e-200, 1.0, 1e308]])
+    y = np.concatenate([np.round(rng.normal(0, 9, 3000), 2), [0.0, 4e200, 3e-200, 1e-9, 1.0]])
+    trace = {"t": np.arange(len(x)), "x": x, "y": y}
+    trace["h"] = np.array(list(map(math.hypot, x.tolist(), y.tolist())))
+    spec = spec_of("signal x, y, h : real", "always hypot(x, y) == h")
+    assert spec.evaluate(trace, engine="c").verdicts == {"R1": "P"}
+    unknown = {"t": np.arange(2), "x": np.array([np.inf, 1e308]), "y": np.array([1.0, 1.7e308])}
+    spec = spec_of("signal x, y : real", "upon start\n  then within 1 s hypot(x, y) > 5")
+    for engine in ("automaton", "c"):
+        assert spec.evaluate(unknown, engine=engine).verdicts == {"R1": "I"}
+
+
+def test_a_signal_is_not_born_by_nan():
+    """What passed before all that it speaks of had a value is inconclusive."""
+    declared = "time sampled\nsignal p, q : bool\nsignal x, y : real"
+    spec = spec_of(declared, "whenever q then F[3 ns, 6 ns] ((y >= x) U[0 ns, 3 ns] p)")
+    trace = {
+        "t_ns": np.array([0, 6, 10]),
+        "p": np.array([True, True, True]),
+        "q": np.array([True, False, False]),
+        "x": np.array([math.nan, math.nan, 1.0]),
+        "y": np.array([1.0, 0.0, 0.0]),
+    }
+    for engine in ("auto", "c"):
+        (attempt,) = spec.evaluate(trace, engine=engine).attempts
+        assert (attempt.verdict, attempt.decided) == ("I", None), engine

@@ -1,0 +1,397 @@
+"""Compiled monitors that are stepped: what a user of `Spec.monitor(engine="c")` meets."""
+
+import copy
+import gc
+import math
+import random
+import sysconfig
+import weakref
+from collections import deque
+from dataclasses import replace
+from enum import StrEnum
+from fractions import Fraction
+from itertools import starmap
+
+import numpy as np
+import pytest
+from tests.tools.differential import campaign
+
+import rvmon
+from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
+from rvmon.testing.forms import Maker
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+
+pytestmark = pytest.mark.compiler
+
+SPEC = """
+spec watch "A base"
+time held
+signal p, q : bool
+signal speed : real
+signal count : int
+signal mode : {red, green}
+event stop
+event pick(id: int, weight: real, color: {red, blue})
+requirement R1 "a"
+  upon rise(p)
+  then within 3 s q
+requirement R2 "b"
+  always (speed < 2 or mode == red)
+requirement R3 "c"
+  upon pick.id > 2 and pick.weight < 1.5 and pick.color == red
+  then within 1 s (count > 3 or stop)
+"""
+
+FIRST = {"p": False, "q": False, "speed": 1.0, "count": 0, "mode": "green"}
+
+
+@pytest.fixture(autouse=True)
+def compilers(extensions):
+    """Extension modules can be compiled here."""
+
+
+@pytest.fixture
+def spec() -> rvmon.Spec:
+    """The specification above."""
+    return rvmon.loads(SPEC)
+
+
+def told(attempts):
+    """What records say of verdicts."""
+    return [(a.requirement, a.number, a.triggered, a.decided, a.verdict.value) for a in attempts]
+
+
+def both(spec, samples, end=None, **how):
+    """Step a compiled monitor and one that gives reasons; they have to say the same each time."""
+    fast, slow = spec.monitor(engine="c", **how), spec.monitor(engine="automaton", **how)
+    found = []
+    for t, values in samples:
+        due = fast.next_due
+        mine, other = fast.step_ns(t, values), slow.step_ns(t, values)
+        assert told(mine) == told(other)
+        if how.get("settle") != "next" and (due is None or t < due):
+            assert all(attempt.decided >= t for attempt in mine), "time decided what was not due"
+        assert told(sorted(fast.open, key=order)) == told(sorted(slow.open, key=order))
+        found += told(mine)
+    mine, other = fast.finish_ns(end), slow.finish_ns(end)
+    assert mine.verdicts == other.verdicts
+    assert mine.counts == other.counts
+    assert told(mine.attempts) == told(other.attempts)
+    assert (mine.origin, mine.end) == (other.origin, other.end)
+    return found
+
+
+def order(attempt):
+    """By requirement and number."""
+    return attempt.requirement, attempt.number
+
+
+S = 1_000_000_000
+
+
+def test_records_come_with_the_step_that_decides_them(spec):
+    """Each call returns what it decided, in the order of reports, and the report has all of it."""
+    samples = [
+        (0, FIRST),
+        (S, {"p": True}),
+        (2 * S, {"q": True}),
+        (3 * S, {"p": False, "q": False}),
+        (4 * S, {"p": True, "pick": {"id": 3, "weight": 1.0, "color": "red"}}),
+        (9 * S, {"speed": 3.5}),
+        (10 * S, {"pick": True, "stop": True}),
+        (11 * S, {"pick": None, "count": 4}),
+    ]
+    found = both(spec, samples, 12 * S)
+    assert found == [
+        ("R1", 1, S, 2 * S, "P"),
+        ("R3", 1, 4 * S, 5 * S + 1, "F"),
+        ("R1", 2, 4 * S, 7 * S + 1, "F"),
+        ("R2", 1, 0, 9 * S, "F"),
+    ]
+
+
+def test_all_kinds_of_values(spec):
+    """Numbers of NumPy, whole numbers for real ones, NaN, `None`, labels, payloads, subclasses."""
+    values = [
+        {"speed": 3},
+        {"speed": np.float64(1.5), "p": np.bool_(True)},
+        {"speed": np.float32(2.5), "count": np.int64(7)},
+        {"speed": math.nan},
+        {"speed": None, "mode": None},
+        {"mode": "red"},
+        {"pick": {"id": 3, "weight": np.float64(0.5), "color": "red"}},
+        {"pick": {"id": None, "color": "blue"}},
+        {"pick": ({"id": 5, "weight": 1, "color": "red"},)},
+        {"pick": (), "stop": False},
+        {"pick": False, "stop": True},
+        {"q": True, "p": None, "count": None},
+    ]
+    both(spec, [(0, FIRST), *((number * S // 2, row) for number, row in enumerate(values, 1))])
+
+
+class Row(dict):
+    """A dictionary of somebody's own."""
+
+
+@pytest.mark.parametrize("kind", [Row, lambda row: __import__("types").MappingProxyType(row)])
+def test_any_mapping(spec, kind):
+    """Mappings of other types are looked through as dictionaries are."""
+    both(spec, [(0, kind(FIRST)), (S, kind({"p": True})), (2 * S, kind({"q": True}))])
+
+
+class Name(StrEnum):
+    """Names that are strings, though not plain ones."""
+
+    P = "p"
+    PICK = "pick"
+    ID = "id"
+
+
+def test_names_of_an_enumeration(spec):
+    """Names of signals, events and fields may be instances of a subclass of `str`."""
+    samples = [
+        (S, {Name.P: True}),
+        (2 * S, {Name.PICK: {Name.ID: 3}}),
+        (3 * S, {np.str_("q"): True}),
+    ]
+    assert both(spec, [(0, FIRST), *samples]) == [("R1", 1, S, 3 * S, "P")]
+
+
+def test_names_in_any_order(spec):
+    """The order of names may change from sample to sample, and names be equal, not the same."""
+    rng = random.Random(1)
+    samples = []
+    for t in range(200):
+        names = list(FIRST)
+        rng.shuffle(names)
+        row = {
+            "".join(name): rng.choice(
+                {"speed": [1.0, 3.0], "count": [1, 4], "mode": ["red", "green"]}.get(
+                    name, [True, False]
+                )
+            )
+            for name in names[: rng.randint(0, len(names))]
+        }
+        samples.append((t * S // 3, row))
+    both(spec, samples)
+
+
+@pytest.mark.parametrize(
+    ("t", "values", "error", "text"),
+    [
+        (S, {}, TimeOrderError, "is not after the one at 1 s"),
+        (0, {}, TimeOrderError, "is not after the one at 1 s"),
+        (2 * S, {"z": True}, TraceError, "no signal or event named `z`"),
+        (2 * S, {"p": 1}, TraceError, "`p`: expected True or False, found 1"),
+        (2 * S, {"count": 1.5}, TraceError, "`count`: expected a whole number"),
+        (2 * S, {"count": True}, TraceError, "`count`: expected a whole number"),
+        (2 * S, {"mode": "blue"}, TraceError, "`mode`: expected one of red, green"),
+        (2 * S, {"stop": 1}, TraceError, "`stop` is an event"),
+        (2 * S, {"stop": {"x": 1}}, TraceError, "has no field `x`"),
+        (2 * S, {"pick": {"id": "a"}}, TraceError, "`pick.id`: expected a whole number"),
+        (2 * S, {"pick": ({"id": 1}, {"id": 2})}, TraceError, "2 payloads of `pick`"),
+        (2 * S, {"count": 1 << 60}, TraceError, "compute with doubles"),
+        (2 * S, {"speed": 1 << 60}, TraceError, "compute with doubles"),
+        (2 * S, {"speed": 1 << 70}, TraceError, "compute with doubles"),
+        (2 * S, {"pick": {"id": 1 << 60}}, TraceError, "compute with doubles"),
+        (2 * S, {1: True}, TraceError, "no signal or event named"),
+        (2 * S, [("p", True)], TraceError, "expected values by name"),
+        (1 << 62, {}, TraceError, "time"),
+        (1 << 70, {}, TraceError, "time"),
+        (2.5, {}, TraceError, "whole"),
+    ],
+)
+def test_what_is_wrong_is_refused(spec, t, values, error, text):
+    """A wrong sample is refused as by every monitor, and changes nothing."""
+    monitor = spec.monitor(engine="c")
+    monitor.step_ns(S, FIRST)
+    with pytest.raises(error, match=text):
+        monitor.step_ns(t, values)
+    assert told(monitor.step_ns(2 * S, {"speed": 5.0})) == [("R2", 1, S, 2 * S, "F")]
+
+
+def test_a_wrong_call(spec):
+    """Python's own errors for what is no call of a method."""
+    monitor = spec.monitor(engine="c")
+    with pytest.raises(TypeError, match="positional"):
+        monitor.step_ns()
+    with pytest.raises(TypeError, match="unexpected"):
+        monitor.step_ns(0, {}, other=1)
+    assert monitor.step_ns(t_ns=0, values=FIRST) == ()
+
+
+@pytest.mark.parametrize(
+    "seconds",
+    [
+        *(0.1, 1e-9, 0.3e-9, 0.5e-9, 2**-10, 3 * 2**-10, 1 - 2**-53, 86400.000000001, 1.7e9 + 0.1),
+        *(-0.1, -1e-9, -(2**-10), -1.5, -1.7e9 - 0.1, -0.0, 1, -3, 4.4e9, -4.4e9, 4.7e9, -1e300),
+        *(math.nan, math.inf, np.float64(0.1), np.float32(0.1), np.int64(7), Fraction(1, 3), "1"),
+    ],
+)
+def test_seconds_are_rounded_as_by_every_monitor(spec, seconds):
+    """The same tick, or the same refusal, whatever the time is."""
+    found = []
+    for engine in ("c", "auto"):
+        monitor = spec.monitor(engine=engine)
+        monitor.step_ns(-(1 << 62) + 1, FIRST)
+        try:
+            found.append(told(monitor.step(seconds, {"speed": 3.0})))
+        except TraceError as error:
+            found.append(str(error))
+    assert found[0] == found[1] != []
+
+
+def test_advance_finish_reset(spec):
+    """Time passes without samples; a finished run takes nothing; another one begins afresh."""
+    monitor = spec.monitor(engine="c")
+    assert monitor.open == []
+    assert monitor.next_due is None
+    for _ in range(2):
+        monitor.step(0.0, FIRST)
+        monitor.step(1.0, {"p": True})
+        assert [a.requirement for a in monitor.open] == ["R1", "R2"]
+        assert monitor.next_due is not None
+        assert monitor.advance(4.0) == ()
+        assert told(monitor.advance(4.1)) == [("R1", 1, S, 4 * S + 1, "F")]
+        with pytest.raises(TimeOrderError, match="none before would come"):
+            monitor.step(4.05, {})
+        report = monitor.finish(5.0)
+        assert report.verdicts == {"R1": "F", "R2": "P", "R3": "NT"}
+        assert monitor.finish(6.0) is report
+        assert monitor.open == []
+        assert monitor.next_due is None
+        for call in (lambda: monitor.step(7.0, {}), lambda: monitor.advance(7.0)):
+            with pytest.raises(TraceError, match="finished"):
+                call()
+        monitor.reset()
+
+
+def test_no_sample_at_all(spec):
+    """A run without samples has judged nothing."""
+    report = spec.monitor(engine="c").finish()
+    assert set(report.verdicts.values()) == {"I"}
+    assert report.end is None
+    assert list(report.attempts) == []
+
+
+def test_only_and_sources(spec):
+    """Some of the requirements; names that cannot come are refused, and unknown throughout."""
+    samples = [(0, {"p": False}), (S, {"p": True}), (5 * S, {})]
+    both(spec, samples, only=["R1"], sources=["p", "q"])
+    with pytest.raises(TraceError, match="not among the sources"):
+        spec.monitor(engine="c", sources=["p"]).step(0, {"q": True})
+
+
+def test_settled_by_the_next_stamp(spec):
+    """With `settle="next"` equal stamps are one sample."""
+    rows = [(0, FIRST), (S, {"p": True}), (S, {"q": True}), (S, {"stop": True}), (9 * S, {})]
+    both(spec, [(t, row) for t, row in rows], settle="next")
+
+
+def test_no_snapshot(spec):
+    """It says that it cannot be put away, and what can."""
+    monitor = spec.monitor(engine="c")
+    with pytest.raises(SnapshotError, match="engine `auto`"):
+        monitor.snapshot()
+
+
+def test_attempts_are_attempts(spec):
+    """Records are whole: equal, shown, copied, changed as others are."""
+    monitor = spec.monitor(engine="c")
+    monitor.step(0.0, FIRST)
+    (made,) = monitor.step(1.0, {"speed": 3.0})
+    assert made.reason == ""
+    assert made.deadline is None
+    assert dict(made.at_trigger) == {}
+    assert copy.deepcopy(made) == made
+    assert replace(made, number=2).number == 2
+    assert "R2" in str(made)
+    assert made == monitor.finish().attempts[0]
+
+
+ECHO = """
+spec echo
+signal p, q : bool
+requirement R1
+  upon once[1 s, 1 s] p
+  then within 1 h q
+"""
+
+
+def knocks(begin: int, count: int) -> list[tuple[int, dict[str, bool]]]:
+    """So many short stretches of `p`, a millisecond each."""
+    return [(begin + n * S // 1000, {"p": n % 2 == 0}) for n in range(2 * count)]
+
+
+def test_open_attempts_beyond_any_number():
+    """The room for open attempts grows, also where a gap between samples starts many at once."""
+    bursts = [row for n in range(22) for row in knocks(10 * n * S, 50)]
+    monitor = rvmon.loads(ECHO).monitor(engine="c")
+    decided = []
+    for t, row in [(-9 * S, {"p": False, "q": False}), *bursts, (300 * S, {"q": True})]:
+        decided += told(monitor.step_ns(t, row))
+    starts = [t + S for t, row in bursts if row["p"]]
+    assert decided == [("R1", n, t, 300 * S, "P") for n, t in enumerate(starts, 1)]
+
+
+def test_decided_at_once_by_several_requirements():
+    """What a gap decides comes in the order of instants, whichever requirement it is of."""
+    texts = [f"requirement R{n}\n  upon p\n  then within {n} s q\n" for n in range(1, 10)]
+    spec = rvmon.loads("spec gap\nsignal p, q : bool\n" + "".join(texts))
+    samples = [(t, {"p": row["p"], "q": False}) for t, row in knocks(0, 40)]
+    decided = both(spec, [(-S, {"p": False}), *samples, (20 * S, {})])
+    assert len(decided) == 9 * 40
+
+
+def test_more_stretches_than_there_is_room_for():
+    """Where a past operator has to remember too much it says so, and goes on saying so."""
+    monitor = rvmon.loads(ECHO).monitor(engine="c")
+    rows = knocks(0, 100)
+    with pytest.raises(RvmonError, match="not enough room for a past operator: use the engine"):
+        deque(starmap(monitor.step_ns, rows))
+    with pytest.raises(RvmonError, match="not enough room"):
+        monitor.step_ns(50 * S, {})
+    for call in (monitor.finish, lambda: monitor.step_ns(60 * S, {}), monitor.finish):
+        with pytest.raises(RvmonError, match="not enough room"):
+            call()
+
+
+def test_a_monitor_is_freed(spec):
+    """The monitor and its C refer to each other; both go once nobody else does."""
+    monitor = spec.monitor(engine="c")
+    monitor.step(0.0, FIRST)
+    gone = weakref.ref(monitor)
+    del monitor
+    gc.collect()
+    assert gone() is None
+
+
+def test_beyond_compiled_monitors():
+    """What has no automaton of bounded size is refused with what to do."""
+    text = "spec s\nsignal p, q : bool\nrequirement R1\n  always once[0 s, 1 s] (p until q)\n"
+    with pytest.raises(RvmonError, match="R1"):
+        rvmon.loads(text).monitor(engine="c")
+
+
+def test_no_headers(spec, monkeypatch):
+    """Without the headers of Python it says what to install."""
+    monkeypatch.setattr(sysconfig, "get_path", lambda _: "/nowhere")
+    with pytest.raises(RvmonError, match="python3-dev"):
+        spec.monitor(engine="c")
+
+
+def test_nothing_to_judge(spec):
+    """No requirement is asked for: there is nothing to compile."""
+    monitor = spec.monitor(engine="c", only=[])
+    monitor.step(0.0, FIRST)
+    assert monitor.finish().verdicts == {}
+
+
+def test_the_oracle_agrees():
+    """On random cases, at each call: what it returns, and that it refuses what is wrong."""
+    profile = Profile(mixed=False, captures=False, for_each=False)
+    seeds = [f"online/{number}" for number in range(7)]
+    tally = campaign(Maker("c"), seeds, profile, TraceProfile(), each=8, online_every=2)
+    assert tally.pairs >= 16
+    assert not tally.disagreements, tally.disagreements[0]

@@ -1,0 +1,249 @@
+"""The online monitor as a program uses it."""
+
+import math
+
+import pytest
+
+import rvmon
+from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
+from rvmon.monitor import compile_spec
+from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
+from rvmon.monitor.online.generated import GeneratedMonitor
+from rvmon.verdict.verdict import Verdict
+
+SPEC = """spec handover "Handover"
+time held
+
+signal distance : real [m]  input  stale after 200 ms
+signal ready : bool  input
+signal mode : {idle, busy}  output
+event sensed  input
+event pick(id: int)  input
+event released  output
+
+requirement R1 "Release in time"
+  upon sensed and ready
+  then within 3 s released
+
+requirement R2 "No release"
+  upon sensed and not ready
+  then for 2 s not released
+
+requirement R3 "Far enough"
+  upon pick.id > 3
+  then immediately distance >= 5 cm
+"""
+
+SPAWNING = """spec spawning
+time held
+event a, b input
+requirement R
+  always (a -> eventually[20 ns, 90 ns] b)
+"""
+
+
+def brief(attempts):
+    return [(a.requirement, a.number, a.verdict.value, a.decided) for a in attempts]
+
+
+@pytest.fixture(name="monitor", params=["auto", "automaton", "progression"])
+def _monitor(request):
+    return rvmon.loads(SPEC).monitor(engine=request.param)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_generated_code_runs_only_where_it_is_asked_for(engine):
+    """It does so where the engine is left open, too; another engine judges by itself."""
+    monitor = rvmon.loads(SPEC).monitor(engine=engine)
+    assert isinstance(monitor, GeneratedMonitor) is (engine in ("auto", "python"))
+
+
+def test_a_decision_is_returned_by_the_call_that_brings_it(monitor):
+    """A sample or the passing of time returns exactly what it decided."""
+    assert monitor.step(0, {"ready": True}) == ()
+    assert monitor.step(1, {"sensed": True}) == ()
+    assert brief(monitor.step(2.5, {"released": True})) == [("R1", 1, "P", 2_500_000_000)]
+    monitor.step(3, {"sensed": True})
+    assert monitor.advance(6) == ()
+    assert brief(monitor.advance_ns(6_000_000_001)) == [("R1", 2, "F", 6_000_000_001)]
+    assert monitor.advance_ns(6_000_000_001) == ()
+
+
+def test_a_late_sample_tells_of_deadlines_that_passed_before_it(monitor):
+    """A deadline is missed at its instant plus one tick, whenever the next message comes."""
+    monitor.step(0, {"ready": True, "sensed": True})
+    assert brief(monitor.step(100, {"released": True})) == [("R1", 1, "F", 3_000_000_001)]
+
+
+def test_next_due_says_when_to_call_advance(monitor):
+    """Advancing to it decides; advancing to the tick before does not."""
+    assert monitor.next_due is None
+    monitor.step(0, {"ready": True, "distance": 1.0})
+    monitor.step(1, {"sensed": True, "distance": 1.0})
+    for _ in range(9):
+        if monitor.next_due < 4_000_000_001:
+            assert monitor.advance_ns(monitor.next_due) == ()
+    assert monitor.next_due == 4_000_000_001
+    assert brief(monitor.advance_ns(monitor.next_due)) == [("R1", 1, "F", 4_000_000_001)]
+    monitor.advance_ns(4_000_000_002)
+    assert monitor.next_due is None
+
+
+def test_open_attempts_say_what_they_wait_for(monitor):
+    """An open attempt shows its obligation and deadline."""
+    monitor.step(0, {"ready": True})
+    monitor.step(1, {"sensed": True})
+    [attempt] = monitor.open
+    assert (attempt.requirement, attempt.number, attempt.triggered) == ("R1", 1, 10**9)
+    assert attempt.deadline == 4 * 10**9
+    assert "within 3 s released" in attempt.owed
+
+
+BAD_SAMPLES = {
+    "unknown name": {"relased": True},
+    "text in a number": {"distance": "far"},
+    "truth in a number": {"distance": True},
+    "number in a truth": {"ready": 1},
+    "unknown label": {"mode": "asleep"},
+    "event with a number": {"sensed": 3},
+    "unknown field": {"pick": {"x": 1}},
+    "fraction in a whole number": {"pick": {"id": 1.5}},
+    "two payloads": {"pick": ({"id": 1}, {"id": 2})},
+}
+
+
+@pytest.mark.parametrize("name", BAD_SAMPLES)
+def test_a_bad_sample_is_named_and_changes_nothing(monitor, name):
+    """The error names the sample's time and the name; the monitor goes on as if it had not come."""
+    monitor.step(0, {"ready": True})
+    with pytest.raises(TraceError, match="sample at 1 s") as caught:
+        monitor.step(1, {"sensed": True, **BAD_SAMPLES[name]})
+    assert next(key for key in BAD_SAMPLES[name]) in str(caught.value)
+    assert monitor.step(1, {}) == ()
+    assert monitor.finish().attempts == ()
+
+
+@pytest.mark.parametrize("t", [math.inf, math.nan, 1e300])
+def test_an_impossible_time_is_an_error(monitor, t):
+    """A time that is no finite number of ticks is refused by every call."""
+    for call in (
+        lambda: monitor.step(t, {}),
+        lambda: monitor.advance(t),
+        lambda: monitor.finish(t),
+    ):
+        with pytest.raises(TraceError):
+            call()
+
+
+def test_time_never_goes_back(monitor):
+    """Equal and earlier samples, and those before an advance, raise and change nothing."""
+    monitor.step(1, {"ready": True})
+    for t in (1, 0.5):
+        with pytest.raises(TimeOrderError):
+            monitor.step(t, {"sensed": True})
+    monitor.advance(3)
+    with pytest.raises(TimeOrderError):
+        monitor.step(2, {"sensed": True})
+    monitor.step(3, {"sensed": True})
+    assert brief(monitor.finish().attempts) == [("R1", 1, "I", None)]
+
+
+def test_a_finished_run_is_over_until_reset(monitor):
+    """`finish` gives the same report again, a sample is refused, `reset` starts anew."""
+    monitor.step(0, {"ready": True, "sensed": True})
+    report = monitor.finish(5)
+    assert report.verdicts["R1"] is Verdict.FAIL
+    assert monitor.finish() is report
+    with pytest.raises(TraceError, match="reset"):
+        monitor.step(6, {})
+    monitor.reset()
+    monitor.step(0, {"ready": False, "sensed": True})
+    assert monitor.finish(5).verdicts == {
+        "R1": Verdict.NOT_TRIGGERED,
+        "R2": Verdict.PASS,
+        "R3": Verdict.NOT_TRIGGERED,
+    }
+
+
+def test_only_the_chosen_requirements_are_judged():
+    """`only` leaves the others out of the report."""
+    monitor = rvmon.loads(SPEC).monitor(only=["R2"])
+    monitor.step(0, {"ready": True, "sensed": True})
+    assert list(monitor.finish().verdicts) == ["R2"]
+
+
+def test_a_name_without_source_is_unknown_and_must_not_arrive():
+    """What cannot arrive is unknown throughout, and is an error if it does."""
+    monitor = rvmon.loads(SPEC).monitor(sources=["sensed", "ready"])
+    monitor.step(0, {"ready": True, "sensed": True})
+    with pytest.raises(TraceError, match="not among the sources"):
+        monitor.step(1, {"released": True})
+    assert monitor.finish(9).verdicts["R1"] is Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize(
+    "options", [{"only": ["R9"]}, {"engine": "warp"}, {"settle": "never"}], ids=str
+)
+def test_an_unknown_option_is_named_with_those_there_are(options):
+    """A choice that does not exist is refused when the monitor is built."""
+    with pytest.raises(UnknownNameError, match=r"there (are|is)"):
+        rvmon.loads(SPEC).monitor(**options)
+
+
+def test_an_engine_that_cannot_judge_says_so():
+    """A formula whose automaton does not close is refused by that engine, judged by `auto`."""
+    spec = rvmon.loads(SPAWNING)
+    with pytest.raises(RvmonError, match="R has no automaton"):
+        spec.monitor(engine="automaton")
+    monitor = spec.monitor()
+    monitor.step_ns(0, {"a": True})
+    monitor.step_ns(1, {"a": True})
+    assert brief(monitor.step_ns(99, {})) == [("R", 1, "F", 91)]
+
+
+def test_numpy_scalars_are_numbers(monitor):
+    """Values as they come out of arrays are taken."""
+    numpy = pytest.importorskip("numpy")
+    monitor.step(0, {"ready": numpy.bool_(True), "distance": numpy.float32(0.5)})
+    monitor.step(1, {"sensed": True, "pick": {"id": numpy.int64(4)}, "distance": numpy.int8(1)})
+    assert monitor.finish().verdicts["R3"] is Verdict.PASS
+
+
+def test_the_compile_report_says_what_became_of_a_requirement():
+    """Engine, size and horizon are known before a run; a refusal names what was too much."""
+    reports = {
+        name: one.report
+        for name, one in compile_spec(rvmon.loads(SPEC).checked).requirements.items()
+    }
+    assert (reports["R1"].engine, reports["R1"].locations, reports["R1"].clocks) == (
+        "automaton",
+        4,
+        1,
+    )
+    assert reports["R1"].horizon == 3 * 10**9
+    assert reports["R3"].clocks == 0
+    [report] = [
+        one.report for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
+    ]
+    assert report.engine == "network"
+    assert "more than" in report.why
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("count", "generated"), [(2000, True), (2001, False)])
+def test_code_is_generated_for_up_to_2000_requirements(count, generated):
+    """More are judged as well, without generated code; the engine `python` then says so."""
+    text = "spec s\nsignal p : bool\nevent e\n" + "".join(
+        f"requirement R{n}\n  upon e then within {n + 1} ms p\n" for n in range(count)
+    )
+    spec = rvmon.loads(text)
+    monitor = spec.monitor()
+    assert (type(monitor) is GeneratedMonitor) == generated
+    if not generated:
+        with pytest.raises(RvmonError, match="one of 2001 requirements, more than the 2000"):
+            spec.monitor(engine="python")
+        assert type(spec.monitor(only=["R7"], engine="python")) is GeneratedMonitor
+    monitor.step(0, {"p": False, "e": True})
+    monitor.step(1, {"p": True})
+    report = monitor.finish(9)
+    assert [report.verdicts[f"R{n}"] for n in (0, 998, 999, count - 1)] == ["F", "F", "P", "P"]

@@ -1,0 +1,220 @@
+"""A run that is put away and taken up again goes on as if nothing had happened."""
+
+import copy
+import hashlib
+import json
+import random
+
+import pytest
+from tests.tools.differential import campaign, case_of
+from tests.tools.interrupt import Interrupted
+from tests.tools.ways import Maker
+
+import rvmon
+from rvmon.errors import RvmonError, SnapshotError
+from rvmon.session import Spec
+from rvmon.testing.drive import feed
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+
+TEXT = """
+spec door
+signal closed : bool input
+signal width  : real  stale after 3 s
+event knock(force: real) input
+requirement D1
+  upon knock
+  then within 2 s not closed
+requirement D2
+  upon knock
+  then within 4 s width < bound
+  let bound = knock.force
+requirement D3
+  whenever width > prev(width)
+  then for 1 s closed
+"""
+SAMPLES = [
+    (0, {"closed": True}),
+    (1, {"knock": {"force": 0.5}, "width": 0.7}),
+    (2, {"width": float("nan"), "knock": True}),
+    (3, {"width": 0.75, "knock": {"force": 1.0}}),
+    (8, {"closed": None}),
+    (9, {"closed": False, "width": 2.0}),
+]
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "progression", "network"])
+def test_interruptions_change_nothing(engine):
+    """Every engine, taken up from snapshots at random points, judges as the law says."""
+    seeds = [f"snapshot/{number}" for number in range(20)]
+    profile, traces = Profile(mixed=engine in ("auto", "network")), TraceProfile()
+    tally = campaign(Maker(f"{engine}+interrupt"), seeds, profile, traces, online_every=6)
+    assert tally.pairs > 12
+    assert not tally.disagreements, tally.disagreements[0]
+
+
+@pytest.mark.law
+def test_another_process_could_take_over():
+    """A specification that was compiled anew takes the snapshot, and gives the same bytes again."""
+    taken = 0
+    for number in range(12):
+        case = case_of(f"anew/{number}", Profile(), TraceProfile())
+        monitor = Spec(case.spec).monitor(sources=case.names)
+        rng = random.Random(number)
+        for action in case.actions:
+            feed(monitor, action)
+            if rng.random() < 0.2:
+                data = monitor.snapshot()
+                monitor = Spec(case.spec).restore(data)
+                assert monitor.snapshot() == data
+                taken += 1
+    assert taken > 10
+
+
+@pytest.mark.parametrize("text", ["max delay 2 s\n", ""])
+def test_samples_held_back_are_kept(text):
+    """What waits to be sorted or merged is in the snapshot, and so is what came too late."""
+    spec = rvmon.loads(TEXT.replace("spec door\n", f"spec door\n{text}"))
+    plain = spec.monitor(settle="next")
+    other = Interrupted(spec.monitor(settle="next"), random.Random(1), share=1)
+    stream = [*SAMPLES, (9, {"width": 2.5}), (9, {"closed": True})]
+    if text:
+        stream = [stream[1], stream[0], *stream[2:], (1, {"closed": False})]
+    for t, values in stream:
+        assert plain.step_ns(t * 10**9, values) == other.step_ns(t * 10**9, values)
+    report = plain.finish_ns(20 * 10**9)
+    assert report == other.finish_ns(20 * 10**9)
+    assert {"late", "conflict"} & {one.kind.value for one in report.health}
+
+
+def test_open_attempts_and_records_are_kept():
+    """The restored monitor shows the same open attempts and reports the same run."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    for t, values in SAMPLES[:4]:
+        monitor.step(t, values)
+    restored = spec.restore(monitor.snapshot())
+    assert list(restored.open) == list(monitor.open) != []
+    assert restored.next_due == monitor.next_due
+    for t, values in SAMPLES[4:]:
+        assert list(monitor.step(t, values)) == list(restored.step(t, values))
+    assert monitor.finish(20) == restored.finish(20)
+
+
+def test_another_specification_is_refused():
+    """A snapshot names what it does not fit; layout and comments do not count."""
+    monitor = rvmon.loads(TEXT).monitor()
+    monitor.step(0, {"closed": True})
+    data = monitor.snapshot()
+    with pytest.raises(SnapshotError, match="another specification"):
+        rvmon.loads(TEXT.replace("2 s", "3 s")).restore(data)
+    assert rvmon.loads(f"# the front door\n{TEXT}\n").restore(data).snapshot() == data
+
+
+def test_wrong_bytes_are_refused():
+    """Bytes that are cut, changed or something else are no snapshot, whatever is changed."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    monitor.step(0, {"closed": True})
+    data = monitor.snapshot()
+    for wrong in (b"", b"PK\x03\x04", data[:-1], data + b" ", data.replace(b"closed", b"opened")):
+        with pytest.raises(SnapshotError, match=r"no snapshot|damaged"):
+            spec.restore(wrong)
+
+
+def test_forged_bytes_are_refused():
+    """Well-formed bytes with a right checksum that fit no monitor are an error of ours."""
+    import hashlib
+    import json
+
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    monitor.step(1, {"closed": True, "knock": {"force": 1.0}})
+    head, _, body = monitor.snapshot().partition(b"\n")
+    document = json.loads(body)
+    forged = [
+        {**document, "state": ["object", "os", "system"]},
+        {**document, "state": ["kept"]},
+        {**document, "engine": "none"},
+        {**document, "lanes": ["tuple", ["list"], ["list", ["tuple", "D2", ["dict"], 7, True]]]},
+        {name: value for name, value in document.items() if name != "only"},
+    ]
+    for one in forged:
+        text = json.dumps(one).encode()
+        checksum = hashlib.sha256(text).hexdigest().encode()
+        with pytest.raises(SnapshotError):
+            spec.restore(head.rpartition(b" ")[0] + b" " + checksum + b"\n" + text)
+
+
+def test_a_finished_run_has_a_report_and_no_snapshot():
+    """After the end there is nothing to go on with."""
+    monitor = rvmon.loads(TEXT).monitor()
+    monitor.finish()
+    with pytest.raises(SnapshotError, match="finished"):
+        monitor.snapshot()
+
+
+def places_in(value, path=()):
+    """The paths to all that a document holds."""
+    found = list(enumerate(value)) if isinstance(value, list) else []
+    found += list(value.items()) if isinstance(value, dict) else []
+    for key, one in found:
+        yield (*path, key)
+        yield from places_in(one, (*path, key))
+
+
+@pytest.mark.slow
+def test_most_hostile_snapshots_are_refused_at_once():
+    """A sealed snapshot with something else at a place is refused, or makes a monitor to ask."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor()
+    for t, values in SAMPLES[:5]:
+        monitor.step(t, values)
+    head, _, body = monitor.snapshot().partition(b"\n")
+    document = json.loads(body)
+    places = list(places_in(document))
+    for seed in range(150):
+        rng = random.Random(seed)
+        hostile, path = copy.deepcopy(document), rng.choice(places)
+        inner = hostile
+        for key in path[:-1]:
+            inner = inner[key]
+        inner[path[-1]] = rng.choice([None, True, -1, 1.5, "x", [], ["dict"], ["same", 0], {}])
+        sealed = json.dumps(hostile, separators=(",", ":")).encode()
+        seal = hashlib.sha256(sealed).hexdigest().encode()
+        try:
+            restored = spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed)
+            _ = restored.open, restored.next_due, restored.verdicts
+            restored.snapshot()
+            restored.finish()
+        except RvmonError:
+            continue
+
+
+@pytest.mark.slow
+def test_a_snapshot_whose_times_have_passed_is_refused():
+    """With any one number of what waits in a network below zero, restoring comes to an end."""
+    text = "spec s\nsignal p, q : bool\nsignal v : real\nrequirement R1\n"
+    spec = rvmon.loads(text + "  whenever v > 3 then (p until[0 s, 4 s] q)\n")
+    monitor = spec.monitor(engine="network")
+    for t, (p, q, v) in enumerate([(True, False, 4.0), (None, False, None), (True, None, 5.0)]):
+        monitor.step(t, {"p": p, "q": q, "v": v})
+    head, _, body = monitor.snapshot().partition(b"\n")
+    document = json.loads(body)
+    refused = 0
+    for path in places_in(document["state"]):
+        hostile = copy.deepcopy(document)
+        inner = hostile["state"]
+        for key in path[:-1]:
+            inner = inner[key]
+        if type(inner[path[-1]]) is not int:
+            continue
+        inner[path[-1]] = -1
+        sealed = json.dumps(hostile, separators=(",", ":")).encode()
+        seal = hashlib.sha256(sealed).hexdigest().encode()
+        try:
+            spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed).finish()
+        except RvmonError:
+            refused += 1
+    assert refused

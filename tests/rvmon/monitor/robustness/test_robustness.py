@@ -1,0 +1,214 @@
+"""Robustness as users ask for it."""
+
+import doctest
+from collections import deque
+from pathlib import Path
+
+import pytest
+
+import rvmon
+from rvmon.errors import UnknownNameError
+
+HEAD = "spec s\nsignal x : real [cm]\nsignal p : bool\nevent e\nrequirement R1\n  "
+INFINITE = float("inf")
+
+
+def margins(requirement, samples, **options):
+    """The figures of a requirement on samples whose times are seconds."""
+    return rvmon.loads(HEAD + requirement + "\n").robustness(samples, **options)
+
+
+def test_a_distance_is_in_base_units():
+    """A signal in cm has its robustness in m."""
+    found = margins("upon e then within 3 s x > 10 cm", [(0, {"x": 2, "e": True}), (1, {"x": 12})])
+    assert found.attempts["R1", 1].low == pytest.approx(0.02)
+
+
+def test_what_comes_behind_the_decision_counts_as_long_as_the_window_is_open():
+    """The best value of the window counts, also if it comes after the first good one."""
+    samples = [(0, {"x": 2, "e": True}), (1, {"x": 12}), (2, {"x": 30}), (9, {"x": 99})]
+    found = margins("upon e then within 3 s x > 10 cm", samples).attempts["R1", 1]
+    assert found.low == found.high == pytest.approx(0.2)
+
+
+def test_propositions_without_numbers_are_infinite():
+    """A bool is as far from false as can be."""
+    found = margins("upon e then immediately p", [(0, {"p": True, "e": True})]).attempts["R1", 1]
+    assert (found.low, found.high) == (INFINITE, INFINITE)
+
+
+def test_unknown_input_may_be_anything():
+    """A part of the window that is not known leaves an interval."""
+    samples = [(0, {"x": 3, "e": True}), (1, {"x": None}), (2, {"x": 5}), (9, {})]
+    found = margins("upon e then for 3 s x < 10 cm", samples).attempts["R1", 1]
+    assert (found.low, found.high) == (-INFINITE, pytest.approx(0.05))
+
+
+def test_what_is_held_to_the_end_is_measured_to_the_end():
+    """`always` that nothing broke has the least distance of the run."""
+    spec = rvmon.loads(HEAD + "always x < 10 cm\n")
+    samples = [(0, {"x": 3}), (1, {"x": 8}), (2, {"x": 5})]
+    [attempt] = spec.evaluate(samples).attempts
+    found = spec.robustness(samples)
+    assert found.attempts["R1", 1].low == -INFINITE
+    assert found.of(attempt).robustness == pytest.approx(0.02)
+
+
+def test_a_stream_has_a_figure_per_sample():
+    """What is owed is measured at each instant of a sample."""
+    samples = [(0, {"x": 3}), (1, {"x": 12}), (2, {"x": 5})]
+    stream = margins("always x < 10 cm", samples).streams["R1"]
+    assert [(t, found.kept) for t, found in stream] == [
+        (0, pytest.approx(-0.02)),
+        (10**9, pytest.approx(-0.02)),
+        (2 * 10**9, pytest.approx(0.05)),
+    ]
+
+
+def test_an_episode_owes_nothing_where_it_ends():
+    """The state that ends an episode is not held against it."""
+    samples = [(0, {"p": True, "x": 3}), (1, {"p": False, "x": 99})]
+    found = margins("whenever p then immediately x < 10 cm", samples).attempts["R1", 1]
+    assert found.low == found.high == pytest.approx(0.07)
+
+
+def test_what_follows_a_failure_is_measured_from_where_it_begins():
+    """The attempt after a failure does not count what failed before it."""
+    samples = [(0, {"x": 3}), (1, {"x": 12}), (2, {"x": 5})]
+    found = margins("always x < 10 cm", samples).attempts
+    assert found["R1", 1].high == pytest.approx(-0.02)
+    assert found["R1", 2].kept == pytest.approx(0.05)
+
+
+def test_an_attempt_in_doubt_has_a_figure_if_it_has_a_record():
+    """What nothing may have triggered may owe nothing; what was met in doubt is not measured."""
+    samples = [(0, {"e": None, "x": 3}), (1, {"x": 5})]
+    found = margins("upon e then immediately x > 10 cm", samples)
+    assert not found.attempts
+    assert found.doubtful["R1", 1].low == pytest.approx(-0.07)
+    assert found.doubtful["R1", 1].high == INFINITE
+    assert not margins("upon e then immediately x < 10 cm", samples).doubtful
+
+
+def test_what_has_had_no_value_counts_in_favour_of_an_episode():
+    """Up to its birth a signal says nothing against a level `whenever`."""
+    found = margins("always x < 10 cm", [(0, {"p": True}), (1, {"x": 7})])
+    assert found.attempts["R1", 1].kept == pytest.approx(0.03)
+
+
+def test_until_decides_how_much_is_looked_at():
+    """A trace that is cut at its end leaves windows open."""
+    samples = [(0, {"x": 3, "e": True})]
+    found = margins("upon e then within 3 s x > 10 cm", samples, until=2.0).attempts["R1", 1]
+    assert (found.low, found.high) == (pytest.approx(-0.07), INFINITE)
+
+
+def online(requirement, **options):
+    """A monitor of a requirement that gives figures."""
+    return rvmon.loads(HEAD + requirement + "\n").robustness_monitor(**options)
+
+
+def test_a_figure_is_given_as_soon_as_its_window_is_over():
+    """What is known of an open attempt draws closer, until nothing can change it."""
+    monitor = online("upon e then within 3 s x > 10 cm")
+    assert monitor.step(0, {"x": 2, "e": True}) == []
+    assert monitor.step(1, {"x": 12}) == []
+    [known] = monitor.open
+    assert (known.number, known.robustness.low) == (1, pytest.approx(0.02))
+    assert known.robustness.high == INFINITE
+    [found] = monitor.step(4, {"x": 50})
+    assert (found.requirement, found.number, found.t) == ("R1", 1, 0)
+    assert found.robustness.low == found.robustness.high == pytest.approx(0.02)
+    assert monitor.open == []
+    assert monitor.finish() == []
+
+
+def test_time_alone_settles_a_figure():
+    """A window is over when time has passed its end, whether or not a sample came."""
+    monitor = online("upon e then within 3 s x > 10 cm")
+    monitor.step(0, {"x": 2, "e": True})
+    assert monitor.advance(3) == []
+    [found] = monitor.advance(3.5)
+    assert found.robustness.high == pytest.approx(-0.08)
+
+
+def test_a_stream_is_given_as_it_goes():
+    """Each position of a stream is settled when its own window is over."""
+    monitor = online("always within 1 s x > 10 cm", streams=True)
+    found = [one for t in range(4) for one in monitor.step(t, {"x": 10 + t})]
+    ends = monitor.finish()
+    assert [one.number for one in found] == []
+    assert [one.t for one in ends if one.number is None] == [n * 10**9 for n in range(4)]
+    monitor = online("upon e then within 1 s x > 10 cm", streams=True)
+    found = [one for t in range(4) for one in monitor.step(t, {"x": 10 + t})]
+    assert [(one.t, one.robustness.low) for one in found] == [
+        (0, pytest.approx(0.01)),
+        (10**9, pytest.approx(0.02)),
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("time", ["held", "sampled"])
+@pytest.mark.parametrize(
+    "requirement",
+    [
+        "upon e then within 50 ms x > 10 cm",
+        "upon e then (x > 1 cm) until (x > 20 cm)",
+        "upon e then (always x > 0 cm) and within 50 ms p",
+        "always within 50 ms x > 10 cm",
+        "upon e then immediately once[0, 50 ms] x > 10 cm",
+    ],
+)
+def test_memory_does_not_grow_with_the_run(time, requirement):
+    """What is kept for one open attempt after a long run is what was kept after a short one."""
+    text = HEAD.replace("spec s\n", f"spec s\ntime {time}\n") + requirement + "\n"
+    monitor = rvmon.loads(text).robustness_monitor()
+    sizes = []
+    for step in range(900):
+        monitor.step_ns(step * 5_000_000, {"x": step * 7 % 13, "e": step == 0, "p": False})
+        if step in (299, 899):
+            sizes.append(kept_by(monitor))
+    assert sizes[1] <= sizes[0] + 20
+
+
+def kept_by(value, seen=None):
+    """How many entries containers hold, all that a run refers to."""
+    seen = set() if seen is None else seen
+    if id(value) in seen or isinstance(value, str | int | float | type):
+        return 0
+    seen.add(id(value))
+    if isinstance(value, dict):
+        return sum(1 + kept_by(one, seen) for one in value.values())
+    if isinstance(value, list | tuple | set | deque):
+        return sum(1 + kept_by(one, seen) for one in value)
+    if type(value).__module__.startswith("rvmon"):
+        names = [*getattr(value, "__dict__", ()), *getattr(type(value), "__slots__", ())]
+        return sum(kept_by(getattr(value, name, None), seen) for name in names)
+    return 0
+
+
+def test_a_way_to_settle_that_there_is_not_is_refused():
+    """The message names the ways there are."""
+    with pytest.raises(UnknownNameError, match="now, next"):
+        online("always p", settle="soon")
+
+
+def test_the_page_about_it_is_true():
+    """What the reference shows of the online monitor is what it gives."""
+    page = Path(__file__).parents[4] / "docs" / "reference" / "robustness.md"
+    failures, tried = doctest.testfile(str(page), module_relative=False)
+    assert (failures, tried > 4) == (0, True)
+
+
+def test_integers_beyond_all_floats():
+    """A number that no float holds is infinitely far from a bound, above it or below."""
+    spec = rvmon.loads(
+        "spec s\nsignal x : real\nevent e\nrequirement R1\n  upon e\n  then within 3 s x > 1\n"
+    )
+    for value, low in ((10**400, INFINITE), (-(10**400), 4.0)):
+        monitor = spec.robustness_monitor()
+        monitor.step(0, {"x": 1.0, "e": True})
+        monitor.step(1, {"x": value})
+        monitor.step(2, {"x": 5.0})
+        [measured] = monitor.finish(9)
+        assert measured.robustness.low == low

@@ -1,0 +1,187 @@
+"""Random cases: what has to occur in them often enough to find what monitors get wrong."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from tests.tools.build import compared, eventually, requirement, spec_of, x
+from tests.tools.differential import Mix, case_of
+from tests.tools.features import Feature, features, possible
+from tests.tools.judgement import Judgement
+from tests.tools.law import judge
+
+from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import EndPolicy, Mode, TimeModel
+from rvmon.testing.case import Case
+from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.walk import intervals, subformulas
+from rvmon.testing.strategies import cases
+from rvmon.trace.sample import Sample
+
+pytestmark = pytest.mark.law
+
+
+def some_cases(time: TimeModel, number: int = 400) -> list[Case]:
+    return [case_of(seed, Profile(time=time), TraceProfile()) for seed in range(number)]
+
+
+@pytest.mark.parametrize("time", TimeModel)
+def test_verdicts_are_mixed(time: TimeModel) -> None:
+    """P, F and I make up 15 % of the attempts each, and 10 % are decided on a bound."""
+    mix = Mix()
+    for case in some_cases(time):
+        mix.count(Judgement(case))
+    attempts = sum(mix.attempts.values())
+    assert attempts > 400
+    assert min(mix.attempts[verdict] for verdict in "PFI") >= 0.15 * attempts
+    assert mix.on_bound >= 0.10 * attempts
+
+
+def test_everything_occurs() -> None:
+    """All operators, kinds of interval, modes, policies and triggers are among the cases."""
+    seen: Counter[object] = Counter()
+    for time in TimeModel:
+        for case in some_cases(time, 600):
+            for found in case.spec.requirements.values():
+                seen.update([found.mode, found.at_end, ("pulse", found.pulse)])
+                seen.update(
+                    ["let"] * bool(found.captures) + ["each"] * (found.for_each is not None)
+                )
+                for part in subformulas(found.consequent):
+                    seen[getattr(part, "op", type(part))] += not isinstance(part, Compare)
+                for window in intervals(found.consequent):
+                    seen["later"] += window.low > 0
+                    seen["unbounded"] += window.high is None
+                    seen["point"] += window.low == window.high
+                    seen["zero"] += window.low == 0
+            seen["none"] += any(None in sample.values.values() for sample in case.samples)
+            seen["stale"] += any(s.stale_after is not None for s in case.spec.signals.values())
+            seen["absent"] += case.names is not None
+            seen["advance"] += bool(case.advances)
+            seen["finish"] += case.end is not None
+    wanted = [*UnaryOp, *BinaryOp, *Mode, *EndPolicy, ("pulse", True), ("pulse", False), "let"]
+    wanted += ["each", "later", "unbounded", "point", "zero", "none", "stale", "absent"]
+    wanted += ["advance", "finish"]
+    assert {thing: seen[thing] for thing in wanted if seen[thing] < 10} == {}
+
+
+def test_operators_meet_everything() -> None:
+    """Each operator with each kind of window meets every time, trigger, end, `let`, `for each`."""
+    found: Counter[Feature] = Counter()
+    for seed in range(9_000):
+        found.update(features(random_spec(random.Random(f"met/{seed}"), Profile())))
+    assert not set(found) - set(possible())
+
+    def pairs(all_: Iterable[Feature]) -> set[tuple[object, ...]]:
+        others = ("time", "trigger", "policy", "extra")
+        return {(one.operator, one.window, getattr(one, name)) for one in all_ for name in others}
+
+    assert pairs(possible()) - pairs(found) == set()
+
+
+def depth(formula: Formula) -> int:
+    match formula:
+        case Unary(operand=operand):
+            return 1 + depth(operand)
+        case Binary(left=left, right=right):
+            return 1 + max(depth(left), depth(right))
+        case _:
+            return 0
+
+
+def test_depth() -> None:
+    """Operators nest up to the depth asked for, and no deeper."""
+    found = [depth(formula(random.Random(seed), Shape(), 4)) for seed in range(400)]
+    assert max(found) == 4
+
+
+def test_next_stays_outside_held_time() -> None:
+    """`X` and `Y` do not occur where they are refused; W and M start at zero."""
+    for case in some_cases(TimeModel.HELD):
+        for found in case.spec.requirements.values():
+            for part in subformulas(found.consequent):
+                if isinstance(part, Unary):
+                    assert part.op not in (UnaryOp.NEXT, UnaryOp.PREVIOUS)
+    for case in some_cases(TimeModel.SAMPLED):
+        for found in case.spec.requirements.values():
+            for part in subformulas(found.consequent):
+                if isinstance(part, Binary) and part.interval is not None:
+                    weak = part.op in (BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE)
+                    assert not weak or part.interval.low == 0
+
+
+def test_triggers_look_back() -> None:
+    """Triggers hold no future operator, and their class is their syntax's."""
+    future = {UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL}
+    future |= {BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE}
+    for case in some_cases(TimeModel.SAMPLED):
+        for found in case.spec.requirements.values():
+            operators = {getattr(part, "op", None) for part in subformulas(found.trigger)}
+            assert not operators & future
+            assert found.pulse is is_pulse(found.trigger)
+
+
+def test_known_traces() -> None:
+    """Without unknowns there is neither `None` nor NaN, and every name has a source."""
+    for seed in range(200):
+        case = case_of(seed, Profile(), TraceProfile(unknowns=False))
+        assert case.names is None
+        values = [value for sample in case.samples for value in sample.values.values()]
+        assert all(value is not None and value == value for value in values)
+
+
+def test_traces_for_other_specs() -> None:
+    """Gaps follow the bounds of a spec, numbers its thresholds."""
+    spec = spec_of(requirement(eventually(compared(x, ">", 1000), 0, 500)))
+    rng = random.Random(1)
+    profile = TraceProfile(span=5_000)
+    found = [random_trace(rng, spec, profile) for _ in range(50)]
+    times = [[sample.t for sample in case.samples] for case in found]
+    gaps = {b - a for row in times for a, b in pairwise(row)}
+    assert {500, 501} <= gaps
+    values = {sample.values.get("x") for case in found for sample in case.samples}
+    assert {999, 1000, 1001} <= values
+
+
+@settings(max_examples=30, deadline=None)
+@given(case=cases())
+def test_strategy_gives_sound_cases(case: Case) -> None:
+    """What Hypothesis draws can be judged, and its samples rise."""
+    times = [sample.t for sample in case.samples]
+    assert times == sorted(set(times))
+    assert set(judge(case).verdicts) == set(case.spec.requirements)
+
+
+def test_actions_in_order() -> None:
+    """No sample comes before an `advance` that was told earlier."""
+    for seed in range(200):
+        reached = -10
+        for action in case_of(seed, Profile(), TraceProfile()).actions:
+            instant = action.t if isinstance(action, Sample) else action
+            assert instant >= reached
+            reached = instant
+
+
+def test_features_can_be_left_out() -> None:
+    """A profile without a feature gives no spec that has it."""
+    plain = Profile(past=False, numbers=False, captures=False, for_each=False, policies=False)
+    plain = replace(plain, stale=False)
+    for seed in range(200):
+        spec = case_of(seed, plain, TraceProfile()).spec
+        assert all(signal.stale_after is None for signal in spec.signals.values())
+        for found in spec.requirements.values():
+            assert not found.captures
+            assert found.for_each is None
+            assert found.at_end is EndPolicy.DEFAULT
+            parts = [*subformulas(found.trigger), *subformulas(found.consequent)]
+            assert not any(isinstance(part, Compare) for part in parts)
+            assert not any(getattr(part, "op", None) is UnaryOp.ONCE for part in parts)
