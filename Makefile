@@ -13,10 +13,10 @@ help:  ## show this list
 demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; results in out/demo
 	@$(BIN)/handover demo --out out/demo
 
-test: $(VENV)/.dev  ## run all tests, 7 minutes on 2 cores; ends with the seconds of each folder
+test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the seconds of each folder
 	@$(TESTED)
 
-quick: $(VENV)/.dev  ## run the tests that need no compiler, browser or robot, 3 minutes on 2 cores
+quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, 1 minute on 2 cores
 	@$(TESTED) -m "not (browser or campaign or compiler or law or process or slow)" tests
 
 check: $(VENV)/.dev  ## lint, types, layers

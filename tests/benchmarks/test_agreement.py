@@ -64,6 +64,7 @@ def test_past_is_stepped() -> None:
     assert said == []
 
 
+@pytest.mark.slow
 def test_disagreement_is_seen() -> None:
     """A peer that never says FALSE does not judge alike."""
     found, _ = check(Played(blind=True), 1000.0)
@@ -82,6 +83,7 @@ def test_slow_stepping_gets_as_many_rows_as_fit(rows: int) -> None:
     assert said == [f"  rtamt steps {peer.rows:,} rows, {SECONDS * peer.rows / rows:.0f} s"]
 
 
+@pytest.mark.slow
 def test_too_slow_to_see_a_failure() -> None:
     """Where the rows are fewer than the bound nothing is compared, and the reason is told."""
     peer = Played()

@@ -43,6 +43,7 @@ def test_one_test_for_each_expressible_requirement():
         assert signals(test) == ["activateRobot", "informHumanOfHandoverStart", "humanIsReady"]
 
 
+@pytest.mark.slow
 def test_postures_follow_the_witness():
     """R1's witness takes all postures well, R2's at least one badly."""
     good, bad, *_ = model_based(4, seed=3)
@@ -115,6 +116,7 @@ def test_each_way_of_choosing_has_its_tests_and_templates(tmp_path):
     assert instantiate(again, seed=1) == tests["fastest"][1]
 
 
+@pytest.mark.slow
 def test_a_template_changed_by_hand_is_taken_as_it_is(tmp_path):
     """A changed window is kept; contradictory limits and broken files are refused."""
     template = templates()[0]

@@ -55,6 +55,7 @@ def test_json_has_every_answer(files, capsys):
     assert found["ways"]["oracle"] == {"agrees": True, "differences": []}
 
 
+@pytest.mark.slow
 def test_a_disagreement_is_shown_with_attempt_and_instant(files, capsys, monkeypatch):
     """A way that judges otherwise is named; exit 1."""
     honest = cross._judged
@@ -75,6 +76,7 @@ def test_a_disagreement_is_shown_with_attempt_and_instant(files, capsys, monkeyp
     assert "≠ network: D1#2: triggered at 5 s, F at 7.000000001 s" in shown
 
 
+@pytest.mark.slow
 def test_the_oracle_notices_a_wrong_baseline(files, capsys, monkeypatch):
     """The oracle judges by itself, on a case of fewer ticks."""
     honest = cross._judged
