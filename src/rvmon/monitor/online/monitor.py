@@ -331,10 +331,8 @@ class Monitor:
         known = [self._last]
         if t is not None:
             known.append(t)
-        if (
-            self._reached is not None
-            and self.options.compiled.checked.time is not TimeModel.SAMPLED
-        ):
+        is_sampled = self.options.compiled.checked.time is TimeModel.SAMPLED
+        if self._reached is not None and not is_sampled:
             known.append(self._reached - 1)
         return max(known)
 
