@@ -64,7 +64,7 @@ def roles_of(plan: Plan) -> Roles:
             triggers[graph.index[rule.trigger]] |= 1 << index
         if rule.again is not None:
             triggers[graph.index[rule.again]] |= 1 << index + len(judged)
-        for named in (rule.unborn, rule.told):
+        for named in (rule.unborn, rule.determined):
             asked |= 0 if named is None else 1 << graph.index[named]
     kept = 0
     depths = [0 for _ in graph.nodes]

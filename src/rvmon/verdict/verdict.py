@@ -8,7 +8,7 @@ from enum import StrEnum
 LAW = 2
 """Version of the law by which verdicts are judged; raised when the same run may get another one.
 
-It stands in reports, and in what a page or a command says of itself; the changes are told in
+It stands in reports, and in what a page or a command says of itself; the changes are determined in
 docs/reference/what-changed-in-the-law.md.
 """
 
@@ -22,13 +22,13 @@ class Verdict(StrEnum):
     INCONCLUSIVE = "I"
 
 
-def fold(verdicts: Iterable[Verdict], *, told: bool = True) -> Verdict:
+def fold(verdicts: Iterable[Verdict], *, determined: bool = True) -> Verdict:
     """The verdict of a requirement on a run, from the verdicts of its attempts.
 
     Args:
         verdicts: of its attempts.
-        told: whether its trigger was ever true or false; if not, that there are no attempts says
-            nothing.
+        determined: whether its trigger was ever true or false; if not, that there are no attempts
+            says nothing.
 
     Source: SEMANTICS, section 3.
 
@@ -39,4 +39,4 @@ def fold(verdicts: Iterable[Verdict], *, told: bool = True) -> Verdict:
     for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
         if verdict in seen:
             return verdict
-    return Verdict.NOT_TRIGGERED if told else Verdict.INCONCLUSIVE
+    return Verdict.NOT_TRIGGERED if determined else Verdict.INCONCLUSIVE
