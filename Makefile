@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# What Python makes of files is kept, whatever is the custom here: else each program that tests start makes it anew.
+TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
 .PHONY: help demo test quick check format bench clean
 
@@ -12,10 +14,10 @@ demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; result
 	@$(BIN)/handover demo --out out/demo
 
 test: $(VENV)/.dev  ## run all tests, 7 minutes on 2 cores; ends with the seconds of each folder
-	@$(BIN)/python -m pytest -n auto --dist worksteal
+	@$(TESTED)
 
 quick: $(VENV)/.dev  ## run the tests that need no compiler, browser or robot, 3 minutes on 2 cores
-	@$(BIN)/python -m pytest -n auto --dist worksteal -m "not (browser or campaign or compiler or law or process)" tests
+	@$(TESTED) -m "not (browser or campaign or compiler or law or process or slow)" tests
 
 check: $(VENV)/.dev  ## lint, types, layers
 	@$(BIN)/ruff check .

@@ -1,10 +1,10 @@
 """Hostile names and cells through every output, each parsed again: nothing is forged or obeyed.
 
-    python -m benchmarks.hostile_names --names 100000 --through-commands 1000
+    python -m benchmarks.hostile_names --names 100000 --through-commands 100000 --through-c 1000
 
-Every writer gets all names, as ids, texts, columns, reasons and names of files; the commands and
-the C programs get so many of them, in specifications and recordings. Prints by output how many
-names came through, and those at which something else came out than of harmless names.
+Every writer gets all names, as ids, texts, columns, reasons and names of files; the commands, and
+what is compiled C, get so many of them, in specifications, models and recordings. Prints by output
+how many names came through, and those at which something else came out than of harmless names.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import time
 import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -221,17 +221,51 @@ def _printed(act: Callable[[], object]) -> str:
     return told.getvalue()
 
 
-def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
-    """What commands and a C program make of names, each with whether all is well."""
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """Files in which names stand wherever a file can have them.
+
+    Attributes:
+        ids: the names, each the id and the text of a requirement.
+        spec: the specification.
+        trace: a recording that it judges, with a column and cells that are names.
+        broken: one with a value that is a name.
+        model: a network of timed automata with names as its title and the remark of each query.
+    """
+
+    ids: Names
+    spec: str
+    trace: str
+    broken: str
+    model: str
+
+
+def written(names: Names, folder: Path) -> Inputs:
+    """Write the files; their names are hostile, too."""
     ids = [name for name in names if "\r" not in name]  # files end lines there
     cell = next(name for name in ids if name == shown_line(name) or "\x00" not in name)
     file = re.sub(r"[/\x00]", "_", ids[-1])[:60]
-    spec, trace, broken = (str(folder / (file + end)) for end in (".rv", ".csv", ".broken.csv"))
+    ends = (".rv", ".csv", ".broken.csv", ".ta")
+    spec, trace, broken, model = (str(folder / (file + end)) for end in ends)
     items = "".join(f"requirement `{n}` {json.dumps(n)}\n  always b\n" for n in ids)
     Path(spec).write_text(f"spec `{ids[0]}`\nsignal b : bool\n{items}", encoding="utf-8")
     for path, value in ((trace, "0"), (broken, cell)):
         with open(path, "w", newline="", encoding="utf-8") as out:
             csv.writer(out).writerows([("t", "b", ids[0]), (0, 1, cell), (1, value, cell)])
+    # The first is a column whose cells are no truth values.
+    quoted_ids = [f'"{name}"' for name in ids[1:] if '"' not in name and name != ids[0]]
+    queries = "".join(f"query q{k} {name}: E<> A.m\n" for k, name in enumerate(quoted_ids[:20]))
+    edges = "".join(f"  edge l -> m as {name}\n" for name in ("b", *quoted_ids[:20]))
+    body = f"automaton A {{\n  location l\n  location m\n  start l\n{edges}}}\n"
+    text = f"network N {quoted_ids[-1]}\nunit 50 ms\n{body}{queries}"
+    Path(model).write_text(text, encoding="utf-8")
+    return Inputs(ids, spec, trace, broken, model)
+
+
+def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
+    """What commands make of names, each with whether all is well."""
+    files = written(names, folder)
+    ids, spec, trace, broken, model = files.ids, files.spec, files.trace, files.broken, files.model
     run = ["run", spec, trace]
     words = {
         "run": run,
@@ -240,7 +274,8 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "run, unknown": [*run, "--only", "no" + ids[0]],
         "run, options": [*run, "--no" + ids[0]],
         "check": ["check", spec, "--engines"],
-        "check, none": ["check", str(folder / (file + "none"))],
+        "check, none": ["check", spec + "none"],
+        "format": ["format", "--check", spec],
         "explain": ["explain", spec, ids[0], "--runs", "10"],
         "why": ["why", spec, trace, ids[0] if "#" not in ids[0] else "x"],
         "cross": ["cross", spec, trace, "--only", ids[0]],
@@ -249,21 +284,55 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "compile, dot": ["compile", spec, "--to", "dot"],
         "compile, hoa": ["compile", spec, "--to", "hoa"],
         "compile, python": ["compile", spec, "--to", "python"],
+        "verify": ["verify", model],
+        "verify, json": ["verify", model, "--format", "json"],
+        "verify, query": ["verify", model, "--query", ids[0]],
+        "verify, spec": ["verify", model, "--spec", spec],
+        "verify, const": ["verify", model, "--const", ids[0] + "=1"],
+        "verify, suite": ["verify", model, "--suite", "edges"],
+        "verify, no model": ["verify", trace],
+        "conform": ["conform", model, trace],
+        "conform, json": ["conform", model, trace, "--format", "json"],
+        "conform, broken": ["conform", model, broken],
+        "conform, labels": ["conform", model, trace, "--observe", ids[0]],
+        "conform, time": ["conform", model, trace, "--time", ids[0]],
+        "run, json": [*run, "--format", "json"],
+        "compile, json": ["compile", spec, "--to", "json"],
     }
     texts = {name: _printed(lambda given=given: command(given)) for name, given in words.items()}
     for name, text in texts.items():
-        yield name, _calm(text) and "internal error" not in text
-    compile(texts["compile, python"], "generated", "exec")
-    for name in ("run, json", "run, engine c"):
-        engine = ["--engine", "c"] if name.endswith("c") else []
-        text = _printed(lambda engine=engine: command([*run, "--format", "json", *engine]))
-        yield name, _calm(text) and list(json.loads(text)["requirements"]) == ids
-    text = _printed(lambda: command(["compile", spec, "--to", "json"]))
-    yield "compile, json", _calm(text) and [one["requirement"] for one in json.loads(text)] == ids
-    command(["build", spec, "-o", str(folder / "judge")])
-    text, _ = _program(folder, trace)
-    yield "C program", _calm(text) and list(json.loads(text)["requirements"]) == ids
-    yield "C program, broken", _calm(_program(folder, broken)[1])
+        fine = _calm(text) and "internal error" not in text
+        yield name, fine and _holds(name, text, ids)
+
+
+def _holds(name: str, text: str, ids: Names) -> bool:
+    """Whether what a command printed for programs reads back as the names."""
+    if name == "compile, python":
+        return compile(text, "generated", "exec") is not None
+    if not name.endswith(", json"):
+        return True
+    try:
+        document = json.loads(text)
+    except ValueError:
+        return False
+    match name.partition(",")[0]:
+        case "run":
+            return list(document["requirements"]) == list(ids)
+        case "compile":
+            return [one["requirement"] for one in document] == list(ids)
+    return True
+
+
+def through_c(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
+    """What compiled C makes of names, in this process and by itself; as `through_commands`."""
+    files = written(names, folder)
+    run = ["run", files.spec, files.trace, "--format", "json", "--engine", "c"]
+    text = _printed(lambda: command(run))
+    yield "run, engine c", _calm(text) and _holds("run, json", text, files.ids)
+    command(["build", files.spec, "-o", str(folder / "judge")])
+    text, _ = _program(folder, files.trace)
+    yield "C program", _calm(text) and _holds("run, json", text, files.ids)
+    yield "C program, broken", _calm(_program(folder, files.broken)[1])
 
 
 def _program(folder: Path, trace: str) -> tuple[str, str]:
@@ -275,7 +344,8 @@ def main(words: Sequence[str] | None = None) -> int:
     """Write, read again, print, and return 1 if anything was forged or obeyed."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--names", type=int, default=100_000)
-    parser.add_argument("--through-commands", type=int, default=1000)
+    parser.add_argument("--through-commands", type=int, default=10_000)
+    parser.add_argument("--through-c", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args(words)
     began = time.perf_counter()
@@ -291,14 +361,19 @@ def main(words: Sequence[str] | None = None) -> int:
                 print(
                     f"{writer.__name__}: wrong among names {first} to {first + BATCH}", flush=True
                 )
-    for first in range(0, min(arguments.through_commands, len(names)), BATCH // 10):
-        part = names[first : first + BATCH // 10]
-        with tempfile.TemporaryDirectory() as folder:
-            for name, fine in through_commands(part, Path(folder)):
-                given[name] += len(part)
-                if not fine:
-                    wrong[name] += 1
-                    print(f"{name}: wrong among names {first} to {first + len(part)}", flush=True)
+    ways = (
+        (through_commands, arguments.through_commands, BATCH),
+        (through_c, arguments.through_c, BATCH // 10),
+    )
+    for way, count, size in ways:
+        for first in range(0, min(count, len(names)), size):
+            part = names[first : min(first + size, count)]
+            with tempfile.TemporaryDirectory() as folder:
+                for name, fine in way(part, Path(folder)):
+                    given[name] += len(part)
+                    if not fine:
+                        wrong[name] += 1
+                        print(f"{name}: wrong among {first} to {first + len(part)}", flush=True)
     for name, count in given.items():
         print(f"{name:18} {count:8} names, {wrong[name]} documents wrong")
     print(f"{time.perf_counter() - began:.0f} s")

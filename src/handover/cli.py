@@ -88,7 +88,11 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
     parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
-    parser.add_argument("--out", metavar="DIR", help="write tables, tests and pages there")
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        help="write tables, tests and pages there; a campaign that was ended there goes on",
+    )
 
 
 def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

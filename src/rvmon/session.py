@@ -265,14 +265,12 @@ class Spec:
         *,
         sources: Iterable[str] | None = None,
         allow_missing: bool | Iterable[str] = False,
-        **arguments: Unpack[SchemaArguments],
+        **schema: Unpack[SchemaArguments],
     ) -> Reading:
         from rvmon.readers.reading import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
-        return Reading(
-            self.reading(**arguments).schema, sources_asked(self.checked, sources), allowed
-        )
+        return Reading(self.reading(**schema).schema, sources_asked(self.checked, sources), allowed)
 
     def evaluate_many(
         self,

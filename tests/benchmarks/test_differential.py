@@ -10,6 +10,7 @@ from benchmarks.mutants import Stage, stages_of
 from benchmarks import mutants
 
 
+@pytest.mark.slow
 def test_several_engines_share_the_cases(capsys: pytest.CaptureFixture[str]) -> None:
     """Each engine, and each way of driving it, has its own count of refusals and disagreements."""
     engines = ["--engine", "automaton", "network", "file", "--interrupt", "--next"]

@@ -22,5 +22,6 @@ def test_what_is_written_reads_back_as_names(documents, writer):
 @pytest.mark.compiler
 def test_every_command_shows_names_and_obeys_none(capsys):
     """Also in what it refuses, and in what the C program says."""
-    assert main(["--names", "40", "--through-commands", "40"]) == 0
+    words = ["--names", "40", "--through-commands", "40", "--through-c", "40"]
+    assert main(words) == 0
     assert "C program, broken        40 names, 0 documents wrong" in capsys.readouterr().out

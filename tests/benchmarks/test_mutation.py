@@ -92,6 +92,7 @@ def test_engines_have_files(engine):
     assert files_of(engine)
 
 
+@pytest.mark.slow
 def test_what_is_equivalent_can_still_be_changed():
     """A change that is listed as equivalent, and can no longer be made, has to go from the list."""
     possible = set()

@@ -165,6 +165,7 @@ def test_a_full_disk_costs_only_what_would_be_kept(folder, tmp_path, monkeypatch
     assert any(one.name.startswith("spec-") for one in folder.iterdir())
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("engine", ["auto", pytest.param("c", marks=pytest.mark.compiler)])
 def test_two_processes_that_compile_the_same_at_once_keep_it_whole(folder, tmp_path, engine):
     """Both judge, nothing unfinished is left, and what is kept is read back."""

@@ -10,6 +10,7 @@ from rvmon.spec.syntax.parse import grammar
 from tests.tools.generate_text import HEAD, random_text, syntax_of
 
 
+@pytest.mark.slow
 def test_most_texts_can_be_read_and_all_words_occur():
     """What the grammar makes the parser reads, but for what has to be bracketed."""
     made = [random_text(random.Random(seed)).removeprefix(HEAD) for seed in range(1500)]

@@ -19,6 +19,7 @@ from handover.campaign.strategies import STRATEGIES
 from handover.campaign.summarise import summarise
 from handover.campaign.summary import CampaignSummary
 from handover.campaign.text import print_summary
+from handover.campaign.unfinished import unfinished
 from handover.campaign.write_pages import REPORT, write_pages
 from rvmon.cli.progress import bar
 from rvmon.errors import UnknownNameError
@@ -80,8 +81,14 @@ def _campaign(
         )
     # Wrong requirements are told before anything is played.
     specs = {robot: load(path) for robot, path in chosen.specs.items()} if chosen.monitors else {}
-    with bar("tests", len(chosen.jobs())) as tell:
-        results = execute(chosen, jobs=arguments.jobs, progress=tell)
+    planned = len(chosen.jobs())
+    kept = None
+    if folder is not None:
+        kept = unfinished(folder, chosen, specs, _again(arguments))
+        if kept.played:
+            print(f"{len(kept.played)} of {planned} tests were played before", file=sys.stderr)
+    with bar("tests", planned) as tell:
+        results = execute(chosen, jobs=arguments.jobs, kept=kept, progress=tell)
     texts = {robot: _texts(specs.get(robot)) for robot in chosen.specs}
     checked = {}
     if "model-based" in chosen.tests and chosen.monitors:
@@ -95,6 +102,10 @@ def _campaign(
             write_pages(folder, summary, results, specs, _again(arguments))
         if remark := left_over(folder, before):
             print(remark, file=sys.stderr)
+    if kept is not None and results.cut_short:
+        print(f"{kept.path}: the same command plays what is left", file=sys.stderr)
+    elif kept is not None:
+        kept.path.unlink(missing_ok=True)
     return summary
 
 
@@ -110,6 +121,7 @@ def _again(arguments: argparse.Namespace) -> str:
         words += ["--strategy", arguments.strategy]
         words += ["--legacy"] if arguments.legacy else []
         words += ["--spec", arguments.spec] if arguments.spec else []
+        words += ["--no-monitors"] if arguments.no_monitors else []
     return typed([*words, "--out", arguments.out])
 
 

@@ -8,9 +8,10 @@ from collections.abc import Callable
 from contextlib import closing
 from functools import partial
 
-from handover.campaign.outcome import Outcome, Results
+from handover.campaign.outcome import Results
 from handover.campaign.plan import Plan
 from handover.campaign.play import player
+from handover.campaign.unfinished import Played, Unfinished
 from rvmon.errors import WorkerLostError
 from rvmon.execute import parallel
 
@@ -21,7 +22,12 @@ Progress = Callable[[int], None]
 
 
 def execute(
-    plan: Plan, *, jobs: int | None = None, unfitted: bool = True, progress: Progress | None = None
+    plan: Plan,
+    *,
+    jobs: int | None = None,
+    unfitted: bool = True,
+    kept: Unfinished | None = None,
+    progress: Progress | None = None,
 ) -> Results:
     """Play all tests of a plan.
 
@@ -31,24 +37,31 @@ def execute(
         plan: what to play.
         jobs: worker processes; default: one per core; 1 plays in this process.
         unfitted: also play the tests whose signals got lost once more without that loss.
+        kept: where each test is kept as soon as it was played; those before are not played again.
         progress: told as tests are finished.
     """
-    started = time.perf_counter()
+    played = [] if kept is None else [*kept.played]
+    started = time.perf_counter() - (played[-1].seconds if played else 0)
     begin = partial(player, plan.specs if plan.monitors else {}, repeat=unfitted)
     count = jobs or os.cpu_count() or 1
-    outcomes: list[Outcome] = []
-    repeated: list[Outcome] = []
+    left = plan.jobs()[len(played) :]
     cut_short = ""
     try:
-        with closing(parallel.execute(plan.jobs(), begin, jobs=count, what="test")) as played:
-            for outcome, *again in played:
-                outcomes.append(outcome)
-                repeated += again
+        with closing(parallel.execute(left, begin, jobs=count, what="test")) as results:
+            for outcomes in results:
+                played.append(Played(outcomes, time.perf_counter() - started))
+                if kept is not None:
+                    kept.keep(played[-1])
                 if progress is not None:
-                    progress(len(outcomes))
+                    progress(len(played))
     except KeyboardInterrupt:
         cut_short = INTERRUPTED
     except WorkerLostError as error:
         cut_short = str(error)
-    seconds = time.perf_counter() - started
-    return Results(plan, tuple(outcomes), tuple(repeated), seconds, cut_short)
+    return Results(
+        plan,
+        outcomes=tuple(one.outcomes[0] for one in played),
+        unfitted=tuple(again for one in played for again in one.outcomes[1:]),
+        seconds=time.perf_counter() - started,
+        cut_short=cut_short,
+    )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from functools import partial
+from typing import Annotated, Any, Literal
 
 import msgspec
 
@@ -98,3 +99,7 @@ class AbstractTest(
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
     expected: dict[str, Verdict] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """To other processes it goes as to files: what has its default stays left out."""
+        return partial(msgspec.json.decode, type=AbstractTest), (msgspec.json.encode(self),)

@@ -199,11 +199,11 @@ class IntakeWriter:
         head = [f"if x is {self.values.before(name)}:", f"    if {self._quiet()}:"]
         head += indented([*self.visit.done(), "return ()"], 2)
         head += [f"elif {self.values.is_odd('x', name)}:", "    return self.clerk.other(t, values)"]
-        lines = []
+        lines: list[str] = []
         if name in self.plan.signals and self.cones.can_follow(name, self.values.instant):
-            lines.append(f"elif {self.cones.apart(name, self._quiet())}:")
             kept = self.values.replaced("x", name, "x")
-            lines += indented([*alone(self.cones.followed(name, kept)), *self.visit.flush()])
+            followed = [*alone(self.cones.followed(name, kept)), *self.visit.flush()]
+            lines = [f"elif {self.cones.apart(name, self._quiet())}:", *indented(followed)]
         general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
         general += indented(self.values.new("x", name))
         general += self._after()

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.codegen.python_leaves import known_test
-from rvmon.codegen.python_nodes import BEFORE, NodeWriter, Roles, bits
+from rvmon.codegen.python_nodes import BEFORE, NodeWriter, bits, is_timed
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
 from rvmon.codegen.unit_plan import Plan, asks_knowledge
-from rvmon.spec.checked.formula import SignalAtom
+from rvmon.formula.state import COMBINING, StateOp
+from rvmon.spec.checked.formula import Constant, SignalAtom
 
 _DEEPEST = 8
 """So many blocks stand within each other at most."""
 
 _MOST = 1500
 """So many nodes at most stand in what is written for changes of one leaf."""
+
+
+Awaited = tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,20 +35,18 @@ class ConeWriter:
 
     Args:
         plan: what to judge.
-        roles: of its nodes.
-        nodes: writes their values.
+        nodes: writes the values of nodes.
         visit: writes what happens at a position.
     """
 
-    def __init__(self, plan: Plan, roles: Roles, nodes: NodeWriter, visit: VisitWriter) -> None:
+    def __init__(self, plan: Plan, nodes: NodeWriter, visit: VisitWriter) -> None:
         self.plan = plan
-        self.roles = roles
         self.nodes = nodes
         self.visit = visit
         self.cones = [
             self._above(place)
-            for place, state in enumerate(plan.graph.nodes)
-            if state.leaf is not None and not asks_knowledge(state.leaf)
+            for place in nodes.kept
+            if (leaf := plan.graph.nodes[place].leaf) is not None and not asks_knowledge(leaf)
         ]
         self.small = sum(map(len, self.cones)) <= _MOST
         self.each = plan.gap in (None, 1)
@@ -52,6 +54,7 @@ class ConeWriter:
         time_alone = visit.momentary or visit.repeats or not visit.calm
         self.joins = self.each and nodes.watched is None and not time_alone
         """Whether timers that are due are seen to beside a new value, where they do not meet."""
+        self.used: dict[str, frozenset[int]] = {}
 
     def looked_up(self) -> Iterator[str]:
         """Where samples are gathered: a function per leaf, by the bit of it."""
@@ -86,12 +89,14 @@ class ConeWriter:
         lines = list(kept)
         # Few values come to where it is asked for.
         self.nodes.before = self.visit.preceding()
+        self.nodes.used.clear()
         for test, value in self._values(leaves[0]):
             lines += [test, *indented(self._moved(leaves, places, value))]
-        timed = self.joins or any(self.nodes.is_timed(place) for place in places)
-        triggers = self.joins or any(self.roles.triggers[place] for place in places)
+        timed = self.joins or any(is_timed(self.plan.graph.nodes[place]) for place in places)
+        triggers = self.joins or any(self.nodes.roles.triggers[place] for place in places)
         lines += self.visit.followed(timed=timed, triggers=triggers)
         self.nodes.before = BEFORE
+        self.used[name] = frozenset(self.nodes.used)
         if self.joins:
             yield "letters = triggers = 0"
             yield "if self.dirty:"
@@ -146,13 +151,55 @@ class ConeWriter:
             name: of the signal.
             quiet: the condition under which nothing but a new value can change anything.
         """
-        quiet += f" and self.last{self.plan.signals.index(name)} is not MISSING"
+        known = f"self.last{self.plan.signals.index(name)} is not MISSING"
+        quiet = " and ".join(filter(None, [quiet, known, self._is_grown(name)]))
         if not self.joins:
             return quiet
         cone = bits(tuple(self._cone_of(name)))
         rest = quiet.removeprefix("t < self.wake")
         late = f"t == self.wake < LIMIT{rest} and not self.meets(t, {cone})"
         return f"(t < self.wake or {late}){rest}"
+
+    def growing(self) -> tuple[tuple[int, Awaited, Awaited, Awaited], ...]:
+        """What is awaited, as `rvmon.runtime.nodes.Nodes.GROWING` has it."""
+        if self.visit.straight:
+            grown, signals = self.nodes.grown, self.plan.signals
+            born = tuple((signals.index(name), 1 + moved) for name, moved in grown.born.items())
+            return ((1, self._awaited(grown.last), born, tuple(self._twins())),)
+        found = ((self._bit(name), self._awaited(used)) for name, used in self.used.items())
+        return tuple((bit, awaited, (), ()) for bit, awaited in found if awaited)
+
+    def _twins(self) -> Iterator[tuple[int, int]]:
+        """Nodes that remember, each with one that will be the same."""
+        for place, other in self.nodes.grown.same.items():
+            if self.plan.graph.nodes[place].op not in (StateOp.LEAF, *COMBINING):
+                yield place, other
+
+    def _is_grown(self, name: str) -> str:
+        """Whether the nodes have the values that are taken to be theirs; empty: they always do."""
+        if self.visit.straight:
+            return "self.grown"
+        return f"self.grown & {self._bit(name)}" if self._awaited(self.used[name]) else ""
+
+    def _bit(self, name: str) -> int:
+        return 1 << self.plan.signals.index(name)
+
+    def _awaited(self, places: Iterable[int]) -> tuple[tuple[int, int], ...]:
+        """The values that nodes have to have for these to keep theirs."""
+        last = self.nodes.grown.last
+        found: set[int] = set()
+        stack = list(places)
+        while stack:
+            place = stack.pop()
+            if place in last and place not in found:
+                found.add(place)
+                stack += self.plan.graph.operands[place]
+        return tuple((place, last[place]) for place in sorted(found) if self._varies(place))
+
+    def _varies(self, place: int) -> bool:
+        """Whether a node has a value of its own that is not always the same."""
+        kept = self.visit.nodes.roles.kept >> place & 1
+        return bool(kept) and not isinstance(self.plan.graph.nodes[place].leaf, Constant)
 
     def _cone_of(self, name: str) -> list[int]:
         readers = self.plan.readers(name)
@@ -168,7 +215,7 @@ class ConeWriter:
         """
         above = [place for place in places if place not in leaves]
         below = {
-            place: [other for other in places if self.roles.parents[other] >> place & 1]
+            place: [other for other in places if self.nodes.roles.parents[other] >> place & 1]
             for place in above
         }
         for leaf in leaves:
@@ -209,17 +256,19 @@ class ConeWriter:
         lines += indented(self.visit.changed(place, value, onward))
         for other in node.behind:
             lines += indented(self._then(other, written, asked))
-        if pending := self.nodes.pending(place):
+        pending = self.nodes.pending(place)
+        if pending and value != "2":
             yield f"if {pending}:"
-        yield from indented(lines, bool(pending))
+            lines = [*indented(lines)]
+        yield from lines
 
     def _above(self, place: int) -> list[int]:
         """A node and those whose value depends on it, in order."""
         found = 1 << place
-        for other in self.visit.kept:
+        for other in self.nodes.kept:
             if other >= place and found >> other & 1:
-                found |= self.roles.parents[other]
-        return [other for other in self.visit.kept if found >> other & 1]
+                found |= self.nodes.roles.parents[other]
+        return [other for other in self.nodes.kept if found >> other & 1]
 
 
 def _nested(above: Sequence[int], below: Mapping[int, list[int]]) -> list[_Node]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
+from rvmon.codegen.grown import Grown
 from rvmon.codegen.python_leaves import leaf_expression
 from rvmon.codegen.unit_plan import Plan
-from rvmon.formula.state import Elapsed, State, StateOp
+from rvmon.formula.state import COMBINING, Elapsed, State, StateOp
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.formula import Constant
 
@@ -50,8 +51,13 @@ def bits(places: tuple[int, ...]) -> int:
     return sum(1 << place for place in places)
 
 
-def roles_of(plan: Plan) -> Roles:
-    """See which nodes are read by requirements, and which need no value of their own."""
+def roles_of(plan: Plan, grown: Grown) -> Roles:
+    """See which nodes are read by requirements, and which need no value of their own.
+
+    Args:
+        plan: has the nodes.
+        grown: what holds of them for ever: what then is needed by nobody has no value, either.
+    """
     graph = plan.graph
     letters = [0 for _ in graph.nodes]
     triggers = [0 for _ in graph.nodes]
@@ -66,22 +72,39 @@ def roles_of(plan: Plan) -> Roles:
             triggers[graph.index[rule.again]] |= 1 << index + len(judged)
         for named in (rule.unborn, rule.determined):
             asked |= 0 if named is None else 1 << graph.index[named]
+    wanted = [letters[n] or triggers[n] or asked >> n & 1 for n in range(len(graph.nodes))]
+    operands = [grown.operands(plan, place) for place in range(len(graph.nodes))]
+    above = _above(graph.nodes, operands, wanted)
     kept = 0
     depths = [0 for _ in graph.nodes]
     for place, state in enumerate(graph.nodes):
-        depth = 1 + max((depths[operand] for operand in graph.operands[place]), default=0)
-        combines = state.op in (StateOp.NOT, StateOp.AND, StateOp.OR, StateOp.SURE)
-        read = letters[place] or triggers[place] or asked >> place & 1
-        read = read or len(graph.parents[place]) != 1
-        if combines and not read and depth < _DEEPEST:
+        if place in grown.last or not (wanted[place] or above[place] or state.leaf):
+            continue
+        depth = 1 + max((depths[operand] for operand in operands[place]), default=0)
+        # A denial costs less than to keep it.
+        is_cheap = state.op is StateOp.NOT and depth == 1
+        is_part = state.op in COMBINING and (is_cheap or len(above[place]) == 1)
+        if is_part and not wanted[place] and depth < _DEEPEST:
             depths[place] = depth
         else:
             kept |= 1 << place
     parents = [0 for _ in graph.nodes]
     for place in reversed(range(len(graph.nodes))):
-        for parent in graph.parents[place]:
+        for parent in above[place]:
             parents[place] |= 1 << parent if kept >> parent & 1 else parents[parent]
     return Roles(tuple(letters), tuple(triggers), kept, tuple(parents))
+
+
+def _above(
+    nodes: Sequence[State], operands: Sequence[tuple[int, ...]], wanted: Sequence[int]
+) -> list[list[int]]:
+    """Per node those that it is an operand of, but for such as nobody needs."""
+    found: list[list[int]] = [[] for _ in nodes]
+    for place in reversed(range(len(nodes))):
+        if wanted[place] or found[place]:
+            for operand in dict.fromkeys(operands[place]):
+                found[operand].append(place)
+    return found
 
 
 def value_before(state: State) -> int:
@@ -105,24 +128,49 @@ def _is_latch(state: State) -> bool:
     return state.op is StateOp.SINCE and state.low == 0 and state.high is None
 
 
+def timed_nodes(plan: Plan, roles: Roles) -> tuple[int, ...]:
+    """The nodes with a value of their own that can change by time alone."""
+    return tuple(
+        place
+        for place, state in enumerate(plan.graph.nodes)
+        if roles.kept >> place & 1 and is_timed(state)
+    )
+
+
+def is_timed(state: State) -> bool:
+    """Whether a node can change by time alone."""
+    if state.op is StateOp.SINCE:
+        return not _is_latch(state)
+    return state.op in (StateOp.PREVIOUS, StateOp.DOUBT) or isinstance(state.leaf, Elapsed)
+
+
+def is_queued(plan: Plan, roles: Roles) -> bool:
+    """Whether the nodes that change by time alone are too many to look at each."""
+    stale = any(signal.stale_after is not None for signal in plan.spec.signals.values())
+    return stale or len(timed_nodes(plan, roles)) > _WATCHED
+
+
 class NodeWriter:
     """Writes what gives the nodes of a plan their values.
 
     Args:
         plan: has the nodes.
         roles: of the nodes.
+        grown: what is taken to hold of them.
+        queued: whether the nodes that change by time alone stand in a queue.
+
+    Attributes:
+        kept: the nodes that have a value of their own.
+        used: the nodes of which it was made use that they keep their value.
     """
 
-    def __init__(self, plan: Plan, roles: Roles) -> None:
+    def __init__(self, plan: Plan, roles: Roles, grown: Grown, *, queued: bool) -> None:
         self.plan = plan
         self.roles = roles
-        timed = tuple(
-            place
-            for place in range(len(plan.graph.nodes))
-            if roles.kept >> place & 1 and self.is_timed(place)
-        )
-        stale = any(signal.stale_after is not None for signal in plan.spec.signals.values())
-        self.watched = None if stale or len(timed) > _WATCHED else timed
+        self.grown = grown
+        self.kept = [place for place in range(len(plan.graph.nodes)) if roles.kept >> place & 1]
+        self.used: set[int] = set()
+        self.watched = None if queued else timed_nodes(plan, roles)
         """The nodes that change by time alone, if each is looked at; `None`: they are queued."""
         self.settled: dict[int, str] = {}
         """The values that are known as something is written."""
@@ -132,6 +180,9 @@ class NodeWriter:
     def statements(self, place: int) -> Iterator[str]:
         """Put the value of a node at `t` into `n`; the other names are those of `ARRAYS`."""
         state = self.plan.graph.nodes[place]
+        if place in self.grown.same and state.leaf is None:
+            yield f"n = {self.value(place)}"
+            return
         match state.op:
             case StateOp.LEAF | StateOp.NOT | StateOp.AND | StateOp.OR | StateOp.SURE:
                 yield f"n = {self.formula(place)}"
@@ -160,13 +211,16 @@ class NodeWriter:
 
     def pending(self, place: int) -> str:
         """The condition under which a node may change at all; empty if there is none."""
-        graph = self.plan.graph
-        state = graph.nodes[place]
-        lasts = _is_latch(state) and graph.nodes[graph.operands[place][0]].leaf == Constant(True)
+        lasts = _is_latch(self.plan.graph.nodes[place])
+        lasts = lasts and self.value(self.plan.graph.operands[place][0]) == "2"
         return f"v[{place}] != 2" if lasts else ""
 
     def value(self, place: int) -> str:
         """A node as an operand."""
+        if place in self.grown.last:
+            self.used.add(place)
+            return str(self.grown.last[place])
+        place = self.grown.same.get(place, place)
         if place in self.settled:
             return self.settled[place]
         state = self.plan.graph.nodes[place]
@@ -307,12 +361,3 @@ class NodeWriter:
         yield f"{indent}if m < queued[{place}]:"
         yield f"{indent}    queued[{place}] = m"
         yield f"{indent}    heappush(timers, (m, {place}))"
-
-    def is_timed(self, place: int) -> bool:
-        """Whether a node can change by time alone."""
-        state = self.plan.graph.nodes[place]
-        if state.op is StateOp.SINCE:
-            return not _is_latch(state)
-        if state.op in (StateOp.PREVIOUS, StateOp.DOUBT):
-            return True
-        return isinstance(state.leaf, Elapsed)

@@ -6,17 +6,19 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.automaton.table import tables_of
 from rvmon.codegen.comment import comment
+from rvmon.codegen.grown import Grown, grown_nodes
 from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_nodes import (
     NodeWriter,
     bits,
+    is_queued,
     keeps_stretches,
     memory_before,
     roles_of,
     value_before,
 )
-from rvmon.codegen.python_visit import VisitWriter, indented
+from rvmon.codegen.python_visit import VisitWriter, indented, is_straight
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State
 from rvmon.runtime.solo import only_location
@@ -49,7 +51,7 @@ def judges(plan: Plan) -> str:
 class _Writer:
     def __init__(self, plan: Plan, arriving: frozenset[str] | None) -> None:
         self.plan = plan
-        self.roles = roles_of(plan)
+        self.roles = roles_of(plan, Grown())
         names = (*plan.signals, *plan.events)
         present = tuple(name for name in names if arriving is None or name in arriving)
         self.judges = [
@@ -57,9 +59,15 @@ class _Writer:
             *("Rule" for rule in plan.rules if rule.hidden is not None),
         ]
         calm = all(judge == "SoloRule" for judge in self.judges)
-        nodes = NodeWriter(plan, self.roles)
-        self.visit = VisitWriter(plan, self.roles, nodes, calm=calm)
-        self.cones = ConeWriter(plan, self.roles, nodes, self.visit)
+        grown = grown_nodes(plan)
+        roles = roles_of(plan, grown)
+        queued = is_queued(plan, roles)
+        if not is_straight(roles):
+            grown, roles = Grown(grown.last), self.roles
+        later = NodeWriter(plan, roles, grown, queued=queued)
+        nodes = NodeWriter(plan, self.roles, Grown(), queued=queued)
+        self.visit = VisitWriter(plan, nodes, later, calm=calm)
+        self.cones = ConeWriter(plan, self.visit.grown, self.visit)
         self.intake = IntakeWriter(plan, self.visit, self.cones, present)
 
     def lines(self) -> Iterator[str]:
@@ -78,8 +86,9 @@ class _Writer:
         yield ""
         yield from indented(self.visit.watch())
         yield from indented(self.visit.lines())
+        yield from indented(["if self.growing:", "    self.grow(t)"], 2)
         yield ""
-        yield from indented(self.cones.looked_up())
+        yield from indented(ConeWriter(self.plan, self.visit.nodes, self.visit).looked_up())
 
     def _leaves(self) -> Iterator[str]:
         """What the numbers of the nodes that are read off the input stand for."""
@@ -153,6 +162,8 @@ class _Writer:
         yield f"MEMORY = {tuple(memory_before(state) for state in nodes)!r}"
         yield f"MARKED = {marked!r}"
         yield f"HISTORIES = {histories!r}"
+        yield f"GROWING = {self.cones.growing()!r}"
+        yield f"FRESH = {_tuple(f'({place}, g{place})' for place in self.visit.fresh)}"
         if all(rule.noted is not None for rule in plan.rules):
             yield f"NOTED = {_tuple(f'noted{index}' for index in range(len(plan.rules)))}"
         yield "RULES = ("

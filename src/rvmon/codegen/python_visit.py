@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.codegen.python_nodes import NodeWriter, Roles, bits, keeps_stretches
 from rvmon.codegen.unit_plan import Plan
@@ -39,6 +39,7 @@ def alone(lines: Iterator[str] | list[str]) -> Iterator[str]:
     yield from indented(lines)
     yield "except BaseException:"
     yield "    self.after = held"
+    yield "    self.torn = t"
     yield "    raise"
 
 
@@ -47,20 +48,32 @@ def indented(lines: Iterator[str] | list[str], depth: int = 1) -> Iterator[str]:
     return ("    " * depth + line for line in lines)
 
 
+def is_straight(roles: Roles) -> bool:
+    """Whether all nodes stand one after the other in what visits a position."""
+    return roles.kept.bit_count() <= _STRAIGHT
+
+
+def _function(name: str, lines: list[str]) -> Iterator[str]:
+    yield f"def {name}(self, t):"
+    yield from indented([*at_hand(lines), *lines, "return n"])
+    yield ""
+    yield ""
+
+
 class VisitWriter:
     """Writes the method that moves a monitor to a position.
 
     Args:
         plan: what to judge.
-        roles: of its nodes.
-        nodes: writes their values.
+        nodes: writes the values of nodes, whatever was born.
+        grown: the same, once all that will have been.
         calm: whether no requirement is ever asked because of time alone.
     """
 
-    def __init__(self, plan: Plan, roles: Roles, nodes: NodeWriter, *, calm: bool) -> None:
+    def __init__(self, plan: Plan, nodes: NodeWriter, grown: NodeWriter, *, calm: bool) -> None:
         self.plan = plan
-        self.roles = roles
         self.nodes = nodes
+        self.grown = grown
         self.calm = calm
         self.momentary = bits(
             tuple(place for place, reads in plan.graph.reads.items() if reads.momentary)
@@ -76,17 +89,16 @@ class VisitWriter:
             rule.requirement.pulse and rule.requirement.mode is not Mode.WHENEVER
             for rule in plan.rules
         )
-        self.kept = [place for place in range(len(plan.graph.nodes)) if roles.kept >> place & 1]
-        self.straight = len(self.kept) <= _STRAIGHT
+        self.straight = is_straight(grown.roles)
+        self.fresh = [place for place in grown.kept if place not in nodes.kept]
+        """The nodes that have a value of their own only then."""
 
     def functions(self) -> Iterator[str]:
         """One function per node, for the first position and for many nodes."""
-        for place in self.kept:
-            lines = list(self.nodes.statements(place))
-            yield f"def n{place}(self, t):"
-            yield from indented([*at_hand(lines), *lines, "return n"])
-            yield ""
-            yield ""
+        for place in self.nodes.kept:
+            yield from _function(f"n{place}", list(self.nodes.statements(place)))
+        for place in self.fresh:
+            yield from _function(f"g{place}", list(self.grown.statements(place)))
 
     def sparse(self) -> int:
         """The nodes that have to see every sample where samples are far apart."""
@@ -108,7 +120,7 @@ class VisitWriter:
 
     def lines(self) -> Iterator[str]:
         """The method `visit`."""
-        nodes = list(self._nodes() if self.straight else self._many())
+        nodes = list(self._grown() if self.straight else self._many())
         given = "self.dirty | self.fading" if self.momentary else "self.dirty"
         yield "def visit(self, t):"
         yield '    """Move to the position at `t`."""'
@@ -148,7 +160,7 @@ class VisitWriter:
         if not self.calm:
             yield "dues = self.dues"
         yield from self._concluded([*self._concerns(), *self._timely()])
-        yield from self._alarm()
+        yield from self._alarm(self.nodes.watched)
 
     def followed(self, *, timed: bool, triggers: bool) -> Iterator[str]:
         """As `judged`, where before the sample nothing was awaited at its instant.
@@ -161,13 +173,14 @@ class VisitWriter:
         if not self.calm:
             yield "dues = self.dues"
         yield from self._concluded([*self._concerns(triggers=triggers)], triggers=triggers)
+        alarm = list(self._alarm(self.grown.watched))
         if timed or not self.calm:
-            yield from indented(self._alarm())
+            yield from indented(alarm)
         elif self.goes_on:
             yield from indented(self._resumption())
         if timed:
             yield "else:"
-            yield from indented(self._alarm())
+            yield from indented(alarm)
 
     def _concluded(self, concerns: list[str], *, triggers: bool = True) -> Iterator[str]:
         yield f"if {' or '.join(concerns)}:"
@@ -192,7 +205,7 @@ class VisitWriter:
         yield "        return self.clerk.flush(t)"
         yield "    except BaseException:"
         yield "        if self.after == BUSY:"
-        yield "            self.after = t"
+        yield "            self.after = self.torn = t"
         yield "        raise"
         yield "self.after = t"
         yield "return ()"
@@ -232,14 +245,14 @@ class VisitWriter:
             yield f"    wakes[{place}] = {NEVER}"
             yield f"    dirty |= {1 << place}"
 
-    def _alarm(self) -> Iterator[str]:
+    def _alarm(self, watched: Sequence[int] | None) -> Iterator[str]:
         """Work out before when nothing happens; as `Unit.set_alarm`."""
         waiting = ["self.fading"] if self.momentary else []
         if self.repeats:
             waiting.append("self.repeating")
         if self.plan.gap is None and not self.calm:
             waiting.append("self.restless")
-        wake = list(self._next_wake())
+        wake = list(self._next_wake(watched))
         if waiting:
             yield f"if {' or '.join(waiting)}:"
             yield "    self.wake = t + 1"
@@ -253,16 +266,16 @@ class VisitWriter:
             yield "if self.resume_at < self.wake:"
             yield "    self.wake = self.resume_at"
 
-    def _next_wake(self) -> Iterator[str]:
-        if self.calm and self.nodes.watched is not None and len(self.nodes.watched) == 1:
-            yield f"wake = wakes[{self.nodes.watched[0]}]"
+    def _next_wake(self, watched: Sequence[int] | None) -> Iterator[str]:
+        if self.calm and watched is not None and len(watched) == 1:
+            yield f"wake = wakes[{watched[0]}]"
             yield "self.wake = wake if wake < LIMIT else LIMIT"
             return
         yield "wake = LIMIT"
-        if self.nodes.watched is None:
+        if watched is None:
             yield "if timers and timers[0][0] < wake:"
             yield "    wake = timers[0][0]"
-        for place in self.nodes.watched or ():
+        for place in watched or ():
             yield f"if wakes[{place}] < wake:"
             yield f"    wake = wakes[{place}]"
         if not self.calm:
@@ -288,15 +301,20 @@ class VisitWriter:
         yield "    return dirty"
         yield ""
 
+    def _grown(self) -> Iterator[str]:
+        """Nodes one after the other, by the bits of `dirty`, once they all have grown."""
+        yield "if self.grown:"
+        yield from indented([*self._nodes()] or ["pass"])
+        yield "else:"
+        yield "    letters, triggers, fading = self.evaluate(t, dirty)"
+
     def _nodes(self) -> Iterator[str]:
-        """Nodes one after the other, by the bits of `dirty`."""
-        for place in self.kept:
-            parents = self.roles.parents[place]
-            dirty = bits(tuple(other for other in self.kept if parents >> other & 1))
+        for place in self.grown.kept:
+            dirty = self.grown.roles.parents[place]
             onward = (f"dirty |= {dirty}",) if dirty else ()
-            tests = [f"dirty & {1 << place}", self.nodes.pending(place)]
+            tests = [f"dirty & {1 << place}", self.grown.pending(place)]
             yield f"if {' and '.join(filter(None, tests))}:"
-            yield from indented(self.nodes.statements(place))
+            yield from indented(self.grown.statements(place))
             yield from indented(self.momentary_lines(place))
             yield f"    if n != v[{place}]:"
             yield from indented(self.changed(place, "n", onward), 2)
@@ -317,13 +335,13 @@ class VisitWriter:
         """
         alone = len(self.plan.judged) == 1
         sign = "=" if alone else "|="
-        if self.roles.letters[place]:
-            yield f"self.until[{3 * place} + v[{place}]] = {self.nodes.before}"
+        if self.nodes.roles.letters[place]:
+            yield f"self.until[{3 * place} + v[{place}]] = {self.grown.before}"
             yield f"self.since[{place}] = t"
-            yield f"letters {sign} {self.roles.letters[place]}"
-        if self.roles.triggers[place]:
+            yield f"letters {sign} {self.nodes.roles.letters[place]}"
+        if self.nodes.roles.triggers[place]:
             sign = "=" if alone and not self.goes_on else "|="
-            yield f"triggers {sign} {self.roles.triggers[place]}"
+            yield f"triggers {sign} {self.nodes.roles.triggers[place]}"
         yield from onward
         yield f"v[{place}] = {value}"
 

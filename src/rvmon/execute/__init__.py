@@ -1,5 +1,6 @@
-"""Processes that are begun here, and never outlive the one that began them.
+"""Work for many tasks: processes that never outlive who began them, results that outlive all.
 
 `parallel.execute` shares tasks among processes; nothing else starts any for Python's work.
+`journal` keeps results as they come, so that work which was ended goes on.
 `command.run` runs a program, `interrupt.interrupted_by_sigterm` has both cleaned up.
 """

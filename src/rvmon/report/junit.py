@@ -73,7 +73,7 @@ def _add_case(
             f"attempt {attempt.numbered}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
         )
         for attempt in report.of(name, verdict)
-    ]
+    ] or ["a step was interrupted: what followed was not judged in full"]
     kind = "failure" if verdict is Verdict.FAIL else "skipped"
     told = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
     told.text = "\n".join(reasons)

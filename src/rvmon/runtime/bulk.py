@@ -107,7 +107,7 @@ class BulkRule(Rule):
             return
         location, _ = machine.start
         number, seen = self.clerk.entered(self)
-        self.enter(triggered)
+        self.enter(triggered, plain=True)
         target, _ = machine.rows[machine.bases[location]][kind]
         if target <= PASSED:
             self._decide_in_run(number, triggered, seen, target == PASSED, t, machine.start)

@@ -18,6 +18,9 @@ BUSY = LIMIT + 1
 MISSING = object()
 
 
+Pairs = tuple[tuple[int, int], ...]
+
+
 class Nodes:
     """Values of state formulas; the generated part fills in the constants below.
 
@@ -38,6 +41,8 @@ class Nodes:
         w: per node, what it remembers, taking the unknown for the worse.
         b: the same, taking it for the better: the same object, if that is equal.
         clerk: hears which signals are not known.
+        growing: whether more bits may come to stand in `grown`.
+        grown: a bit for each part of what is generated that takes the signals to have been born.
         wakes: per node, when it changes by itself.
         wake: before this instant, no sample coming, nothing happens; `LIMIT` at most.
         queued: per node, the instant at which `timers` has it next.
@@ -53,6 +58,8 @@ class Nodes:
         "expired",
         "first",
         "gathered",
+        "growing",
+        "grown",
         "h",
         "marked",
         "momentary",
@@ -76,7 +83,7 @@ class Nodes:
     STATE: tuple[str, ...] = (
         *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
         *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired"),
-        *("timers", "births"),
+        *("timers", "births", "growing", "grown"),
     )
     VARIED = ("w", "b")
 
@@ -104,6 +111,11 @@ class Nodes:
     MARKED: Mapping[int, tuple[int, int | None]]
     """Per node that keeps stretches of time, its bounds."""
     HISTORIES: tuple[int, ...] = ()
+    GROWING: tuple[tuple[int, Pairs, Pairs, Pairs], ...] = ()
+    """Bits of `grown`, each with what it waits for: the values that nodes have to come to, how
+    often signals have to be born, and nodes that have to be the same as others."""
+    FRESH: tuple[tuple[int, Callable[[Any, int], int]], ...] = ()
+    """Nodes that have a value of their own from then on only, with what gives it."""
 
     clerk: Any
 
@@ -143,6 +155,8 @@ class Nodes:
         self.stale_at = [NEVER] * len(self.SIGNALS)
         self.expired: dict[int, tuple[int, int]] = {}
         self.timers: list[tuple[int, int]] = []
+        self.grown = 0
+        self.growing = bool(self.GROWING)
 
     @property
     def last(self) -> tuple[Any, ...]:
@@ -182,6 +196,35 @@ class Nodes:
         worse, better = self.w[place], self.b[place]
         if worse == better and worse.__class__ is better.__class__:
             self.b[place] = worse
+
+    def grow(self, t: int) -> None:
+        """See what has come to be for ever at the position `t`."""
+        v, wakes, births = self.v, self.wakes, self.births
+        self.growing = False
+        for bit, values, born, twins in self.GROWING:
+            if self.grown & bit:
+                continue
+            if (
+                all(births[signal] >= least for signal, least in born)
+                and all(v[place] == value and wakes[place] >= NEVER for place, value in values)
+                and all(self._are_twins(place, other, t) for place, other in twins)
+            ):
+                self.grown |= bit
+                for place, _ in twins:
+                    wakes[place] = NEVER
+                for place, value_of in self.FRESH:
+                    v[place] = value_of(self, t)
+            else:
+                self.growing = True
+
+    def _are_twins(self, place: int, other: int, t: int) -> bool:
+        """Whether nodes of equal operands will always have the same value."""
+        if self.v[place] != self.v[other] or self.wakes[place] != self.wakes[other]:
+            return False
+        if place in self.marked:
+            return self.marked[place].is_same(self.marked[other], t)
+        w, b = self.w, self.b
+        return w[place] == w[other] and b[place] == b[other]
 
     def elapsed_(self, place: int, t: int, duration: int) -> int:
         """Whether so much time has passed since the first position."""

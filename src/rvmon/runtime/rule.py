@@ -110,7 +110,7 @@ class Rule(Starts):
         """Start an attempt that is driven by itself, at the position visited last."""
         machine = self.machine
         attempt = self.clerk.opened(self, triggered, machine.start, self.is_sure)
-        self.enter(triggered)
+        self.enter(triggered, plain=self.is_plain)
         if self.moves is None or self.letter != self.other:
             due = self.stepped(attempt, t)
         else:
@@ -236,7 +236,6 @@ class Rule(Starts):
                 token, due = drive(worse, self.letter)
                 return self._moved(attempt, worse, token, due)
             better = worse
-            self.clerk.parted(self, attempt)
         due = NEVER
         moved, moved_better = worse, better
         if worse[0] != FAILED:
@@ -253,8 +252,10 @@ class Rule(Starts):
                 return None
             if moved_better[0] != PASSED:
                 due = min(due, own)
-        attempt.token = moved
-        attempt.better = None if moved == moved_better else moved_better
+        apart = moved != moved_better
+        if apart != (attempt.better is not None):
+            self.clerk.parted(self, attempt, apart)
+        attempt.token, attempt.better = moved, moved_better if apart else None
         return due
 
     def pass_to(self, t: int) -> None:

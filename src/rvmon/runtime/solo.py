@@ -78,7 +78,7 @@ class SoloRule(Rule):
             self.begin_alone(t, triggered)
             return
         number, seen = self.clerk.entered(self)
-        self.enter(triggered)
+        self.enter(triggered, plain=True)
         target = self.firsts[letter]
         if target <= PASSED:
             self._decide(number, triggered, seen, target == PASSED, t, self.machine.start)

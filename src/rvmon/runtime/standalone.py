@@ -116,8 +116,8 @@ class Monitor:
         """Hear of the decision of an attempt that was moved together with others."""
         self.decided(rule, Open(number, triggered, None), verdict, t, None)
 
-    def parted(self, rule: Rule, attempt: Open) -> None:
-        """Hear that unknown input made the two runs of an attempt part."""
+    def parted(self, rule: Rule, attempt: Open, apart: bool) -> None:
+        """Hear that unknown input made the two runs of an attempt part, or that they met."""
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, _: Any) -> None:
         """Hear of a decision."""
@@ -172,11 +172,14 @@ class Monitor:
             if not hasattr(values, "items"):
                 raise ValueError(f"sample at {t}: expected values by name, found {values!r}")
             plain = {name: self._plain(name, value) for name, value in values.items()}
+            torn, self.unit.torn = self.unit.torn, t
             self.unit.through(t - 1)
             self.unit.take(t, plain)
             self.unit.after = BUSY  # the call goes on
             after = t
-            return self._flush()
+            found = self._flush()
+            self.unit.torn = torn
+            return found
         finally:
             self.unit.after = after
 
@@ -228,11 +231,15 @@ class Monitor:
             if self.finished:
                 raise ValueError("the run is finished: call reset() before the next")
             self._see(after)
-            if self.reached is None or t_ns > self.reached:
+            news = self.reached is None or t_ns > self.reached
+            torn, self.unit.torn = self.unit.torn, after
+            if news:
                 self.unit.advance(t_ns)
                 self.reached = t_ns
                 after = max(after, t_ns - 1)
-            return self._flush()
+            found = self._flush()
+            self.unit.torn = torn
+            return found
         finally:
             self.unit.after = after
 
@@ -253,21 +260,29 @@ class Monitor:
             self.last = self.reached = after
 
     def finish_ns(self, t_ns: int | None = None) -> dict[str, str]:
-        """End the run, at `t_ns` if that is later; returns the verdict of each requirement."""
+        """End the run, at `t_ns` if that is later; returns the verdict of each requirement.
+
+        After a call that was interrupted, what has not failed is I.
+        """
         after = self._enter()
         try:
             if not self.finished:
+                torn, self.unit.torn = self.unit.torn, after
                 self._see(after)
                 self.finished, after = True, LIMIT
                 if self.last is not None:
                     self._close(t_ns)
+                self.unit.torn = torn
         finally:
             self.unit.after = after
         found = {}
         for index, name in enumerate(self.NAMES):
             seen = {one.verdict for one in self.attempts if one.requirement == name}
-            silent = "NT" if self.unit.is_determined(index) else "I"
-            found[name] = next((verdict for verdict in "FIP" if verdict in seen), silent)
+            if self.unit.torn is None:
+                silent = "NT" if self.unit.is_determined(index) else "I"
+                found[name] = next((verdict for verdict in "FIP" if verdict in seen), silent)
+            else:
+                found[name] = "F" if "F" in seen else "I"
         return found
 
     def _close(self, t_ns: int | None) -> None:

@@ -119,21 +119,26 @@ class Starts:
     @property
     def is_plain(self) -> bool:
         """Whether an attempt that starts here is sure, and no signal is to be waited for."""
-        return not self.episodic or (self.is_sure and not self.is_unborn)
+        values = self.values
+        return not self.episodic or (
+            not self.hidden
+            and values[self.trigger] == TRUE
+            and (self.unborn < 0 or values[self.unborn] != TRUE)
+        )
 
     @property
     def running_attempt(self) -> Any:
         """The attempt of an episode that runs, unless it stands in `runs`."""
         return next((one for one in self.attempts if one.triggered == self.current), None)
 
-    def enter(self, triggered: int) -> None:
-        """Take it that an attempt runs from here on."""
+    def enter(self, triggered: int, *, plain: bool) -> None:
+        """Take it that an attempt runs from here on; `plain`: see `is_plain`."""
         if self.episodic:
             self.running = True
             self.current = triggered
             self.failed_at = None
-            self.clouded = self.values[self.trigger] == UNKNOWN
-            self.eyed = not self.hidden and not self.is_plain
+            self.clouded = not plain and self.values[self.trigger] == UNKNOWN
+            self.eyed = not (self.hidden or plain)
 
     def look(self) -> None:
         """See the trigger before the attempts do: it may make one sure, or void."""

@@ -27,6 +27,7 @@ class Unit(Nodes, Schedule):
         news: whether something was decided since it was last set to `False`.
         dirty: the nodes that may have changed since the position.
         fading: the nodes that speak of that position only.
+        torn: the instant of a sample at which generated code was interrupted; `None`: it was not.
     """
 
     __slots__ = (
@@ -48,6 +49,7 @@ class Unit(Nodes, Schedule):
         "restless",
         "resume_at",
         "rules",
+        "torn",
     )
 
     STATE = (
@@ -95,6 +97,7 @@ class Unit(Nodes, Schedule):
         self.news = False
         self.dirty = 0
         self.fading = 0
+        self.torn: int | None = None
 
     def _rule(self, index: int, clerk: Any) -> Rule:
         class_, letters, *kind = self.RULES[index]

@@ -149,8 +149,8 @@ class _Alone:
         """
         verdicts = self.monitor.finish_ns(t_ns)
         # That a requirement without attempts is inconclusive is for the file to say.
-        undetermined = [name for name, verdict in verdicts.items() if verdict == "I"]
-        report = report_of(self.names, _records(self.monitor.attempts), undetermined=undetermined)
+        incomplete = [name for name, verdict in verdicts.items() if verdict == "I"]
+        report = report_of(self.names, _records(self.monitor.attempts), incomplete=incomplete)
         if dict(report.verdicts) != verdicts:
             raise RvmonError(f"the file says {verdicts}, its attempts say {report.verdicts}")
         return report

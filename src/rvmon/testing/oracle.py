@@ -107,7 +107,7 @@ def report_on(
     ]
     undetermined = [name for name, one in followings.items() if not one.is_determined]
     return report_of(
-        tuple(spec.requirements), attempts, undetermined=undetermined, origin=origin, end=end
+        tuple(spec.requirements), attempts, incomplete=undetermined, origin=origin, end=end
     )
 
 

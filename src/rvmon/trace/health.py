@@ -20,6 +20,7 @@ class HealthKind(StrEnum):
     DROPPED = "dropped"
     IGNORED = "ignored"
     UNIT = "unit"
+    INTERRUPTED = "interrupted"
 
 
 @dataclass(frozen=True, slots=True)

@@ -178,12 +178,12 @@ def test_a_name_cannot_leave_the_folder(tmp_path, capsys):
 def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
     """Exit 130; the table says how many of the planned tests it counts, and it counts them all."""
 
-    def interrupted(chosen, *, jobs, progress):
+    def interrupted(chosen, **options):
         def press_ctrl_c(count):
-            progress(count)
+            options["progress"](count)
             signal.raise_signal(signal.SIGINT)
 
-        return execute(chosen, jobs=jobs, progress=press_ctrl_c)
+        return execute(chosen, **{**options, "progress": press_ctrl_c})
 
     monkeypatch.setattr(command, "execute", interrupted)
     assert main(["run", "--tests", "60", "--jobs", jobs, "--out", str(tmp_path)]) == 130

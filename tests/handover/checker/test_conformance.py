@@ -15,22 +15,33 @@ def network():
     return handover_network()
 
 
-@pytest.mark.parametrize(
-    "test",
-    [*pseudorandom(2, seed=1), *constrained(1, seed=1), *model_based(4, seed=1)[:2]],
-    ids=lambda test: test.name,
-)
+@pytest.fixture(scope="module")
+def of_the_model():
+    """The tests that the model gives: it is searched for them once."""
+    return model_based(4, seed=1)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("test", [*pseudorandom(2, seed=1), *constrained(1, seed=1)])
 def test_runs_of_the_correct_robot_conform(network, test):
     """Whatever the human does, the network explains what the robot does."""
     assert check_run(network, run_test(test)).conforms is True
 
 
+@pytest.mark.campaign
+@pytest.mark.parametrize("witness", [0, 1])
+def test_runs_that_follow_the_model_conform(network, of_the_model, witness):
+    """So does it where the human does as the model has it."""
+    assert check_run(network, run_test(of_the_model[witness])).conforms is True
+
+
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("mutation", "witness"),
     [("forgets-to-release", 0), ("releases-late", 0), ("ignores-pressure", 1),
      ("ends-silently", 0)],
 )  # fmt: skip
-def test_faults_are_divergences(network, mutation, witness):
+def test_faults_are_divergences(network, of_the_model, mutation, witness):
     """A robot with a fault leaves the network on the test that meets the fault."""
-    run = run_test(model_based(4, seed=1)[witness], mutation=mutation, startup_loss=False)
+    run = run_test(of_the_model[witness], mutation=mutation, startup_loss=False)
     assert check_run(network, run).conforms is False

@@ -62,6 +62,7 @@ def test_measuring_changes_nothing(measured):
     assert runs["released"] == run_test(TESTS["released"])
 
 
+@pytest.mark.campaign
 def test_all_transitions_that_happen_are_known(measured):
     """The chart has a line for every transition that a robot took."""
     seen = set()

@@ -11,6 +11,7 @@ from handover.generator import AbstractTest
 from handover.generator.files import directed
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("test", directed(), ids=lambda test: test.name)
 def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
     """Each directed test gives the verdicts that its file expects, for all five requirements."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import get_args
 
@@ -51,6 +52,12 @@ TESTS = st.builds(
 def test_written_tests_read_back(test: AbstractTest) -> None:
     """Reading what was written gives the same test."""
     assert from_json(to_json(test)) == test
+
+
+def test_another_process_writes_the_same_file() -> None:
+    """Also what is left out there, as it has its default."""
+    for test in (*directed(), *constrained(3, 1)):
+        assert to_json(pickle.loads(pickle.dumps(test))) == to_json(test)  # noqa: S301
 
 
 def test_files_carry_the_name(tmp_path: Path) -> None:

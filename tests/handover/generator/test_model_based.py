@@ -34,6 +34,7 @@ def postures(test):
     return {a.param: a.value for a in test.actions if isinstance(a, SetParam) and a.param != "time"}
 
 
+@pytest.mark.slow
 def test_one_test_for_each_expressible_requirement():
     """R1 to R4 give a test each; all follow the protocol up to the human's readiness."""
     tests = model_based(100, seed=3)
@@ -55,6 +56,7 @@ def test_the_same_seed_gives_the_same_tests():
     assert model_based(4, seed=5) != model_based(4, seed=6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("policy", ["shortest", "fastest", "likely"])
 def test_chosen_times_are_those_of_some_run(policy):
     """Whatever is chosen satisfies every limit that the witness puts on the projected instants."""
@@ -76,6 +78,7 @@ def test_chosen_times_are_those_of_some_run(policy):
                 assert bound == inf or (second - first) * run.timing.scale <= bound
 
 
+@pytest.mark.slow
 def test_waits_are_chosen_all_over_their_windows():
     """A wait with a window of ten units takes each of its values for some seed."""
     template = templates()[0]
@@ -87,6 +90,7 @@ def test_waits_are_chosen_all_over_their_windows():
     assert seen == set(range(1, 11))
 
 
+@pytest.mark.slow
 def test_templates_are_files(tmp_path):
     """A template can be written, read by people and programs, and read back."""
     template = templates()[1]
@@ -95,6 +99,7 @@ def test_templates_are_files(tmp_path):
     assert '"gaze: off → ok"' in path.read_text()
 
 
+@pytest.mark.slow
 def test_each_way_of_choosing_has_its_tests_and_templates(tmp_path):
     """Tests say in their strategy and name which witness they follow; templates stand apart."""
     tests = {policy: model_based(4, 1, policy) for policy in ("likely", "shortest", "fastest")}

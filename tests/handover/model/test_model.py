@@ -30,6 +30,7 @@ def test_the_seeds_queries_hold(network, requirement):
     assert shows(network, outcome)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("claim", ["R2_all", "R4_all", "sound"])
 def test_claims_on_all_runs_hold(network, claim):
     """No run releases on a bad reading, none goes on for ever, none gets stuck."""
@@ -37,6 +38,7 @@ def test_claims_on_all_runs_hold(network, claim):
     assert verify(network, query).holds
 
 
+@pytest.mark.slow
 def test_release_comes_within_ten_units_and_no_less(network):
     """The bound of the claim R1 is exact: half a second holds, one unit less does not."""
     (query,) = (q for q in network.queries if q.id == "R1_all")

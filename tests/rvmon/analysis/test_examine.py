@@ -1,5 +1,6 @@
 """What an analysis claims of a specification holds on every run that is tried."""
 
+import math
 import random
 
 import pytest
@@ -65,13 +66,20 @@ requirement R13
 
 
 def analysis_of(text):
-    """The analysis of a specification's text."""
-    return analyse(compile_spec(rvmon.loads(text).checked))
+    """The analysis of a specification's text, however long it takes."""
+    return analyse(compile_spec(rvmon.loads(text).checked), seconds=math.inf)
 
 
-def test_known_answers():
+@pytest.fixture(scope="module")
+def analysed():
+    """The analysis of `SPEC`."""
+    return analysis_of(SPEC)
+
+
+@pytest.mark.slow
+def test_known_answers(analysed):
     """Contradictions, missing deadlines, conflicts of two and three, and what is superfluous."""
-    found = analysis_of(SPEC).examination
+    found = analysed.examination
     sets = {conflict.ids: conflict.offsets for conflict in found.conflicts}
     assert sets == {
         ("R1", "R2"): (0, 0),
@@ -127,15 +135,15 @@ def test_what_cannot_be_is_never_seen(model):
     assert claims > 1
 
 
-def test_timelines_trigger_what_conflicts():
+@pytest.mark.slow
+def test_timelines_trigger_what_conflicts(analysed):
     """The timeline of a conflict triggers its requirements as said."""
-    analysis = analysis_of(SPEC)
-    assert [conflict.ids for conflict, _ in analysis.timelines] == [
+    assert [conflict.ids for conflict, _ in analysed.timelines] == [
         ("R1", "R2"),
         ("R4", "R8"),
         ("R6", "R7", "R8"),
     ]
-    for conflict, example in analysis.timelines:
+    for conflict, example in analysed.timelines:
         triggers = {a.requirement: a.triggered for a in example.attempts}
         first = triggers[conflict.ids[0]]
         assert tuple(triggers[name] - first for name in conflict.ids) == conflict.offsets
@@ -143,7 +151,7 @@ def test_timelines_trigger_what_conflicts():
         verdicts = {name: verdict.value for name, verdict in example.verdicts.items()}
         assert verdicts.pop("R7", "P") == "P"  # of a run that ends here: it held to the end
         assert set(verdicts.values()) <= {"I", "F"}
-    first = analysis.timelines[0][1]
+    first = analysed.timelines[0][1]
     assert {verdict.value for verdict in first.verdicts.values()} == {"I"}
 
 
@@ -262,7 +270,7 @@ def test_claims_about_random_specs_are_not_refuted(seed):
     for _ in range(40):
         spec = _random_responses(rng)
         compiled = compile_spec(spec)
-        found = analyse(compiled, seconds=1, timelines=0).examination
+        found = analyse(compiled, seconds=math.inf, timelines=0).examination
         for conflict in found.conflicts:
             claims += 1
             chosen = [compiled.requirements[name] for name in dict.fromkeys(conflict.ids)]
@@ -356,17 +364,19 @@ def test_choices_see_both_sides_of_every_comparison():
     assert choices.complete
 
 
+@pytest.mark.slow
 def test_check_analyse(tmp_path, capsys):
     """`rvmon check --analyse` warns with places and draws the shortest conflicting timeline."""
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
-    assert main(["check", str(path), "--analyse"]) == 0
+    patient = ["check", str(path), "--analyse", "--seconds", "9999"]
+    assert main(patient) == 0
     shown = capsys.readouterr()
     assert "RV073 conflict]: R1 and R2 cannot both hold" in shown.err
     assert f"{path}:5:1" in shown.err
     assert "After this, one of R1, R2 fails, whatever comes:" in shown.out
     assert all(len(line) <= 80 for line in shown.out.splitlines())
-    assert main(["check", str(path), "--analyse", "--strict"]) == 1
+    assert main([*patient, "--strict"]) == 1
     capsys.readouterr()
     assert main(["check", str(path), "--analyse", "--seconds", "0"]) == 0
     assert "not decided" in capsys.readouterr().out
@@ -380,7 +390,7 @@ def test_help_speaks_of_what_is_there(tmp_path, capsys):
         " upon go then within 1 s (v > 1 or v <= 1)\n"
         "requirement SLOW\n always v < 1\nrequirement FAST\n always v > 2\n"
     )
-    assert main(["check", str(path), "--analyse"]) == 0
+    assert main(["check", str(path), "--analyse", "--seconds", "9999"]) == 0
     shown = capsys.readouterr().err
     assert "RV071" in shown
     assert "give it a deadline" not in shown
@@ -392,6 +402,6 @@ def test_help_speaks_of_what_is_there(tmp_path, capsys):
 def test_a_policy_that_lets_nothing_pass(policy):
     """What holds to the end stays open, or fails: the policy is named as the cause."""
     text = f"signal p : bool\nrequirement R\n  always p\n  at end: {policy}\n"
-    (finding,) = analyse(rvmon.loads(text)._compiled).findings
+    (finding,) = analysis_of(text).findings
     assert finding.code == "RV072"
     assert f"`at end: {policy}` lets nothing pass" in finding.help

@@ -131,6 +131,7 @@ def test_a_stretch_is_due_when_a_kept_clock_crosses():
     assert due == NEVER
 
 
+@pytest.mark.slow
 def test_letters_beyond_a_table_are_looked_up_in_a_diagram():
     """Eighteen propositions have an automaton where they collapse, and it steps as it should."""
     names = [SignalAtom(f"s{number}") for number in range(18)]

@@ -48,6 +48,7 @@ def walk(automaton, word):
 WORDS = st.lists(st.tuples(st.integers(0, 10**6), st.integers(1, 5)), min_size=1, max_size=8)
 
 
+@pytest.mark.law
 @settings(max_examples=150, deadline=None)
 @given(data=st.data(), steps=WORDS)
 def test_a_reduced_automaton_decides_the_same(data, steps):

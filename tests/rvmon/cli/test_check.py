@@ -140,6 +140,7 @@ def test_the_budget_is_a_number_of_seconds(write, capsys, seconds):
     assert "--seconds" in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_a_narrow_terminal_encoding_costs_signs_only(tmp_path):
     """What the terminal's encoding lacks is replaced; there is no traceback and no other code."""
     path = tmp_path / "a.rv"

@@ -34,6 +34,7 @@ def files(tmp_path):
     return [str(spec), str(trace)]
 
 
+@pytest.mark.law
 def test_every_way_agrees(files, capsys):
     """A table with a row per way and a column per requirement; exit 0."""
     assert main(["cross", *files]) == 0
@@ -113,6 +114,7 @@ def test_wrong_arguments_are_named(files, capsys, words, message):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_what_comes_too_late_is_left_out_as_run_does(tmp_path, capsys):
     """Both judge the same recording, and it is said what is no part of it."""
     spec, trace = tmp_path / "door.rv", tmp_path / "late.csv"
@@ -129,6 +131,7 @@ def test_what_comes_too_late_is_left_out_as_run_does(tmp_path, capsys):
     assert "later than `max delay`: the sample at 3 s" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_undeclared_columns_are_named(files, capsys, tmp_path):
     """As by `rvmon run`: in the text and in the JSON."""
     (tmp_path / "monday.csv").write_text(TRACE.replace("\n", ",7\n").replace(",7", ",extra", 1))

@@ -78,7 +78,7 @@ def test_too_small_a_budget_is_said(door, capsys):
 
 def test_the_difference_of_two(door, capsys):
     """Two requirements: a run on which one fails and the other does not."""
-    text = shown(capsys, "door.rv", "D1", "D2")
+    text = shown(capsys, "door.rv", "D1", "D2", "--runs", "300")
     difference = text.split("one fails and the other does not")[1]
     rows = {line.split()[0]: line for line in difference.splitlines() if line.strip()}
     assert "✗ F" in rows["D1"]

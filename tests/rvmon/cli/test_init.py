@@ -45,6 +45,7 @@ def test_what_is_written_runs_at_once(name, tmp_path, monkeypatch, capsys):
     assert set(verdicts) <= {"P", "I"}
 
 
+@pytest.mark.slow
 def test_random_recordings_run_at_once(tmp_path):
     """Random CSV recordings: the starter meets its own recording."""
     rng = random.Random(5)

@@ -13,6 +13,7 @@ PAGE = (ROOT / "docs" / "know-your-spec.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```console\n\$ (.+?)\n(.*?)```", PAGE, re.DOTALL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "output"), EXAMPLES, ids=[one[0] for one in EXAMPLES])
 def test_examples_of_the_page(command, output, monkeypatch, capsys):
     """Every command on the page prints what stands below it."""

@@ -63,6 +63,7 @@ def traces(request, tmp_path):
     return [str(tmp_path / name) for name in ("a.csv", "b.csv", "a.jsonl")]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("until", [None, 60.0])
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms"])
 def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
@@ -101,6 +102,7 @@ def test_updates_that_count_are_seen():
     assert found["two ways"] == {"p", "q", "x", "go"}
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("until", [None, 60.0])
 def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     """Cover goals by columns and by samples."""

@@ -38,6 +38,7 @@ def test_recordings_are_counted(screen, jobs):
     assert "one.jsonl" not in screen.getvalue()
 
 
+@pytest.mark.slow
 def test_a_single_recording_shows_how_far_it_is_read(screen):
     """By its name."""
     with redirect_stderr(screen):

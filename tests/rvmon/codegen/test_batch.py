@@ -68,6 +68,7 @@ def one_by_one(spec: rvmon.Spec, columns: dict[str, np.ndarray]) -> rvmon.Report
     return spec.evaluate({name: column.tolist() for name, column in columns.items()})
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 @pytest.mark.parametrize("extra", ["", "or delta(count) > 2"])
 def test_the_report_is_that_of_the_samples(time, extra, monkeypatch):

@@ -102,6 +102,7 @@ def test_wrong_samples_leave_the_monitor_as_it_was():
     assert [attempt.requirement for attempt in monitor.open] == ["D1"]
 
 
+@pytest.mark.slow
 def test_many_names_are_taken_entry_by_entry():
     """A specification with many signals judges as one with few."""
     many = "\n".join(f"signal s{n} : real" for n in range(30))

@@ -110,6 +110,7 @@ def test_run_as_a_script_it_says_how_it_is_used(tmp_path):
     assert "monitor = SpecMonitor()" in done.stdout
 
 
+@pytest.mark.slow
 def test_too_many_combinations_for_a_table_are_refused():
     """Generated code has tables; the message says what else judges the requirement."""
     names = [f"s{number}" for number in range(18)]

@@ -158,6 +158,7 @@ def calls_per_change(low, high, time):
     return count / changes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled"])
 def test_a_change_costs_what_it_makes_known(time):
     """A window ten times as long, with ten times as many changes in it: hardly more is done."""

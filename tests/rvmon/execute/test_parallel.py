@@ -178,6 +178,7 @@ def test_two_executions_at_a_time_do_not_disturb_each_other():
     assert [*other] == [str(k) for k in range(20, 50)]
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_no_worker_outlives_a_parent_that_is_killed(ends_with_its_parent, method, kind):
@@ -185,6 +186,7 @@ def test_no_worker_outlives_a_parent_that_is_killed(ends_with_its_parent, method
     ends_with_its_parent(PARENT, [method], kind)
 
 
+@pytest.mark.process
 def test_many_traces_are_judged_alike_by_processes(tmp_path: Path):
     """The reports of `evaluate_many` in order; the error of a trace comes behind those before."""
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n")

@@ -104,6 +104,7 @@ def test_a_trigger_that_speaks_of_the_future_is_refused():
     assert isinstance(owed(once(eventually(p, 0, 2), 0, 3), upon=e), Since)
 
 
+@pytest.mark.slow
 def test_nested_equivalences_take_no_time():
     """What stands for `<->` has each operand twice; yet each is read once."""
     nested = "p"

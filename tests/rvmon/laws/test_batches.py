@@ -30,6 +30,7 @@ def whole(engine: str, case: Case) -> Report:
     return drive(monitor, case)[0]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("engine", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(data=st.data())
@@ -49,6 +50,7 @@ def test_the_order_inside_a_batch(engine: str, data: st.DataObject) -> None:
     assert report.health == whole(engine, case).health
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("engine", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(data=st.data())

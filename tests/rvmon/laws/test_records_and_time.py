@@ -13,6 +13,7 @@ from rvmon.spec.checked.formula import EventAtom
 from rvmon.spec.checked.specification import TimeModel
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
 def test_advance_changes_no_record(time, engine):

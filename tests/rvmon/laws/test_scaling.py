@@ -31,6 +31,7 @@ ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
 """The code whose calls are the steps of an engine."""
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("form", FORMS)
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
@@ -78,6 +79,7 @@ def _numbers(formula: Formula) -> list[UpdateFunction]:
     return [part.function for part in numerics(formula) if isinstance(part, UpdateValue)]
 
 
+@pytest.mark.law
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
 def test_a_case_made_compact_is_judged_the_same(data: st.DataObject) -> None:

@@ -91,6 +91,7 @@ def test_it_is_no_finding_on_the_inputs(spec):
     assert HealthKind.STALE in kinds
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("engine", ["auto", C])
 def test_columns_are_judged_as_samples(spec, engine):
     """In arrays of any length each row holds a value, or NaN."""

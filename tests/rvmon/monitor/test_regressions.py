@@ -187,6 +187,7 @@ def test_one_deadline_after_the_other_passes_without_a_sample(form):
     assert not disagreements(Case(spec.checked, told, 20), Maker(form), online=True)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("form", ONLINE)
 @pytest.mark.parametrize("count", [0, 65])
 def test_no_source_and_many(form, count):
@@ -242,6 +243,7 @@ def test_what_is_owed_is_open(form, time, requirement, samples):
     assert not disagreements(case, Maker(form), online=True)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_judged_within_bounds_says_so():
     """Progression ends in a message, not in a hang, where the network goes on."""
     spec = rvmon.loads(

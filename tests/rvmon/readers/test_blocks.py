@@ -75,6 +75,7 @@ def has_columns(spec: rvmon.Spec, path: Path) -> bool:
         return False
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("engine", ["auto", "automaton"])
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("end", [0.1, 31.4, 120.0, 9999.0])
@@ -87,6 +88,7 @@ def test_a_file_can_be_cut(end, time, engine, tmp_path, monkeypatch):
     assert report == by_rows(spec, tmp_path / "a.csv", round(end * 1e9))
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
@@ -100,6 +102,7 @@ def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
     assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
     """Empty cells: signals hold, events do not occur; the same as row by row."""
@@ -124,6 +127,7 @@ def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
         assert spec.evaluate(tmp_path / "a.csv") == by_rows(spec, tmp_path / "a.csv")
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_parquet_says_what_csv_says(time, tmp_path, monkeypatch):
     """The same recording as Parquet, whole and with gaps."""

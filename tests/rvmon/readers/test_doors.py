@@ -45,6 +45,7 @@ def told(spec, trace, **arguments) -> str:
         return type(error).__name__
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("seed", range(40))
 def test_random_recordings_are_the_same_through_every_door(seed, tmp_path):
     """Verdicts, records, reasons and input health, byte by byte."""

@@ -63,6 +63,7 @@ def by_lines(spec: rvmon.Spec, path) -> rvmon.Report:
     return monitor.finish_ns(None)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("gaps", [False, True])
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
 def test_columns_say_what_lines_say(time, gaps, tmp_path, monkeypatch):

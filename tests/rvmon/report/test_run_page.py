@@ -6,6 +6,7 @@ import subprocess
 from dataclasses import replace
 from html.parser import HTMLParser
 
+import pytest
 from tests.tools.hostile import FORGERIES, STEERING
 
 import rvmon
@@ -96,6 +97,7 @@ def test_it_opens_on_the_first_failure_with_one_sentence():
     assert "closed" in title
 
 
+@pytest.mark.slow
 def test_hostile_names_steer_nothing_and_scripts_find_them():
     """Neither text, attributes nor data hold what steers; the data of each panel has its id."""
     for number, hostile in enumerate(FORGERIES):
@@ -221,6 +223,7 @@ def test_a_page_needs_nothing_but_itself():
     assert not re.search(r"https?://|url\(|@import", page)
 
 
+@pytest.mark.slow
 def test_a_long_run_makes_a_small_page():
     """Fifty thousand samples and hundreds of attempts stay below 200 KB."""
     samples = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from tests.tools.differential import case_of
 from tests.tools.law import judge
 
@@ -40,6 +41,7 @@ def summary(found: Requirement) -> tuple[object, ...]:
     return found.mode, found.at_end, found.pulse, found.captures, found.for_each
 
 
+@pytest.mark.slow
 def test_specs_are_read_back() -> None:
     """A random spec, shown and loaded, has the same attempts and verdicts."""
     read = sum(read_back(seed) for seed in range(120))

@@ -27,7 +27,8 @@ class Open:
         token: of the run that takes the unknown for the worse.
         better: of the run that takes it for the better; `None` as long as both are the same.
         seen: the values of what is read of the input at the trigger.
-        doubt: when and why the two runs parted; `None` if they did not.
+        doubt: when and why the two runs parted, `None` if both are the same; of an attempt in
+            doubt of an `upon`, when and why it is not known whether there was a trigger.
         sure: whether its trigger was TRUE; else it is in doubt.
         doubtful_number: as `number`, if its trigger was not TRUE at first.
         clouded: whether its trigger was unknown while it ran.
@@ -78,8 +79,8 @@ class Clerk(Protocol):
     def assured(self, judge: Any, attempt: Open) -> None:
         """Hear that the trigger of an attempt was true, which was unknown before."""
 
-    def parted(self, judge: Any, attempt: Open) -> None:
-        """Hear that unknown input made the two runs of an attempt part."""
+    def parted(self, judge: Any, attempt: Open, apart: bool) -> None:
+        """Hear that unknown input made the two runs of an attempt part, or that they met."""
 
     def decided(self, judge: Any, attempt: Open, verdict: bool, t: int, before: Token, /) -> None:
         """Take a decision at `t`; `before` is the token of the run that brought it, before that.

@@ -106,7 +106,7 @@ class NetworkJudge(AttemptJudge):
     def begin(self, t: int, triggered: int) -> None:
         """See `Rule`."""
         attempt = self.clerk.opened(self, triggered, (WAITING, (t,)), self.is_sure)
-        self.enter(triggered)
+        self.enter(triggered, plain=self.is_plain)
         self.attempts.append(attempt)
         self._begin_network()
         if self._letters is None or self.position < t:

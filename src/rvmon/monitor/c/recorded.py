@@ -112,7 +112,7 @@ def report_of_records(ids: Sequence[str], made: RunRecords, *, origin: int) -> R
         verdicts={
             name: fold(
                 [verdict for verdict, count in own.items() if count],
-                determined=bool(was_determined),
+                complete=bool(was_determined),
             )
             for (name, own), was_determined in zip(counts.items(), made.counts[:, 3], strict=True)
         },

@@ -80,7 +80,7 @@ class Attempts(Table):
         number: among those that are sure; 0 if it is in doubt.
         doubtful: its number among those whose trigger was not true at first; 0 for the others.
         void: whether it cannot pass, since its episode was over before all was born.
-        doubted: since when unknown input makes a difference; `FAR` if it does not.
+        doubted: when unknown input made the two runs part.
         doubt_seen: what was read there, packed.
         worse: where the run is that takes the unknown for the worse.
         better: the same for the better; `None` if all are where the others are.

@@ -148,9 +148,7 @@ class ColumnJudge:
         return Report(
             verdicts={
                 name: verdicts.get(name)
-                or fold(
-                    (one for one, count in counts.items() if count), determined=determined[name]
-                )
+                or fold((one for one, count in counts.items() if count), complete=determined[name])
                 for name, counts in found.items()
             },
             attempts=attempts,

@@ -59,7 +59,6 @@ class Judging:
         """Drive attempts to the end of the piece; those that are not decided are moved on."""
         if self._is_known:
             return self._driven(attempts)
-        self._doubt(attempts)
         worse, better = attempts.worse, attempts.better
         together = (
             np.arange(len(worse)) if better is None else np.flatnonzero(~worse.differ(better))
@@ -69,35 +68,6 @@ class Judging:
         still = outcome.decided[together] == FAR
         self._note_parted(attempts, together[still], tokens.pick(still))
         return outcome
-
-    def _doubt(self, attempts: Attempts) -> None:
-        """Note where both readings of the letters part for the first time in an attempt."""
-        stops = self._apart_stops
-        none = np.flatnonzero(attempts.doubted == FAR)
-        if not len(stops) or not len(none):
-            return
-        following = attempts.worse.place[none] + 1
-        found = np.searchsorted(stops, following, "right")
-        none, following, found = (one[found < len(stops)] for one in (none, following, found))
-        self._note_doubt(attempts, none, np.maximum(self._apart_starts[found], following))
-
-    @cached_property
-    def _apart(self) -> Numbers:
-        """The stretches in which the readings of the letters lead to different moves."""
-        classes = self._moves.class_of
-        return np.flatnonzero(classes[self._letters[0]] != classes[self._letters[1]])
-
-    @cached_property
-    def _apart_starts(self) -> Numbers:
-        return self._starts[self._apart]
-
-    @cached_property
-    def _apart_stops(self) -> Numbers:
-        return np.append(self._starts, self._piece.axis.stop)[self._apart + 1]
-
-    def _note_doubt(self, attempts: Attempts, which: Numbers, places: Numbers) -> None:
-        attempts.doubted[which] = self._piece.axis.instants(places)
-        attempts.doubt_seen[which] = self._piece.seen(self._leaves, places)
 
     def _note_parted(self, attempts: Attempts, together: Numbers, tokens: Tokens) -> None:
         """Note of open attempts of which the runs parted in the piece where they first did.
@@ -117,7 +87,8 @@ class Judging:
         came = self._joint_driver.drive(tokens)
         stretch = np.searchsorted(self._starts, came.place, "right") - 1
         places = np.maximum(self._starts[stretch], following)
-        self._note_doubt(attempts, together[parted], places)
+        attempts.doubted[together[parted]] = self._piece.axis.instants(places)
+        attempts.doubt_seen[together[parted]] = self._piece.seen(self._leaves, places)
 
     @cached_property
     def _joint_driver(self) -> Driver:

@@ -107,7 +107,8 @@ def _chosen(part: DecidedAttempts, verdict: Verdict) -> NDArray[np.bool_]:
 def _names(part: Sequence[Attempt]) -> NDArray[np.object_]:
     """The requirement of each attempt of a part."""
     if isinstance(part, DecidedAttempts):
-        return np.full(len(part), part.id, object)
+        # `full` would take a name for an array of text, which has no NUL at its end.
+        return np.array([part.id], object).repeat(len(part))
     return np.array([one.requirement for one in part], object)
 
 

@@ -27,6 +27,7 @@ from rvmon.monitor.columns.stretches import first_in
 from rvmon.monitor.columns.timeline import Piece, Timeline
 from rvmon.monitor.columns.track import UNSEEN, Track
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.reasons.doubt import Doubt
 from rvmon.monitor.records.deferred_reasons import DeferredReasons, Stood
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.spec.checked.specification import Mode
@@ -236,7 +237,7 @@ class ColumnRule:
             until[3 * place + UNKNOWN] = None
         if self._episodes is not None and self._unborn >= 0:
             values[self._unborn] = TRUE if self._episodes.is_unborn else FALSE
-        flow = Stood(self._plan, values, since, until, {}, last)
+        flow = Stood(self._plan, values, since, until, outages_at(end), last)
         opened = self._opened(self._open, outages_at)
         judge = self._deferred.judge(flow, self._letters, last, opened)
         if opened and self._episodes is not None and self._open.stop[-1] == FAR:
@@ -252,7 +253,6 @@ class ColumnRule:
         return [self._opened_one(attempts, index, outages_at) for index in range(len(attempts))]
 
     def _opened_one(self, attempts: Attempts, index: int, outages_at: OutagesAt) -> Open:
-        leaves = self._deferred.leaves
         seen = self._deferred.unpacked(attempts.seen.item(index))
         made = Open(attempts.triggered.item(index), self._token(attempts.worse, index), seen)
         made.number = attempts.number.item(index)
@@ -262,14 +262,17 @@ class ColumnRule:
         if attempts.better is not None:
             better = self._token(attempts.better, index)
             made.better = None if better == made.token else better
-        instant = attempts.doubted.item(index)
-        if instant < FAR:
-            values = dict(
-                zip(leaves, self._deferred.unpacked(attempts.doubt_seen.item(index)), strict=True)
-            )
-            flow = Stood(self._plan, values, {}, {}, outages_at(instant), instant)
-            made.doubt = self._deferred.judge(flow, (0, 0), instant, []).doubt
+        if self._is_hidden:
+            made.doubt = self._doubt(made.triggered, seen, outages_at)
+        elif made.better is not None:
+            noticed = self._deferred.unpacked(attempts.doubt_seen.item(index))
+            made.doubt = self._doubt(attempts.doubted.item(index), noticed, outages_at)
         return made
+
+    def _doubt(self, instant: int, seen: tuple[int, ...], outages_at: OutagesAt) -> Doubt:
+        values = dict(zip(self._deferred.leaves, seen, strict=True))
+        flow = Stood(self._plan, values, {}, {}, outages_at(instant), instant)
+        return self._deferred.judge(flow, (0, 0), instant, []).doubt
 
     def _token(self, tokens: Tokens, index: int) -> Token:
         location = tokens.location.item(index)

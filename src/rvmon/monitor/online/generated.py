@@ -289,6 +289,8 @@ class GeneratedMonitor(Monitor):
             self._last = self._reached = self._floor = after
         if self._health.began is None:
             self._health.began = unit.began
+        if self._torn is None:
+            self._torn = unit.torn
 
     def _leave(self) -> None:
         """Have the generated code take samples behind what was taken, and what time has come to."""

@@ -81,9 +81,9 @@ class Hearing:
         self._unit.news = True
         self._ledger.assured(judge, attempt)
 
-    def parted(self, judge: AttemptJudge, attempt: Open) -> None:
+    def parted(self, judge: AttemptJudge, attempt: Open, apart: bool) -> None:
         """See `rvmon.monitor.attempts.attempt_judge.Clerk`."""
-        self._ledger.parted(judge, attempt)
+        self._ledger.parted(judge, attempt, apart)
 
     def decided(
         self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
@@ -148,6 +148,8 @@ class GeneratedRecords(DeferredReasons):
             attempt.number = self._counts[rule.index]
         else:
             attempt.doubtful_number = self._ledger.next_doubtful(self.id)
+        if rule.hidden:
+            attempt.doubt = self.judge_now(rule).doubt
         return attempt
 
     def assured(self, rule: Rule, attempt: Open) -> None:
@@ -170,9 +172,10 @@ class GeneratedRecords(DeferredReasons):
         attempt.sure = True
         return attempt
 
-    def parted(self, rule: Rule, attempt: Open) -> None:
-        """Hear that unknown input made the two runs of an attempt part."""
-        attempt.doubt = self.judge_now(rule).doubt
+    def parted(self, rule: Rule, attempt: Open, apart: bool) -> None:
+        """Hear that unknown input made the two runs of an attempt part, or that they met."""
+        if not rule.hidden:
+            attempt.doubt = self.judge_now(rule).doubt if apart else None
         self._unit.news = True
 
     def decided(self, rule: Rule, attempt: Open, verdict: bool, t: int, before: Token) -> None:

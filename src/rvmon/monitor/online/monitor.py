@@ -18,6 +18,7 @@ from rvmon.monitor.online.one_call import OneCall
 from rvmon.monitor.online.options import Options
 from rvmon.monitor.online.retention import Kept
 from rvmon.monitor.online.snapshot import snapshot
+from rvmon.monitor.online.torn import capped, not_passed
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import TimeModel
@@ -40,7 +41,7 @@ class Monitor:
 
     STATE: tuple[str, ...] = (
         *("_ledger", "_kept", "_lanes"),
-        *("_intake", "_health", "_last", "_reached"),
+        *("_intake", "_health", "_last", "_reached", "_torn"),
     )
 
     judged_by = ""
@@ -82,6 +83,7 @@ class Monitor:
         self._last: int | None = None
         self._reached: int | None = None
         self._report: Report | None = None
+        self._torn: int | None = None
         self._attend()
 
     def _attend(self) -> None:
@@ -128,7 +130,8 @@ class Monitor:
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         t_ns = self._taken_time(t_ns)
         if self._intake is not None:
-            ready = self._intake.take(t_ns, self._validator.check(t_ns, values))
+            checked = self.one_call.spare(self._validator.check, t_ns, values)
+            ready = self._intake.take(t_ns, checked)
             return self._settled(ready, self._intake.floor)
         if self._last is not None and t_ns <= self._last:
             raise TimeOrderError(
@@ -141,7 +144,7 @@ class Monitor:
                 f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) said "
                 "that none before would come: advance later, or drop the sample"
             )
-        self._judge(t_ns, self._validator.check(t_ns, values))
+        self._judge(t_ns, self.one_call.spare(self._validator.check, t_ns, values))
         return self._flush()
 
     def _flush(self) -> Sequence[Attempt]:
@@ -259,6 +262,8 @@ class Monitor:
         for sample in () if self._intake is None else self._intake.close():
             self._judge(sample.t, sample.values)
         report, decided = self._conclude(t_ns)
+        if self._torn is not None:
+            report = capped(report, self._torn)
         self._report = replace(report, engine=self.judged_by)
         return self._report, decided
 
@@ -275,7 +280,7 @@ class Monitor:
             self._names,
             self._ledger.attempts,
             dropped=self._kept.dropped,
-            undetermined=self._lanes.undetermined(),
+            incomplete=self._lanes.undetermined(),
             health=self._health.report(
                 self.options.requirements, self._lanes.main.flow.inputs, self._intake
             ),
@@ -294,7 +299,8 @@ class Monitor:
 
         `F` if an attempt has failed, else `P` if one has passed, else `NT`. What is undecided does
         not count, so that this is not what `finish` would say: it may call a run `I` or `F` that
-        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's.
+        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's. After
+        a call that an interrupt tore, what has not failed is `I`.
         A call costs what was decided since the last one.
 
         >>> from rvmon import loads
@@ -310,7 +316,10 @@ class Monitor:
         return self.one_call(self._verdicts)
 
     def _verdicts(self) -> Mapping[str, Verdict]:
-        return self._verdicts_so_far() if self._report is None else self._report.verdicts
+        if self._report is not None:
+            return self._report.verdicts
+        found = self._verdicts_so_far()
+        return found if self._torn is None else not_passed(found)
 
     def _verdicts_so_far(self) -> Mapping[str, Verdict]:
         return self._kept.verdicts(self._names)
@@ -322,10 +331,8 @@ class Monitor:
         known = [self._last]
         if t is not None:
             known.append(t)
-        if (
-            self._reached is not None
-            and self.options.compiled.checked.time is not TimeModel.SAMPLED
-        ):
+        is_sampled = self.options.compiled.checked.time is TimeModel.SAMPLED
+        if self._reached is not None and not is_sampled:
             known.append(self._reached - 1)
         return max(known)
 
@@ -359,6 +366,8 @@ class Monitor:
     def _put_away(self) -> bytes:
         if self._report is not None:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
+        if self._torn is not None:
+            self._flush()  # what the torn call has decided is not lost
         self._kept.tidy(self._lanes)
         return snapshot(self.options, self._lanes, self)
 

@@ -6,13 +6,22 @@ from collections.abc import Callable
 from typing import ParamSpec, Protocol, TypeVar
 
 from rvmon.errors import OverlapError, RvmonError, SnapshotError
+from rvmon.monitor.online.torn import BEFORE_ALL
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
 class Guarded(Protocol):
-    """What is entered by one call at a time."""
+    """What is entered by one call at a time.
+
+    Attributes:
+        _reached: how far its run has come, ticks.
+        _torn: how far it had come when a call was interrupted or failed; `None`: none was.
+    """
+
+    _reached: int | None
+    _torn: int | None
 
     def _enter(self) -> None:
         """Begin a call."""
@@ -35,6 +44,7 @@ class OneCall:
         self.restored = False
         self._guarded = guarded
         self._turn: dict[None, object] = {}
+        self._spared: BaseException | None = None
 
     def __call__(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
         """Make a call, and no other until it is over.
@@ -56,16 +66,29 @@ class OneCall:
                 self._guarded._leave()
         except RvmonError:
             raise
-        except Exception as error:
-            if not self.restored:
+        except BaseException as error:
+            # No function is called up to the mark: another interrupt cannot come before it.
+            if self._guarded._torn is None and error is not self._spared:
+                reached = self._guarded._reached
+                self._guarded._torn = BEFORE_ALL if reached is None else reached
+            if not (self.restored and isinstance(error, Exception)):
                 raise
             raise SnapshotError(
                 "the snapshot that this monitor was made of was damaged: what it held fits no "
                 "monitor; begin a new run"
             ) from error
         finally:
+            self._spared = None
             if None in self._turn and self._turn[None] is own:
                 del self._turn[None]
+
+    def spare(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
+        """Make a part of the call under way that changes nothing, whatever it raises."""
+        try:
+            return call(*args, **kwargs)
+        except BaseException as error:
+            self._spared = error
+            raise
 
 
 def overlap() -> OverlapError:

@@ -72,6 +72,8 @@ class Ledger:
         attempt = Open(triggered, token, judge.seen)
         attempt.void = judge.flow.is_cut
         attempt.sure = sure
+        if judge.hidden:
+            attempt.doubt = judge.doubt
         (self.sure if sure else self.doubtful)(judge, attempt, triggered)
         return attempt
 
@@ -79,9 +81,10 @@ class Ledger:
         """See `rvmon.monitor.attempts.attempt_judge.Clerk`."""
         self.sure(judge, attempt, judge.flow.position)
 
-    def parted(self, judge: AttemptJudge, attempt: Open) -> None:
+    def parted(self, judge: AttemptJudge, attempt: Open, apart: bool) -> None:
         """See `rvmon.monitor.attempts.attempt_judge.Clerk`."""
-        attempt.doubt = judge.doubt
+        if not judge.hidden:
+            attempt.doubt = judge.doubt if apart else None
 
     def decided(
         self, judge: AttemptJudge, attempt: Open, verdict: bool, t: int, before: Token
@@ -152,13 +155,8 @@ class Ledger:
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
-        for _, judge, attempt in sorted(self._started, key=_turn):
-            name = judge.compiled.requirement.id
-            attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
-        self._started.clear()
-        for _, judge, attempt in sorted(self._doubtful, key=_turn):
-            attempt.doubtful_number = self.next_doubtful(judge.compiled.requirement.id)
-        self._doubtful.clear()
+        if self._started or self._doubtful:
+            self._number_new()
         if not self._decided:
             if not self.recorded:
                 return ()
@@ -181,6 +179,15 @@ class Ledger:
         self.recorded.clear()
         self.attempts += records
         return records
+
+    def _number_new(self) -> None:
+        for _, judge, attempt in sorted(self._started, key=_turn):
+            name = judge.compiled.requirement.id
+            attempt.number = self._counts[name] = self._counts.get(name, 0) + 1
+        self._started.clear()
+        for _, judge, attempt in sorted(self._doubtful, key=_turn):
+            attempt.doubtful_number = self.next_doubtful(judge.compiled.requirement.id)
+        self._doubtful.clear()
 
 
 def verdict_at_end(

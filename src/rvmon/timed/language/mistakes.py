@@ -64,7 +64,7 @@ def _suspects(text: str, at: int) -> list[tuple[int, int]]:
     """Parts that may hold the mistake: the one before, which may be cut short, and that around."""
     begins = [match for match in _BEGINS.finditer(text) if match.start() <= at]
     around = [match.start() for match in begins[1:]] + [_end(text, at)]
-    parts = list(zip(begins, around, strict=True))[-2:]
+    parts = list(zip(begins, around, strict=False))[-2:]  # there may be none
     return [(match.start(), end) for match, end in parts if match["alone"]]
 
 

@@ -52,6 +52,7 @@ def samples(rng, count):
         yield Sample(t, values)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
 @pytest.mark.parametrize("name", OWED)
 @pytest.mark.parametrize("engine", ["auto", "network", "auto+interrupt"])
@@ -63,6 +64,7 @@ def test_what_is_over_changes_no_record(name, time, engine):
     assert disagreements(Case(checked, actions, None), Maker(engine), online=False) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 10 ms\n"])
 @pytest.mark.parametrize(
     "name", ["another event with the key", "a signal", "what was before", "stretches"]
@@ -110,6 +112,7 @@ def test_too_many_open_at_once_are_refused(monkeypatch):
     assert len(monitor.finish(20).attempts) == 5
 
 
+@pytest.mark.slow
 def test_only_the_latest_that_are_over_are_remembered(monkeypatch):
     """Values that are over are forgotten in the end, also what is I: a run of weeks is bounded."""
     monkeypatch.setattr(keyed_module, "MOST_KNOWN", 5)

@@ -2,14 +2,13 @@
 
 import json
 import os
-import shutil
 
 import pytest
 
 from rvmon.cli import main
 from rvmon.monitor.c import batch
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+pytestmark = pytest.mark.compiler
 
 SPEC = """
 spec cell "A cell"

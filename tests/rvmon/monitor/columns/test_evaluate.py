@@ -63,6 +63,7 @@ def of_a_monitor(spec: rvmon.Spec, columns: dict[str, np.ndarray], end: int) -> 
     return monitor.finish_ns(end)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("few", [0, 12, 10_000])
 @pytest.mark.parametrize("time", ["held", "sampled"])
 def test_blocks_of_any_size_say_what_a_monitor_says(time, few, monkeypatch):
@@ -173,6 +174,7 @@ UNKNOWN = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [4, 2000])
 @pytest.mark.parametrize("case", UNKNOWN)
 def test_what_left_an_attempt_open_is_told_with_its_stretch(case, size):
@@ -194,6 +196,41 @@ def test_what_left_an_attempt_open_is_told_with_its_stretch(case, size):
     assert report == of_a_monitor(spec, columns, int(t[-1]))
 
 
+@pytest.mark.parametrize("engine", ["columns", "python", "automaton"])
+def test_an_attempt_in_doubt_tells_why_its_trigger_was_not_known(engine):
+    """It is that which left it open, whatever is owed."""
+    spec = rvmon.loads(
+        "spec s\nsignal v : real\nsignal w : real\nevent far\n"
+        "requirement R1\n  upon v > 1\n  then eventually w > 1\n"
+        "requirement R2\n  upon far\n  then w < 5\n  at end strong\n"
+    )
+    v, w = np.zeros(2000), np.zeros(2000)
+    v[2:4] = np.nan
+    columns = {"t_ns": np.arange(2000), "v": v, "w": w}
+    report = spec.evaluate(columns, engine=engine, allow_missing=["far"])
+    told = {attempt.name: attempt.reason.split("deadline; ")[1] for attempt in report.attempts}
+    assert told == {
+        "R1?1": "`v` was not known from 2 ns to 4 ns: NaN at 2 ns",
+        "R2?1": "`far` has no source",
+    }
+
+
+@pytest.mark.parametrize("engine", ["columns", "python", "automaton"])
+def test_what_makes_no_difference_in_the_end_left_nothing_open(engine):
+    """Where the run that takes the unknown for the worse meets the other, that is forgotten."""
+    spec = rvmon.loads(
+        "spec s\nsignal p : bool\nsignal v : real\n"
+        "requirement R1\n  upon start\n  then always (v > 1 -> within 5 ns p)\n  at end strict\n"
+    )
+    v, p = np.zeros(2000), np.zeros(2000, bool)
+    v[3], p[5], v[1998] = np.nan, True, 2
+    columns = {"t_ns": np.arange(2000), "v": v, "p": p}
+    report = spec.evaluate(columns, engine=engine)
+    assert [attempt.verdict for attempt in report.attempts] == ["I"]
+    assert "not known" not in report.attempts[0].reason
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [5, 5000])
 def test_each_stretch_of_excess_is_a_failure_in_any_blocks(rows):
     """An episode goes on after a failure, however many there are, and over borders of blocks."""
@@ -251,3 +288,18 @@ def test_attempts_follow_failures_before_time_zero() -> None:
     report = spec.evaluate(columns, engine="columns")
     assert [attempt.triggered for attempt in report.attempts] == [-3, -2, 2]
     assert report.attempts == of_a_monitor(spec, columns, 2).attempts
+
+
+def test_names_that_end_in_nul_are_told_whole():
+    """Arrays of text would leave the end out: the report reads back with all requirements."""
+    names = ["a\x00", "b\x00\x00"]
+    text = "".join(
+        f"requirement `{name}`\n  whenever p\n  then within 900 ms q\n" for name in names
+    )
+    spec = rvmon.loads(f"spec s\nsignal p, q : bool\n{text}")
+    found = recording(1)
+    report = spec.evaluate({name: found[name] for name in ("t_ns", "p", "q")})
+    assert isinstance(report.attempts, JudgedAttempts)
+    read = rvmon.Report.from_json(report.to_json())
+    assert read.counts == report.counts
+    assert list(read.verdicts) == names

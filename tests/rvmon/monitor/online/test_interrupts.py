@@ -1,4 +1,4 @@
-"""After Ctrl-C, wherever it comes within a step, a monitor goes on."""
+"""After Ctrl-C, wherever it comes within a step, a monitor goes on, and says what it knows."""
 
 import dis
 import sys
@@ -8,8 +8,13 @@ from typing import Any
 import pytest
 
 import rvmon
+from rvmon.codegen.python_file import python_file
 from rvmon.monitor.online.monitor import Monitor
+from rvmon.report.junit import junit_xml
+from rvmon.report.run_text import health_lines
+from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
 
 pytestmark = pytest.mark.law
 
@@ -30,6 +35,10 @@ requirement R4
 _S = 1_000_000_000
 
 Place = tuple[CodeType, int]
+
+
+class _Odd(dict[str, object]):
+    """A sample that takes a closer look."""
 
 
 class _Strike:
@@ -81,17 +90,20 @@ def _begun(spec: rvmon.Spec, engine: str) -> Monitor:
     return monitor
 
 
-def _struck(monitor: Monitor, strike: _Strike) -> None:
+def _struck(
+    monitor: Any, strike: _Strike, make: type[dict[str, object]] = dict[str, object]
+) -> None:
     """A step in which R1 fails, an attempt of R2 begins and one ends; it concerns no other."""
+    row = make({"x": 4.0, "e": True, "p": True})
     before = sys.gettrace()
     sys.settrace(strike)
     try:
-        monitor.step_ns(3 * _S, {"x": 4.0, "e": True, "p": True})
+        monitor.step_ns(3 * _S, row)
     finally:
         sys.settrace(before)
 
 
-def _judged_on(monitor: Monitor) -> list[Attempt]:
+def _judged_on(monitor: Monitor) -> Report:
     """What comes of the requirements that the step did not concern, when the run goes on."""
     monitor.step_ns(4 * _S, {"x": 1.0, "y": 1.0})
     monitor.step_ns(5 * _S, {"y": 4.0, "f": True})
@@ -103,6 +115,10 @@ def _judged_on(monitor: Monitor) -> list[Attempt]:
     monitor.step_ns(6 * _S, {"x": 4.0, "f": True, "p": True})
     report = monitor.finish_ns(8 * _S)
     assert report.verdicts["R3"] == report.verdicts["R4"] == "F"
+    return report
+
+
+def _untouched(report: Report) -> list[Attempt]:
     return [one for one in report.attempts if one.requirement in ("R3", "R4")]
 
 
@@ -114,10 +130,136 @@ def test_an_interrupt_leaves_the_monitor_open(engine: str) -> None:
         whole = _Strike()
         monitor = _begun(spec, engine)
         _struck(monitor, whole)
-        expected = _judged_on(monitor)
+        expected = _untouched(_judged_on(monitor))
     assert len(whole.passed) > 50
     for place in whole.passed:
         monitor = _begun(spec, engine)
         with pytest.raises(KeyboardInterrupt):
             _struck(monitor, _Strike(place))
-        assert _judged_on(monitor) == expected
+        assert _untouched(_judged_on(monitor)) == expected
+
+
+def _ended(monitor: Monitor) -> Report:
+    """The report of a run that ends behind the step."""
+    verdicts = monitor.verdicts
+    report = monitor.finish_ns(3 * _S + 1)
+    assert Report.from_json(report.to_json()).verdicts == report.verdicts
+    if _is_torn(report):
+        assert {*verdicts.values(), *report.verdicts.values()} <= {"F", "I"}
+    return report
+
+
+def _is_torn(report: Report) -> bool:
+    return any(one.kind is HealthKind.INTERRUPTED for one in report.health)
+
+
+@pytest.mark.parametrize(
+    ("engine", "make"),
+    [
+        ("auto", dict[str, object]),
+        *((engine, _Odd) for engine in ("auto", "automaton", "network", "progression")),
+        pytest.param("c", _Odd, marks=pytest.mark.compiler),
+    ],
+)
+def test_after_a_torn_step_nothing_passes(
+    engine: str, make: type[dict[str, object]], request: pytest.FixtureRequest
+) -> None:
+    """A step is judged in full, or not at all, or what has not failed is inconclusive."""
+    if engine == "c":
+        request.getfixturevalue("extensions")
+    spec = rvmon.loads(_SPEC)
+    skipped = _ended(_begun(spec, engine))
+    for _ in range(2):
+        places = _Strike()
+        monitor = _begun(spec, engine)
+        _struck(monitor, places, make)
+        whole = _ended(monitor)
+    assert skipped.verdicts["R1"] == "P"
+    assert whole.verdicts["R1"] == "F"
+    torn = 0
+    for place in places.passed:
+        monitor = _begun(spec, engine)
+        with pytest.raises(KeyboardInterrupt):
+            _struck(monitor, _Strike(place), make)
+        report = _ended(monitor)
+        torn += _is_torn(report)
+        assert _is_torn(report) or report in (skipped, whole)
+        monitor.reset()
+        monitor.step_ns(0, {"x": 1.0})
+        assert monitor.finish_ns(1).verdicts["R1"] == "P"
+    assert torn > len(places.passed) / 2
+
+
+@pytest.mark.parametrize("engine", ["auto", "network"])
+def test_a_snapshot_keeps_that_a_step_was_torn(engine: str) -> None:
+    """What goes on from it says the same."""
+    spec = rvmon.loads(_SPEC)
+    for _ in range(2):
+        places = _Strike()
+        _struck(_begun(spec, engine), places)
+    for place in [*places.passed][::9]:
+        monitor = _begun(spec, engine)
+        with pytest.raises(KeyboardInterrupt):
+            _struck(monitor, _Strike(place))
+        other = spec.restore(monitor.snapshot())
+        assert other.verdicts == monitor.verdicts
+        assert other.finish_ns(3 * _S + 1) == monitor.finish_ns(3 * _S + 1)
+
+
+def test_a_generated_file_passes_nothing_after_a_torn_step() -> None:
+    """Its verdicts are those of a run with the step, or without it, or none but `F` and `I`."""
+    made: dict[str, Any] = {}
+    text = python_file(rvmon.loads(_SPEC).plan())
+    exec(compile(text, "<generated monitor>", "exec"), made)  # noqa: S102 - written a line above
+
+    def begun() -> Any:
+        monitor = made["SpecMonitor"]()
+        monitor.step_ns(2 * _S, {"x": 1.0, "y": 1.0, "e": True, "f": True})
+        return monitor
+
+    known = [begun().finish_ns(3 * _S + 1)]
+    for make in (dict[str, object], _Odd):
+        places = _Strike()
+        monitor = begun()
+        _struck(monitor, places, make)
+        known.append(monitor.finish_ns(3 * _S + 1))
+        torn = 0
+        for place in places.passed:
+            monitor = begun()
+            with pytest.raises(KeyboardInterrupt):
+                _struck(monitor, _Strike(place), make)
+            found = monitor.finish_ns(3 * _S + 1)
+            assert found in known or set(found.values()) <= {"F", "I"}
+            torn += found not in known
+        assert torn > len(places.passed) / 2
+
+
+def test_what_a_sample_raises_itself_tears_nothing() -> None:
+    """A mapping that cannot be read leaves the monitor as it was."""
+
+    class Broken(dict[str, object]):
+        def items(self) -> Any:
+            raise LookupError("no such field")
+
+    monitor = rvmon.loads(_SPEC).monitor()
+    monitor.step_ns(0, {"x": 1.0})
+    with pytest.raises(LookupError):
+        monitor.step_ns(1, Broken(x=4.0))
+    assert monitor.finish_ns(2).verdicts["R1"] == "P"
+
+
+def test_a_torn_run_is_told_in_every_output() -> None:
+    """The terminal names the instant; JUnit skips what is inconclusive."""
+    spec = rvmon.loads(_SPEC)
+    for _ in range(2):
+        places = _Strike()
+        _struck(_begun(spec, "network"), places)
+    monitor = _begun(spec, "network")
+    with pytest.raises(KeyboardInterrupt):
+        _struck(monitor, _Strike(list(places.passed)[len(places.passed) // 2]))
+    report = monitor.finish_ns(4 * _S)
+    [line] = [line for line in health_lines(report.health) if "interrupted" in line]
+    assert line.startswith(
+        "  monitor  interrupted once, first at 2 s: what followed was not judged in full"
+    )
+    assert "was not judged in full" in junit_xml([report], spec.checked)

@@ -229,6 +229,7 @@ def test_the_compile_report_says_what_became_of_a_requirement():
     assert "more than" in report.why
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "generated"), [(2000, True), (2001, False)])
 def test_code_is_generated_for_up_to_2000_requirements(count, generated):
     """More are judged as well, without generated code; the engine `python` then says so."""

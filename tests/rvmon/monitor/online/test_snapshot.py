@@ -164,6 +164,7 @@ def places_in(value, path=()):
         yield from places_in(one, (*path, key))
 
 
+@pytest.mark.slow
 def test_most_hostile_snapshots_are_refused_at_once():
     """A sealed snapshot with something else at a place is refused, or makes a monitor to ask."""
     spec = rvmon.loads(TEXT)
@@ -191,6 +192,7 @@ def test_most_hostile_snapshots_are_refused_at_once():
             continue
 
 
+@pytest.mark.slow
 def test_a_snapshot_whose_times_have_passed_is_refused():
     """With any one number of what waits in a network below zero, restoring comes to an end."""
     text = "spec s\nsignal p, q : bool\nsignal v : real\nrequirement R1\n"

@@ -147,6 +147,7 @@ def test_a_stream_is_given_as_it_goes():
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize(
     "requirement",

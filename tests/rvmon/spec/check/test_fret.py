@@ -178,6 +178,7 @@ def translated(scope, condition, timing):
     return f"requirement R\n  {trigger}\n  then {consequent}\n  {clause}\n"
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("timing", TIMINGS)
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("condition", CONDITIONS)

@@ -205,6 +205,7 @@ def random_structure(rng):
     return labels, after
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("seed", range(4))
 def test_a_structure_has_the_property_iff_all_its_runs_fulfil_the_formula(seed):
     """On random structures CTL and its linear form agree wherever a form is given."""

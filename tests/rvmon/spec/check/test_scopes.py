@@ -72,6 +72,7 @@ def reopens(words):
     return False
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("call", "scope"), PUBLISHED)
 def test_scope_is_the_published_formula(call, scope):
     """A requirement with a scope has the verdict of the published formula on every run."""

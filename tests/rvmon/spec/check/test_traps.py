@@ -185,6 +185,7 @@ def born(case):
     return replace(case, actions=actions, names=None)
 
 
+@pytest.mark.law
 def test_what_is_said_of_the_first_instant_holds_on_every_run():
     """Where a warning says that it fails there, the law says so of random runs."""
     warned = 0
@@ -208,6 +209,7 @@ def test_what_is_said_of_the_first_instant_holds_on_every_run():
     assert warned > 50
 
 
+@pytest.mark.law
 def test_what_is_said_of_the_trigger_holds_on_every_run():
     """Where a warning says that it fails each time, no attempt passes on random runs."""
     warned = attempts = 0

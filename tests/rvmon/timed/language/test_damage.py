@@ -10,6 +10,7 @@ from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.language.load import loads_network
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["ta", "xml"])
 def test_damage_is_survived(form, tmp_path):
     """Whatever is changed, cut out or put in, the answer is a finding or a model."""

@@ -9,6 +9,7 @@ from rvmon.timed.search.verify import verify
 A = "automaton A { location a start a } "
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "code", "message"),
     [
@@ -69,6 +70,7 @@ def test_a_name_whose_declaration_is_wrong_is_told_once():
     assert [d.code for d in caught.value.diagnostics] == ["TA005"]
 
 
+@pytest.mark.slow
 def test_a_wide_quantifier_is_decided():
     """Thousands of conditions are no deep formula."""
     network = loads_network("int[0,9] v " + A)
@@ -83,6 +85,7 @@ def test_findings_end_at_a_hundred():
     assert len(caught.value.diagnostics) == 100
 
 
+@pytest.mark.slow
 def test_xml_is_read_in_one_go():
     """A text of many lines, and many tags behind a letter that is no ASCII, take no square time."""
     for text in ("<nta><declaration>" + "\n" * 300_000 + "</declaration></nta>",

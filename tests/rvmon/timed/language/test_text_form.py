@@ -360,3 +360,9 @@ def test_a_division_by_zero_has_its_place(guard):
 def test_what_is_no_name_is_mended(text, name):
     """Dashes and digits in front are no part of names; one that would do is given."""
     assert f"first a letter: `{name}`" in one(text).help
+
+
+@pytest.mark.parametrize("text", ["t,b", '"', "x", "=1"])
+def test_a_text_in_which_nothing_begins_is_refused_like_any_other(text):
+    """It has a mistake at its first word that does not fit."""
+    assert [code for code, *_ in findings(text)] == ["TA001"]

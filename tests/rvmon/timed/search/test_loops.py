@@ -3,6 +3,8 @@
 from math import inf
 from random import Random
 
+import pytest
+
 from rvmon.timed.runs.timing import TimedStep, timing_of
 from rvmon.timed.search.loops import surely_passes, time_passes
 from rvmon.timed.zones.dbm import bound_of
@@ -44,6 +46,7 @@ def random_loop(random):
     ]
 
 
+@pytest.mark.slow
 def test_it_is_what_the_rounds_written_out_say():
     """Random loops: relations put together say what one long path says."""
     random, seen = Random(1), []

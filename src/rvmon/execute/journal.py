@@ -1,0 +1,72 @@
+r"""Results on the disk as they come, so that work which was ended in its midst goes on from there.
+
+A journal is a file of lines, each an entry behind its checksum. Whatever ends the process that adds
+to it, the entries before are whole; what is torn or damaged ends what is read.
+
+>>> from tempfile import TemporaryDirectory
+>>> with TemporaryDirectory() as folder:
+...     path = Path(folder, "a.journal")
+...     begin(path, [b"first"])
+...     add(path, b"second")
+...     _ = path.write_bytes(path.read_bytes() + b"0123456")
+...     entries(path)
+[b'first', b'second']
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterable
+from pathlib import Path
+
+from rvmon.writing import place_whole
+
+
+def entries(path: Path) -> list[bytes] | None:
+    """The entries of a journal, up to the first that is not whole; `None` if there is no file.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    try:
+        lines = path.read_bytes().splitlines(keepends=True)
+    except FileNotFoundError:
+        return None
+    found: list[bytes] = []
+    for line in lines:
+        entry = line[_WIDTH:-1]
+        if _line(entry) != line:
+            break
+        found.append(entry)
+    return found
+
+
+def begin(path: Path, first: Iterable[bytes]) -> None:
+    """Write a journal of these entries; a file that is there goes.
+
+    Raises:
+        OSError: it cannot be written; nothing has changed.
+    """
+    place_whole(path, b"".join(map(_line, first)))
+
+
+def add(path: Path, entry: bytes) -> None:
+    """Add an entry to a journal: behind this call it stays, also if the process is killed.
+
+    Args:
+        path: of the journal.
+        entry: one line, without its end.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    with path.open("ab", buffering=0) as file:
+        file.write(_line(entry))
+
+
+_WIDTH = 9
+"""Characters of a line before its entry."""
+
+
+def _line(entry: bytes) -> bytes:
+    return b"%08x %s\n" % (zlib.crc32(entry), entry)

@@ -1,0 +1,201 @@
+"""A campaign that was ended in its midst goes on, and comes to the same as one that was not."""
+
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from handover.campaign import command
+from handover.campaign.execute import execute
+from handover.campaign.unfinished import NAME
+from handover.cli import main
+from rvmon.execute.journal import entries
+
+pytestmark = pytest.mark.campaign
+
+RUN = ("run", "--strategy", "constrained", "--seed", "1", "--legacy", "--out", "out")
+WORDS = (*RUN, "--tests", "12", "--jobs", "1")
+"""In which signals of a test get lost, so that it has two outcomes."""
+
+
+def files(folder):
+    """All files of a folder, but for the seconds that the tests took."""
+    return {
+        path.relative_to(folder): re.sub(
+            rb'("seconds": |simulated in |\bin )[\d.]+', b"", path.read_bytes()
+        )
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A campaign that nothing ended: its files, and its journal before it went."""
+    folder = tmp_path_factory.mktemp("whole")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        kept = []
+
+        def write_tables(*arguments):
+            kept.append(Path("out", NAME).read_bytes())
+            real(*arguments)
+
+        real = command.write_tables
+        patch.setattr(command, "write_tables", write_tables)
+        assert main(WORDS) == 0
+    return files(folder / "out"), kept[0]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """Where a campaign with the folder `out` is run."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "out"
+
+
+@pytest.fixture
+def played(monkeypatch):
+    """The numbers of tests that were finished, as they are told."""
+    told = []
+
+    def telling(plan, **options):
+        return execute(plan, **{**options, "progress": told.append})
+
+    monkeypatch.setattr(command, "execute", telling)
+    return told
+
+
+def left(folder, journal):
+    """A folder as a campaign leaves it that is killed when so much is written."""
+    folder.mkdir()
+    (folder / NAME).write_bytes(journal)
+
+
+@pytest.mark.parametrize(
+    ("tests", "torn"),
+    [
+        pytest.param(0, b"", id="at the start"),
+        pytest.param(0, b"0", id="in the first test"),
+        pytest.param(5, b"8f3a2c01 {", id="in another test"),
+        pytest.param(9, b"\x00" * 64, id="in a file that was not whole on the disk"),
+        pytest.param(12, b"", id="behind the last test"),
+    ],
+)
+def test_it_comes_to_the_same_wherever_it_was_killed(whole, here, played, capsys, tests, torn):
+    """Between two tests, or within the writing of one, which is played again."""
+    known, journal = whole
+    lines = journal.splitlines(keepends=True)
+    assert len(lines) == 1 + 12
+    left(here, b"".join(lines[: 1 + tests]) + torn)
+    assert main(WORDS) == 0
+    assert files(here) == known
+    assert played == list(range(tests + 1, 13))
+    assert (f"{tests} of 12 tests were played before" in capsys.readouterr().err) == (tests > 0)
+
+
+def test_what_lies_behind_damage_is_played_again(whole, here, played):
+    """An entry that differs from its checksum ends what is taken."""
+    known, journal = whole
+    lines = journal.splitlines(keepends=True)
+    left(here, b"".join([*lines[:3], lines[3].replace(b"seconds", b"Seconds"), *lines[4:]]))
+    assert main(WORDS) == 0
+    assert files(here) == known
+    assert played[0] == 3
+
+
+def test_what_two_have_written_at_once_is_not_mixed(whole, here, played):
+    """From where they met, tests are played again."""
+    known, journal = whole
+    lines = journal.splitlines(keepends=True)
+    left(here, b"".join([*lines[:5], lines[4], *lines[5:]]))
+    assert main(WORDS) == 0
+    assert files(here) == known
+    assert played[0] == 5
+
+
+def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
+    """What its partial tables and pages were is written over."""
+
+    def interrupted(plan, **options):
+        def press_ctrl_c(count):
+            if count == 4:
+                signal.raise_signal(signal.SIGINT)
+
+        return execute(plan, **{**options, "progress": press_ctrl_c})
+
+    with monkeypatch.context() as patch:
+        patch.setattr(command, "execute", interrupted)
+        assert main(WORDS) == 130
+    assert "the same command plays what is left" in capsys.readouterr().err
+    assert (here / "table.json").exists()
+    assert main(WORDS) == 0
+    assert files(here) == whole[0]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs the signals of POSIX")
+def test_a_campaign_that_is_killed_goes_on(here):
+    """By SIGKILL, whatever its processes do then, and more than once."""
+    words = (*RUN, "--tests", "24")
+    assert main((*words, "--jobs", "1")) == 0
+    known = files(here)
+    shutil.rmtree(here)
+    here.mkdir()
+    for tests in (3, 14):
+        with subprocess.Popen(  # noqa: S603 - our own program
+            [sys.executable, "-m", "handover.cli", *words, "--jobs", "2"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        ) as process:
+            journal = here / NAME
+            while process.poll() is None and len(entries(journal) or ()) <= tests:
+                time.sleep(0.01)
+            process.kill()
+    assert main((*words, "--jobs", "2")) == 0
+    assert files(here) == known
+
+
+@pytest.mark.parametrize(
+    "other",
+    [("--seed", "2"), ("--tests", "11"), ("--strategy", "pseudorandom"), ("--no-monitors",)],
+)
+def test_another_campaign_is_refused(whole, here, capsys, other):
+    """Before anything is played or written; told are the file, the other campaign and the ways."""
+    left(here, whole[1])
+    assert main([*WORDS, *other]) == 2
+    told = " ".join(capsys.readouterr().err.split())
+    assert f"{Path('out', NAME)} holds another campaign" in told
+    assert "run --tests 12 --seed 1 --strategy constrained --legacy --out out` finishes" in told
+    assert "remove it to give that up, or name another --out" in told
+    assert files(here) == {Path(NAME): whole[1]}
+
+
+def test_other_requirements_are_another_campaign(here, capsys):
+    """Also if their file has the same name."""
+    here.mkdir()
+    mine = here.parent / "mine.rv"
+    mine.write_text("spec mine\nevent done\nrequirement R1\n  eventually within 1 s done\n")
+    (here / "table.txt").mkdir()
+    words = [*WORDS, "--spec", "mine.rv"]
+    assert main(words) == 3  # the table has no place
+    kept = (here / NAME).read_bytes()
+    mine.write_text(mine.read_text().replace("1 s", "2 s"))
+    capsys.readouterr()
+    assert main(words) == 2
+    told = " ".join(capsys.readouterr().err.split())
+    assert "holds this campaign before its tests, requirements or programs changed" in told
+    assert (here / NAME).read_bytes() == kept
+
+
+@pytest.mark.parametrize("content", [b"", b"mine\n", b"2144df1c ok\n"])
+def test_a_file_that_is_no_journal_stays(here, capsys, content):
+    """It may be dear to somebody."""
+    left(here, content)
+    assert main(WORDS) == 2
+    assert "holds no campaign" in capsys.readouterr().err
+    assert (here / NAME).read_bytes() == content

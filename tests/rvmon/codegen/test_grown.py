@@ -1,0 +1,60 @@
+"""From the birth of all signals on less is asked of state formulas, and nothing else changes."""
+
+import pytest
+
+import rvmon
+from rvmon.runtime.nodes import Nodes
+
+SIGNALS = "time sampled\nsignal p : bool\nsignal q : bool\nsignal r : bool\nevent e\n"
+
+FORMULAS = (
+    "upon e and (previous p) then r",
+    "always (p -> once[0 s, 3 s] q)",
+    "always (not r and (once p) -> (p since[1 s, 4 s] q))",
+    "whenever p then within 2 s (q or (previous r))",
+    "always ((p and q) or (q and p) -> not (r and previous r))",
+)
+
+UNBORN = [(0, {"p": False}), (1, {"p": None}), (2, {"q": True}), (4, {"e": True})]
+BORN = [
+    *((5, {"r": False}), (6, {"p": True}), (7, {"q": False}), (8, {"e": True, "p": True})),
+    *((9, {"p": None}), (10, {"e": True}), (11, {"p": False, "q": True, "r": True})),
+    *((12, {"p": True, "r": False}), (13, {"q": None}), (14, {"e": True}), (15, {"p": False})),
+]
+
+
+def run(spec, engine, samples, at=None):
+    """All that a run tells; put away and taken up again before the sample at `at` seconds."""
+    monitor = spec.monitor(engine=engine)
+    told = []
+    for t, values in samples:
+        if t == at:
+            monitor = spec.restore(monitor.snapshot())
+        told += map(repr, monitor.step(float(t), values))
+    return told, monitor.finish(20.0)
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+@pytest.mark.parametrize("at", [None, 3, 6, 12])
+def test_birth_changes_nothing_else(formula, at, monkeypatch):
+    grown = []
+    grow = Nodes.grow
+
+    def seen(unit, t):
+        grow(unit, t)
+        grown.append(unit.grown)
+
+    monkeypatch.setattr(Nodes, "grow", seen)
+    spec = rvmon.loads(f"{SIGNALS}\nrequirement R\n  {formula}\n")
+    samples = UNBORN + BORN
+    assert run(spec, "python", samples, at) == run(spec, "automaton", samples)
+    assert grown[-1] == 1
+    assert formula == FORMULAS[0] or grown[0] == 0  # what speaks of `p` is born with it
+
+
+def test_what_is_never_born_is_waited_for():
+    spec = rvmon.loads(f"{SIGNALS}\nrequirement R\n  {FORMULAS[1]}\n")
+    samples = [
+        (t, {name: value for name, value in values.items() if name != "q"}) for t, values in BORN
+    ]
+    assert run(spec, "python", samples) == run(spec, "automaton", samples)
