@@ -280,7 +280,7 @@ class Monitor:
             self._names,
             self._ledger.attempts,
             dropped=self._kept.dropped,
-            untold=self._lanes.untold(),
+            incomplete=self._lanes.undetermined(),
             health=self._health.report(
                 self.options.requirements, self._lanes.main.flow.inputs, self._intake
             ),
