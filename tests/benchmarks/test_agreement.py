@@ -52,6 +52,7 @@ def check(peer: Played, ns_per_row: float) -> tuple[Agreement, list[str]]:
     return found, said
 
 
+@pytest.mark.slow
 def test_past_is_stepped() -> None:
     """A long bound of the past is compared by stepping, and ours is FALSE among the rows."""
     peer = Played()
@@ -69,6 +70,7 @@ def test_disagreement_is_seen() -> None:
     assert found.equal < found.compared
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [ROWS // 2, ROWS, 2 * ROWS + 700])
 def test_slow_stepping_gets_as_many_rows_as_fit(rows: int) -> None:
     """A peer that is slow is asked for so many rows as it steps in the time, failures first."""

@@ -13,6 +13,7 @@ def documents() -> Documents:
     return Documents([name for name in FORGERIES if name.strip()])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("writer", WRITERS, ids=lambda writer: writer.__name__)
 def test_what_is_written_reads_back_as_names(documents, writer):
     """JSON, the terminal, JUnit XML, CSV, LaTeX, HTML, strings of DOT, UPPAAL's XML, messages."""

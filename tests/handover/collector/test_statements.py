@@ -35,6 +35,7 @@ def test_every_state_has_statements():
     assert len(lines) == len(set(lines)) > 100
 
 
+@pytest.mark.campaign
 def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
     """The block of the paper's coverage hole: 100 % by one test, 0 % by another."""
     _, executed = measured

@@ -47,7 +47,7 @@ TESTS = st.builds(
 )
 
 
-@settings(max_examples=50)
+@settings(max_examples=50, deadline=None)
 @given(TESTS)
 def test_written_tests_read_back(test: AbstractTest) -> None:
     """Reading what was written gives the same test."""

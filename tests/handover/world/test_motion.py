@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from handover.world.kinematics import DOWN, grip_point, joints_for
@@ -12,6 +12,7 @@ from handover.world.motion import evaluate, min_jerk, quintic, slope
 numbers = st.floats(-2, 2)
 
 
+@settings(deadline=None)
 @given(numbers, numbers, numbers, st.floats(0.2, 3))
 def test_path_meets_its_ends(start: float, speed: float, goal: float, duration: float) -> None:
     """A path starts at place and speed, and ends at the goal at rest."""
@@ -22,12 +23,14 @@ def test_path_meets_its_ends(start: float, speed: float, goal: float, duration: 
     assert slope(path, duration) == pytest.approx(0.0, abs=1e-8)
 
 
+@settings(deadline=None)
 @given(st.floats(0, 1))
 def test_path_from_rest_is_the_min_jerk_profile(share: float) -> None:
     """From rest, both forms of the path agree."""
     assert evaluate(quintic(0.0, 0.0, 1.0, 1.0), share) == pytest.approx(min_jerk(share), abs=1e-12)
 
 
+@settings(deadline=None)
 @given(st.floats(-0.2, 0.25), st.floats(0.05, 0.4))
 def test_inverse_kinematics_inverts(x: float, z: float) -> None:
     """Joint angles for a point bring the grip there, gripper down."""

@@ -161,6 +161,7 @@ def conflicts_of(text):
     return [(c.ids, c.offsets) for c in analysis_of(head + text).examination.conflicts]
 
 
+@pytest.mark.slow
 def test_conflict_of_four():
     """Sets of more than three are found, and none with a member too many."""
     text = """
@@ -215,6 +216,7 @@ requirement R3
     assert conflicts_of(text) == [(("R1", "R2"), (0, 0))]
 
 
+@pytest.mark.slow
 def test_conflict_apart_with_what_holds_always():
     """Two that are triggered apart conflict only because of a third that holds at all times."""
     text = """

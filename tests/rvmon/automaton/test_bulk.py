@@ -49,6 +49,7 @@ def test_a_clock_that_is_started_later_is_none(body):
     assert not proved(body)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 3 ns"])
 @pytest.mark.parametrize(
     "body",

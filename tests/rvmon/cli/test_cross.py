@@ -44,6 +44,7 @@ def test_every_way_agrees(files, capsys):
         assert line.split()[1:] == ["=", "=", "="], line
 
 
+@pytest.mark.slow
 def test_json_has_every_answer(files, capsys):
     """Per requirement and way: agreement, or why it was not asked."""
     assert main(["cross", *files, "--only", "D1", "--format", "json"]) == 0
@@ -91,6 +92,7 @@ def test_the_oracle_notices_a_wrong_baseline(files, capsys, monkeypatch):
     assert "≠ oracle: D1#1" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_long_recordings_are_nothing_for_the_oracle(tmp_path, capsys):
     """It says so, and the others are compared."""
     spec, trace = tmp_path / "door.rv", tmp_path / "long.csv"

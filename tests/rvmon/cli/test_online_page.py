@@ -3,12 +3,15 @@
 import re
 from pathlib import Path
 
+import pytest
+
 from rvmon.cli import main
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "online.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.process
 def test_the_code_runs(capsys):
     """The blocks run one after the other; the timer finds the missed deadline a tick behind it."""
     names: dict[str, object] = {}

@@ -29,16 +29,18 @@ def test_what_is_damaged_or_foreign_is_made_anew(harm, tmp_path, monkeypatch):
     assert verdicts() == {"R1": "F"}
     (path,) = (tmp_path / "rvmon").glob("*.so")
     whole = path.read_bytes()
-    if harm == "cut off":
-        os.truncate(path, len(whole) // 2)
-    elif harm == "bits flipped":
-        path.write_bytes(bytes(byte ^ 0x55 for byte in whole))
-    elif harm == "of others":
-        path.chmod(0o777)
-    else:
-        path.unlink()
+    path.unlink()  # this process has loaded it: what it reads of the file must stay
+    if harm == "a folder":
         path.mkdir()
         (path / "within").touch()
+    else:
+        harmed = {
+            "cut off": whole[: len(whole) // 2],
+            "bits flipped": bytes(byte ^ 0x55 for byte in whole),
+            "of others": whole,
+        }
+        path.write_bytes(harmed[harm])
+        path.chmod(0o777 if harm == "of others" else 0o700)
     done = run([sys.executable, "-c", f"import rvmon; print({told})"])
     assert (done.returncode, done.stdout) == (0, "F\n"), done.stderr
     made = [one for one in (tmp_path / "rvmon").glob("*.so") if one.is_file()]

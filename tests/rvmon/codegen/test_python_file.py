@@ -47,6 +47,7 @@ def test_the_oracle_agrees():
     assert not tally.disagreements, tally.disagreements[0]
 
 
+@pytest.mark.slow
 def test_it_is_python_3_8_and_imports_the_standard_library_only():
     """Installations with an old interpreter can carry it."""
     text = python_file(rvmon.loads(SPEC).plan())

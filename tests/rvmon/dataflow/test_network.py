@@ -178,6 +178,7 @@ def test_what_time_alone_decides_is_known_beforehand():
     assert monitor.next_due == 7_200_070_000_001
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
 def test_deadlines_of_records_are_those_of_automata(time):
     """What is noted of a decision does not depend on who made it."""

@@ -28,6 +28,7 @@ def ticks(spans):
     return {t for low, high in spans for t in range(low, high + 1)}
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", list(TimeModel))
 @pytest.mark.parametrize("seed", range(4))
 def test_subformulas_have_the_truth_of_the_oracle(time, seed):

@@ -124,6 +124,7 @@ def doors_of(table, folder):
     return [table, arrays, pyarrow.table(arrays), pairs, *files]
 
 
+@pytest.mark.slow
 def test_a_merge_of_topics_is_told(tmp_path):
     """NaN in every other row is unknown, and how to say that it is not stands in the health."""
     for trace in doors_of(MERGED, tmp_path):

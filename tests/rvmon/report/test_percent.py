@@ -1,11 +1,12 @@
 """Percentages that are never falsely 0 or 100."""
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rvmon.report.percent import percent, percent_text
 
 
+@settings(deadline=None)
 @given(st.integers(1, 10**9), st.data())
 def test_nought_and_hundred_are_exact(whole, data):
     """0 and 100 are only shown for none and all, in numbers and in words."""
@@ -16,6 +17,7 @@ def test_nought_and_hundred_are_exact(whole, data):
     assert (percent_text(part, whole) == "100 %") == (part == whole)
 
 
+@settings(deadline=None)
 @given(st.integers(1, 10**6), st.data())
 def test_a_percentage_is_close(whole, data):
     """It is never off by more than what keeps it from 0 and 100."""

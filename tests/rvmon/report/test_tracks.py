@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rvmon
@@ -109,6 +109,7 @@ def test_the_view_holds_the_whole_attempt():
     assert view.end > 12 * SECOND
 
 
+@settings(deadline=None)
 @given(st.integers(-(10**18), 10**18), st.integers(1, 10**15), st.integers(-(10**18), 10**18))
 def test_an_axis_has_a_few_round_instants(start, length, origin):
     """About as many labels as asked for, evenly spaced, all in view."""
@@ -121,6 +122,7 @@ def test_an_axis_has_a_few_round_instants(start, length, origin):
     assert all((one - origin) % step == 0 for one in instants for step in steps)
 
 
+@settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(1, 10**6), st.integers(-50, 50)), max_size=3000))
 def test_dense_numbers_keep_their_peaks(steps):
     """However many samples there are, the drawing is bounded and shows both extremes."""

@@ -46,6 +46,7 @@ def answer(text):
             assert 0 <= span.start <= span.end <= len(span.source.text)
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.text(max_size=300))
 def test_any_text(text):
@@ -53,6 +54,7 @@ def test_any_text(text):
     answer(text)
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.lists(st.sampled_from(WORDS), max_size=60))
 def test_any_words(words):

@@ -83,6 +83,7 @@ def test_positions_have_to_be_evenly_spaced():
         disagreements(WAYS["rtamt-discrete"], Parrot([]), case, evaluate_by_engine(case))
 
 
+@pytest.mark.slow
 def test_peers_stand_in_the_table_of_their_time_model():
     """Ways that read time otherwise are left out."""
     case = case_of(eventually(q, 0, 2), timeline(p="0100", q="0001"))

@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rvmon.errors import TraceError
@@ -31,6 +31,7 @@ def test_very_many_digits_are_refused(read):
         read(10**5000)
 
 
+@settings(deadline=None)
 @given(
     st.one_of(
         st.floats(-4.6e9, 4.6e9),

@@ -86,6 +86,7 @@ def test_blocks_of_any_size_say_what_a_monitor_says(time, few, monkeypatch):
     assert {"P", "F", "I"} <= {attempt.verdict for attempt in expected.attempts}
 
 
+@pytest.mark.slow
 def test_what_arrays_cannot_judge_is_judged_beside_them():
     """Captured values make a monitor see each row; what needs two clocks only those that matter."""
     more = """
@@ -123,6 +124,7 @@ def test_whole_numbers_beyond_doubles_are_judged_one_by_one():
     assert [attempt.decided for attempt in report.attempts] == [1_000_000_000_000]
 
 
+@pytest.mark.slow
 def test_few_rows_are_judged_as_many_are():
     """The report is the same on both sides of the number from which on arrays are used."""
     spec = rvmon.loads(SPEC.format(time="held"))

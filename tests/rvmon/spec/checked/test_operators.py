@@ -77,6 +77,7 @@ def verdicts_of(formulas):
         yield [verdict.value for verdict in spec.evaluate(samples).verdicts.values()]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("op", OPERATORS, ids=lambda op: op.name)
 def test_what_an_operator_is_told_in_means_the_same(op):
     """On every run, in all ways that an engine has for it; unknowns and births aside."""
@@ -85,6 +86,7 @@ def test_what_an_operator_is_told_in_means_the_same(op):
     assert all(one == other for one, other in verdicts_of(pair))
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("op", DUALS, ids=lambda op: op.name)
 def test_duals_are_negations(op):
     """The dual of the negations is the negation."""

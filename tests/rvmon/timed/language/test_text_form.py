@@ -298,6 +298,7 @@ def test_mistakes_of_a_template_are_told_once():
     assert findings("automaton T(const int[1,10] i) { location a start b }") == [("TA002", 1, 51)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     ["not " * 5000 + "true", " + ".join(["1"] * 5000) + " > 1", "f(" * 5000 + "1" + ")" * 5000],

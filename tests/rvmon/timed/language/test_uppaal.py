@@ -40,6 +40,7 @@ def finding(text):
     return diagnostic.code, diagnostic.spans[0].span.text if diagnostic.spans else None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "constants"),
     [

@@ -39,6 +39,7 @@ def test_a_share_and_its_opposite_add_up():
     assert meets.successes + never.successes == meets.runs
 
 
+@pytest.mark.slow
 def test_delays_are_uniform_in_their_window():
     """A bound in the middle of a window is met by half of the runs."""
     text = """

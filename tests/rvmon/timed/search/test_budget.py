@@ -14,6 +14,7 @@ from rvmon.timed.search.verify import verify
 MODEL = Path(__file__).parents[4] / "examples" / "models" / "train_gate.ta"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "query",
     ["A[] not Train(0).cross or not Train(1).cross", "Train(0).approach --> Train(0).cross",
@@ -35,6 +36,7 @@ def test_a_run_found_in_time_decides():
     assert verify(network, "E<> Train(3).cross", budget=Budget(states=200)).holds is True
 
 
+@pytest.mark.slow
 def test_progress_is_told():
     """The watcher hears of more and more states."""
     heard: list[Progress] = []
