@@ -116,7 +116,7 @@ def _built(owed: Formula, mode: dict[str, Formula]) -> tuple[Automaton, tuple[Si
         requirement(owed, upon=mode.get("upon"), whenever=mode.get("whenever")), factory
     )
     whole = construct(factory.next(obligation.owed), alphabet_of(obligation.owed), Budget())
-    told = reduce(whole, Words(obligation.origins).told)
+    told = reduce(whole, Words(obligation.origins).label)
     return told, (Size.of(whole), Size.of(told), Size.of(reduce(told)))
 
 

@@ -78,7 +78,7 @@ def is_ours(path: Path) -> bool:
     return owners == {os.getuid()} and not found.st_mode & 0o022
 
 
-def files_told(folder: str) -> Iterator[tuple[str, int, int]]:
+def file_stamps(folder: str) -> Iterator[tuple[str, int, int]]:
     """What tells the files of a folder of sources from others: path, bytes and time of change."""
     folders = [folder]
     for one in folders:  # grows

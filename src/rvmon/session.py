@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
-    from rvmon.readers.reading import Reading, ReadingArguments, Telling
+    from rvmon.readers.reading import Reading, ReadingArguments, SchemaArguments
     from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
@@ -265,12 +265,12 @@ class Spec:
         *,
         sources: Iterable[str] | None = None,
         allow_missing: bool | Iterable[str] = False,
-        **told: Unpack[Telling],
+        **schema: Unpack[SchemaArguments],
     ) -> Reading:
         from rvmon.readers.reading import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
-        return Reading(self.reading(**told).schema, sources_asked(self.checked, sources), allowed)
+        return Reading(self.reading(**schema).schema, sources_asked(self.checked, sources), allowed)
 
     def evaluate_many(
         self,

@@ -93,8 +93,8 @@ def changed(report: Report, **fields: object) -> Report:
 
 def refolded(report: Report, attempts: Sequence[Attempt]) -> Report:
     """A report of other attempts on the same run."""
-    untold = [name for name, v in report.verdicts.items() if v is Verdict.INCONCLUSIVE]
-    return report_of(tuple(report.verdicts), attempts, untold=untold, end=report.end)
+    incomplete = [name for name, v in report.verdicts.items() if v is Verdict.INCONCLUSIVE]
+    return report_of(tuple(report.verdicts), attempts, incomplete=incomplete, end=report.end)
 
 
 class LateDeadline(Echo):

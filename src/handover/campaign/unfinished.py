@@ -19,7 +19,7 @@ import msgspec
 import rvmon
 from handover.campaign.outcome import Outcome
 from handover.campaign.plan import Job, Plan
-from rvmon.cache import files_told
+from rvmon.cache import file_stamps
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.session import Spec
@@ -129,7 +129,7 @@ def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
     said = [
         msgspec.to_builtins(plan.jobs()),
         {robot: to_plain(spec.checked) for robot, spec in specs.items()},
-        [list(files_told(str(folder))) for folder in _OURS],
+        [list(file_stamps(str(folder))) for folder in _OURS],
         [sys.version, *map(version, _OTHERS)],
     ]
     return hashlib.sha256(json.dumps(said).encode()).hexdigest()

@@ -133,7 +133,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             before = before or _judged_before(spec, trace, options)
             raise
         if meter is not None:
-            report = meter.told(report)
+            report = meter.measured(report)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
@@ -180,7 +180,7 @@ class _Meter:
             if self._end is None or sample.t <= self._end:
                 self._found.extend(self._monitor.step_ns(sample.t, sample.values))
 
-    def told(self, report: Report) -> Report:
+    def measured(self, report: Report) -> Report:
         """The report with a figure for each attempt."""
         self._found.extend(self._monitor.finish_ns(self._end))
         from rvmon.monitor.robustness.values import margins_from

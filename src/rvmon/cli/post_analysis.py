@@ -118,7 +118,7 @@ def _silent(spec: Spec, report: Report) -> dict[str, frozenset[str] | None]:
     names = [name for name in report.verdicts if report.is_silent(name)]
     if not names:
         return {}
-    from rvmon.explain.nearest_miss import read_as_values
+    from rvmon.explain.not_triggered import read_as_values
 
     return {name: read_as_values(spec.checked, spec.requirements[name]) for name in names}
 
@@ -162,7 +162,7 @@ def _misses(
     """What the triggers lacked that never came true; the same trigger is looked at once."""
     if not silent:
         return {}
-    from rvmon.explain.nearest_miss import nearest_miss
+    from rvmon.explain.not_triggered import why_not_triggered
     from rvmon.spec.print.printer import format_formula
 
     known: dict[str, str] = {}
@@ -171,7 +171,7 @@ def _misses(
         requirement = spec.requirements[name]
         trigger = format_formula(requirement.trigger)
         if trigger not in known or requirement.for_each is not None:
-            known[trigger] = nearest_miss(spec.checked, requirement, read(names), end, sources)
+            known[trigger] = why_not_triggered(spec.checked, requirement, read(names), end, sources)
         found[name] = known[trigger]
     return {name: miss for name, miss in found.items() if miss}
 

@@ -11,7 +11,7 @@ from rvmon.trace.gaps import READINGS_OF_NAN
 if TYPE_CHECKING:
     import argparse
 
-    from rvmon.readers.reading import Telling
+    from rvmon.readers.reading import SchemaArguments
     from rvmon.readers.recording import FileRecording
     from rvmon.session import Spec
 
@@ -123,7 +123,7 @@ def reading_words(arguments: argparse.Namespace) -> list[str]:
     return words
 
 
-def reading_arguments(arguments: argparse.Namespace) -> Telling:
+def reading_arguments(arguments: argparse.Namespace) -> SchemaArguments:
     """What the command line says, as `Spec.reading` takes it."""
     nan = None if arguments.nan is None else arguments.nan.replace("-", " ")
     return {"time": arguments.time, "columns": mapped_names(arguments.map), "nan": nan}

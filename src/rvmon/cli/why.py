@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.cli.constants import constants_of
     from rvmon.cli.post_analysis import in_order
     from rvmon.explain.dissect import dissect
-    from rvmon.explain.nearest_miss import nearest_miss
+    from rvmon.explain.not_triggered import why_not_triggered
     from rvmon.loading import load
     from rvmon.monitor.inputs.missing import expect_names
     from rvmon.trace.time import ticks_of_seconds
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     report = monitor.finish_ns(until)
     if not report.attempts and report.end is not None:
         requirement = spec.requirements[name]
-        miss = nearest_miss(spec.checked, requirement, samples, report.end, recording.names)
+        miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)
         report = replace(report, misses={name: miss})
     attempt = _chosen(report, name, exact)
     assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101

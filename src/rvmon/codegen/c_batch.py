@@ -57,7 +57,7 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class RunRecords:
     """What a compiled monitor said of a recording.
 
     Attributes:
@@ -204,7 +204,7 @@ class BatchRun:
         self._take_records()
         return rows
 
-    def close(self, until: int | None = None) -> Told:
+    def close(self, until: int | None = None) -> RunRecords:
         """End the run.
 
         Args:
@@ -216,7 +216,7 @@ class BatchRun:
         ordered = True
         for index, own in enumerate(counts):
             ordered = self._library.counts(self._batch, index, own.ctypes.data)
-        return Told(
+        return RunRecords(
             np.frombuffer(b"".join(self._records), RECORD),
             ordered,
             counts,

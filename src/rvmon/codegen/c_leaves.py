@@ -29,7 +29,6 @@ from rvmon.spec.checked.formula import (
     BoundAtom,
     Captured,
     Compare,
-    CompareOp,
     Constant,
     EventAtom,
     FieldValue,
@@ -43,14 +42,6 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 
-_COMPARISONS = {
-    CompareOp.LT: "less",
-    CompareOp.LE: "at_most",
-    CompareOp.EQ: "equals",
-    CompareOp.NE: "differs",
-    CompareOp.GE: "at_least",
-    CompareOp.GT: "more",
-}
 TRUTHS = {FALSE: "(uint8_t)IS_FALSE", UNKNOWN: "(uint8_t)IS_UNKNOWN", TRUE: "(uint8_t)IS_TRUE"}
 """Truth values in C."""
 
@@ -175,7 +166,7 @@ def _probe(names: Names, probe: Probe, name: str) -> str:
 def _comparison(names: Names, leaf: Compare) -> str:
     """A call: each side is worked out once."""
     left, right = _number(names, leaf.left), _number(names, leaf.right)
-    return f"{_COMPARISONS[leaf.op]}({left}, {right})"
+    return f"{leaf.op.c}({left}, {right})"
 
 
 def _over_occurrences(

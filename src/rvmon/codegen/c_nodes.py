@@ -135,8 +135,8 @@ def _node_function(place: int, body: list[str]) -> Iterator[str]:
         yield "}"
 
 
-UNTOLD = -1
-"""The guard of nodes that are asked only until it is told whether triggers are true or false."""
+UNDETERMINED = -1
+"""The guard of nodes that are asked only until triggers were true or false."""
 
 
 def guards_of(plan: Plan) -> dict[int, int]:
@@ -153,21 +153,21 @@ def guards_of(plan: Plan) -> dict[int, int]:
         if place not in needed:
             needed.add(place)
             stack += graph.operands[place]
-    found = {place: UNTOLD for place in range(len(graph.nodes)) if place not in needed}
+    found = {place: UNDETERMINED for place in range(len(graph.nodes)) if place not in needed}
     for place, state in enumerate(graph.nodes):
         operands = graph.operands[place]
         if state.op is StateOp.DOUBT:
             found[place] = place
         elif place in needed and operands:
-            first = found.get(operands[0], UNTOLD)
+            first = found.get(operands[0], UNDETERMINED)
             alike = all(found.get(operand) == first for operand in operands)
-            if first != UNTOLD and alike and group_of(first) == group_of(place):
+            if first != UNDETERMINED and alike and group_of(first) == group_of(place):
                 found[place] = first
     return found
 
 
 def _asked(rule: PlannedRule) -> Iterator[State]:
-    """The state formulas of a rule that matter also when it is told."""
+    """The state formulas of a rule that matter also when its trigger was true or false."""
     named = (rule.trigger, rule.again, rule.unborn)
     yield from (state for state in named if state is not None)
     yield from rule.alphabet.propositions
@@ -186,7 +186,7 @@ def _guarded(
         seen = f"m->seen[{names.memory[place]}]"
         yield f"const bool doubt{place} = ({now} == IS_UNKNOWN) || ({seen} == IS_UNKNOWN)"
         yield f"                          || (m->truth[{place}] != IS_FALSE);"
-    yield f"if ({'m->untold' if guard == UNTOLD else f'doubt{guard}'}) {{"
+    yield f"if ({'m->undetermined' if guard == UNDETERMINED else f'doubt{guard}'}) {{"
     yield from (f"    {line}" for line in lines)
     yield "}"
     if guard == place:

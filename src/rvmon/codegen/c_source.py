@@ -10,7 +10,7 @@ from itertools import accumulate
 from rvmon.codegen.c_leaves import uses_library
 from rvmon.codegen.c_names import Memory, Names, memory_of
 from rvmon.codegen.c_nodes import (
-    UNTOLD,
+    UNDETERMINED,
     group_count,
     group_of,
     groups_of,
@@ -154,9 +154,9 @@ class _Writer:
         ]
         return groups_of(lasting)
 
-    def _untold_timers(self) -> list[int]:
+    def _undetermined_timers(self) -> list[int]:
         guards = guards_of(self.plan)
-        return [n for place, n in self.names.timers.items() if guards.get(place) == UNTOLD]
+        return [n for place, n in self.names.timers.items() if guards.get(place) == UNDETERMINED]
 
     def _helpers(self) -> Iterator[str]:
         """Functions of the library of helpers that the nodes call."""
@@ -191,8 +191,8 @@ class _Writer:
         yield array("int32_t", "timed_first", [0, *ends])
         yield array("int32_t", "perishable", self._perishable())
         yield array("int32_t", "stateful", self._stateful())
-        yield array("int32_t", "untold_timers", self._untold_timers())
-        yield f"#define UNTOLD_TIMERS {len(self._untold_timers())}"
+        yield array("int32_t", "undetermined_timers", self._undetermined_timers())
+        yield f"#define UNDETERMINED_TIMERS {len(self._undetermined_timers())}"
         # Counted down for each name without a source; at 0 the leaf stays as it is.
         yield array("uint8_t", "momentary", momentary_counts(plan))
 

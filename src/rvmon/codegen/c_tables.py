@@ -99,7 +99,7 @@ def _arrays(data: TableData, index: int, width: int) -> Iterator[str]:
 
 
 def _entry(plan: Plan, owner: int, rule: PlannedRule, data: TableData, index: int) -> str:
-    formulas = (rule.trigger, rule.again, rule.unborn, rule.told)
+    formulas = (rule.trigger, rule.again, rule.unborn, rule.determined)
     places = ", ".join(str(-1 if state is None else plan.graph.index[state]) for state in formulas)
     requirement = rule.requirement
     hidden = index >= len(plan.rules)

@@ -50,8 +50,10 @@ def grown_nodes(plan: Plan) -> Grown:
     so.
     """
     graph = plan.graph
-    told = [graph.index[rule.told] for rule in plan.rules if rule.told is not None]
-    last = {place: TRUE for place in told if graph.nodes[place].op is StateOp.SINCE}
+    determined = [
+        graph.index[rule.determined] for rule in plan.rules if rule.determined is not None
+    ]
+    last = {place: TRUE for place in determined if graph.nodes[place].op is StateOp.SINCE}
     same: dict[int, int] = {}
     born: dict[str, bool] = {}
     first: dict[tuple[object, ...], int] = {}

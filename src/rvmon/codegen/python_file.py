@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import re
+import ast
 from importlib.resources import files
+from itertools import takewhile
 
 from rvmon.automaton.table import tables_of
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, outcomes
@@ -27,6 +28,9 @@ _RUNTIME = (
     "unit",
     "standalone",
 )
+
+_HEADING = (ast.Expr, ast.Import, ast.ImportFrom, ast.If)
+"""What stands at the head of a module: its docstring, imports, and those for type checkers."""
 
 _HEAD = '''"""Monitor of the specification {spec}. Generated; it needs Python 3.8 and nothing else.
 
@@ -82,9 +86,9 @@ def python_file(plan: Plan) -> str:
 def _body(name: str) -> str:
     """A module of the runtime without its docstring and imports."""
     text = files("rvmon.runtime").joinpath(f"{name}.py").read_text(encoding="utf-8")
-    text = text.split('"""', 2)[2]
-    text = re.sub(r"^if TYPE_CHECKING:\n(?:    .*\n|\n)+?(?=\S)", "", text, flags=re.MULTILINE)
-    text = re.sub(r"^(?:from|import) (?:.*\(\n(?: .*\n)*\)|.*)\n", "", text, flags=re.MULTILINE)
+    head = takewhile(lambda node: isinstance(node, _HEADING), ast.parse(text).body)
+    *_, last = head
+    text = "".join(text.splitlines(keepends=True)[last.end_lineno :])
     text = text.replace("  # noqa: B905", "")
     return "\n" + text.strip("\n") + "\n\n\n"
 

@@ -154,7 +154,7 @@ class IntakeWriter:
         yield from at_hand(lines)
         yield from lines
         yield from alone(self._updated())
-        yield from self.visit.told()
+        yield from self.visit.flush()
 
     def _updated(self) -> Iterator[str]:
         """Take the values of a whole row that `changed`."""
@@ -202,13 +202,13 @@ class IntakeWriter:
         lines: list[str] = []
         if name in self.plan.signals and self.cones.can_follow(name, self.values.instant):
             kept = self.values.replaced("x", name, "x")
-            followed = [*alone(self.cones.followed(name, kept)), *self.visit.told()]
+            followed = [*alone(self.cones.followed(name, kept)), *self.visit.flush()]
             lines = [f"elif {self.cones.apart(name, self._quiet())}:", *indented(followed)]
         general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
         general += indented(self.values.new("x", name))
         general += self._after()
         general = [*at_hand(general), *general]
-        yield from indented([*at_hand(head), *head, *lines, *alone(general), *self.visit.told()])
+        yield from indented([*at_hand(head), *head, *lines, *alone(general), *self.visit.flush()])
 
     # A sample of any names.
 
@@ -226,7 +226,7 @@ class IntakeWriter:
         yield from indented(self._checked())
         general = [*self._time(), "dirty = 0", "for _, _, take, x in found:"]
         general += ["    dirty |= take(self, t, x)", *self._after()]
-        yield from indented([*alone(general), *self.visit.told()])
+        yield from indented([*alone(general), *self.visit.flush()])
 
     def _take(self) -> Iterator[str]:
         yield "def take(self, t, values):"

@@ -15,7 +15,6 @@ from rvmon.spec.checked.formula import (
     BoundAtom,
     Captured,
     Compare,
-    CompareOp,
     Constant,
     EventAtom,
     FieldValue,
@@ -27,15 +26,6 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateValue,
 )
-
-_COMPARE = {
-    CompareOp.LT: "lt",
-    CompareOp.LE: "le",
-    CompareOp.EQ: "eq",
-    CompareOp.NE: "ne",
-    CompareOp.GE: "ge",
-    CompareOp.GT: "gt",
-}
 
 
 def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
@@ -137,7 +127,7 @@ def comparison(plan: Plan, leaf: Compare) -> str:
         return (
             f"1 if {held} is None else 2 if {held} {leaf.op.value} {_literal(right.value)} else 0"
         )
-    both = f"compared({_COMPARE[leaf.op]}, {_number(plan, left)}, {_number(plan, right)})"
+    both = f"compared({leaf.op.python}, {_number(plan, left)}, {_number(plan, right)})"
     events = events_of(left, right)
     if not events:
         return both

@@ -70,7 +70,7 @@ def roles_of(plan: Plan, grown: Grown) -> Roles:
             triggers[graph.index[rule.trigger]] |= 1 << index
         if rule.again is not None:
             triggers[graph.index[rule.again]] |= 1 << index + len(judged)
-        for named in (rule.unborn, rule.told):
+        for named in (rule.unborn, rule.determined):
             asked |= 0 if named is None else 1 << graph.index[named]
     wanted = [letters[n] or triggers[n] or asked >> n & 1 for n in range(len(graph.nodes))]
     operands = [grown.operands(plan, place) for place in range(len(graph.nodes))]

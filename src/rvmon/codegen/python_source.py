@@ -173,8 +173,8 @@ class _Writer:
             yield f"    ({judge}, letters{index}, {trigger}),  # {comment(rule.requirement.id)}"
         yield ")"
         yield f"HIDDEN_OF = {plan.hidden_of!r}"
-        told = [self._place(rule.told) for rule in plan.rules]
-        yield f"TOLD = {tuple(told)!r}"
+        determined = [self._place(rule.determined) for rule in plan.rules]
+        yield f"DETERMINED = {tuple(determined)!r}"
 
     def _trigger(self, rule: PlannedRule, hidden: bool) -> str:
         requirement = rule.requirement

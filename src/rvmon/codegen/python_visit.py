@@ -195,14 +195,14 @@ class VisitWriter:
         if self.plan.gap is None:
             yield "self.position = t"
 
-    def told(self) -> Iterator[str]:
+    def flush(self) -> Iterator[str]:
         """Return what was decided."""
         if self.plan.gap is None:
             yield "self.position = t"
         yield "if self.news:"
         yield "    self.news = False"
         yield "    try:"
-        yield "        return self.clerk.told(t)"
+        yield "        return self.clerk.flush(t)"
         yield "    except BaseException:"
         yield "        if self.after == BUSY:"
         yield "            self.after = self.torn = t"

@@ -26,7 +26,7 @@ class PlannedRule:
         again: of a `whenever`, not FALSE where an episode goes on after a failure; `None`: nothing
             is asked.
         unborn: of a level `whenever`, TRUE while something of its consequent had no value.
-        told: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
+        determined: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
         hidden: judges the attempts in doubt `upon` the trigger; `None` if there are none. Its own
             trigger is UNKNOWN where an attempt in doubt starts, if none runs; it runs until that
             is FALSE.
@@ -41,14 +41,14 @@ class PlannedRule:
     in_runs: bool = False
     again: State | None = None
     unborn: State | None = None
-    told: State | None = None
+    determined: State | None = None
     hidden: PlannedRule | None = None
     noted: tuple[State, ...] | None = None
 
     @property
     def states(self) -> Iterator[State]:
         """The state formulas that are asked for their values."""
-        named = (self.trigger, self.again, self.unborn, self.told)
+        named = (self.trigger, self.again, self.unborn, self.determined)
         yield from (state for state in named if state is not None)
         yield from self.alphabet.propositions
         if self.hidden is not None:

@@ -8,7 +8,7 @@ from itertools import product
 from typing import Any, assert_never
 
 from rvmon.dataflow.inputs import Inputs, Slot, payloads_of
-from rvmon.dataflow.numbers import COMPARE, captured_of, events_of, inputs_of, reader
+from rvmon.dataflow.numbers import captured_of, events_of, inputs_of, reader
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import (
     FALSE,
@@ -165,7 +165,7 @@ def _probe(probe: Probe, name: str, inputs: Inputs) -> Evaluate:
 
 
 def _compare(leaf: Compare, inputs: Inputs, captured: Mapping[str, Scalar]) -> Evaluate:
-    operation = COMPARE[leaf.op]
+    operation = leaf.op.holds
     left = reader(leaf.left, inputs, captured)
     right = reader(leaf.right, inputs, captured)
     events = events_of(leaf.left, leaf.right)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from itertools import product
 
 from rvmon.dataflow.inputs import Inputs, payloads_of
-from rvmon.dataflow.numbers import COMPARE, events_of, reader
+from rvmon.dataflow.numbers import events_of, reader
 from rvmon.dataflow.steps import INFINITE
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
 from rvmon.spec.checked.arithmetic import UnitRule
@@ -97,7 +97,7 @@ def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:
     if left is None or right is None:
         return OF_TRUTH[UNKNOWN]
     if isinstance(left, str) or isinstance(right, str):
-        return OF_TRUTH[TRUE if COMPARE[op](left, right) else FALSE]
+        return OF_TRUTH[TRUE if op.holds(left, right) else FALSE]
     difference = _difference(left, right, factor)
     match op:
         case CompareOp.LT | CompareOp.LE:

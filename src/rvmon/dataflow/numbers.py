@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Mapping
-from typing import Any, assert_never
+from typing import assert_never
 
 from rvmon.dataflow.inputs import Inputs
 from rvmon.formula.numeric import operands
@@ -12,7 +11,6 @@ from rvmon.runtime.past import finite, number
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
-    CompareOp,
     FieldValue,
     Literal,
     Numeric,
@@ -26,15 +24,6 @@ Payloads = Mapping[str, Payload]
 """By event, the payload that its fields are read from."""
 
 Read = Callable[[Payloads], Scalar]
-
-COMPARE: Mapping[CompareOp, Callable[[Any, Any], bool]] = {
-    CompareOp.LT: operator.lt,
-    CompareOp.LE: operator.le,
-    CompareOp.EQ: operator.eq,
-    CompareOp.NE: operator.ne,
-    CompareOp.GE: operator.ge,
-    CompareOp.GT: operator.gt,
-}
 
 
 def reader(expression: Numeric, inputs: Inputs, captured: Mapping[str, Scalar]) -> Read:

@@ -10,7 +10,6 @@ from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,
     Compare,
-    CompareOp,
     Constant,
     EventAtom,
     Formula,
@@ -26,22 +25,6 @@ from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
 from rvmon.spec.checked.tense import has_future
 from rvmon.spec.print.printer import format_duration, format_numeric
 
-_COMPARED = {
-    CompareOp.LT: "is below",
-    CompareOp.LE: "is at most",
-    CompareOp.EQ: "is",
-    CompareOp.NE: "is not",
-    CompareOp.GE: "is at least",
-    CompareOp.GT: "is above",
-}
-_OPPOSITE = {
-    CompareOp.LT: CompareOp.GE,
-    CompareOp.LE: CompareOp.GT,
-    CompareOp.EQ: CompareOp.NE,
-    CompareOp.NE: CompareOp.EQ,
-    CompareOp.GE: CompareOp.LT,
-    CompareOp.GT: CompareOp.LE,
-}
 _PROBED = {
     Probe.KNOWN: ("is known", "is not known"),
     Probe.UPDATED: ("is updated", "is not updated"),
@@ -111,7 +94,7 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
         case EventAtom(name=name):
             return f"{name} occurs" if positive else f"{name} does not occur"
         case Compare(op=op, left=left, right=right):
-            verb = _COMPARED[op if positive else _OPPOSITE[op]]
+            verb = (op if positive else op.denied).said
             return f"{format_numeric(left)} {verb} {format_numeric(right)}"
         case ProbeAtom(probe=probe, name=name):
             return f"{name} {_PROBED[probe][0 if positive else 1]}"

@@ -46,7 +46,7 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
             raise UnmonitorableError("its trigger speaks of the future")
     four = lowering.reader.four(requirement.trigger)
     trigger = four.read(FALSE)
-    told = _told(four, factory)
+    determined = _determined(four, factory)
     if requirement.mode is Mode.WHENEVER:
         parts = flattened(requirement.consequent, True, False)
         running = _running(trigger, requirement, factory)
@@ -59,7 +59,7 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
         if requirement.captures:
             doubt = factory.doubt(trigger, pulse=requirement.pulse, every=False)
         return Obligation(
-            trigger, owed, lowering.origins, running, again, unborn, told, doubt=doubt
+            trigger, owed, lowering.origins, running, again, unborn, determined, doubt=doubt
         )
     owed = lowering.core(requirement.consequent, True)
 
@@ -75,7 +75,7 @@ def lower(requirement: Requirement, factory: Factory, period: int | None = None)
         trigger,
         owed,
         lowering.origins,
-        told=told,
+        determined=determined,
         hidden=hidden(False) if _may_be_unknown(trigger) else None,
         doubted=hidden(True) if requirement.for_each is not None else None,
     )
@@ -87,7 +87,7 @@ def _running(trigger: State, requirement: Requirement, factory: Factory) -> Stat
     return factory.state_all([trigger, factory.negation(factory.leaf(Lapsed()))])
 
 
-def _told(trigger: Four, factory: Factory) -> State | None:
+def _determined(trigger: Four, factory: Factory) -> State | None:
     """TRUE as soon as a trigger was TRUE or FALSE; `None` if it is from the first position on."""
     if not _may_be_unknown(trigger.read(UNKNOWN)):
         return None

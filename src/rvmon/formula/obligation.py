@@ -37,7 +37,7 @@ class Obligation:
         again: of an episode, not FALSE where what is owed has not failed at once: there it goes on
             after a failure; `None` where it does not, as the future stands below the past.
         unborn: of an episode, where something of its consequent had no value yet.
-        told: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
+        determined: TRUE as soon as the trigger was TRUE or FALSE; `None` if it always is.
         hidden: what an attempt in doubt owes, as an episode whose trigger is UNKNOWN where one may
             start; `None` if the trigger is never unknown.
         doubted: the same where it is not known whether there is such an instance at all.
@@ -50,7 +50,7 @@ class Obligation:
     running: State | None = None
     again: State | None = None
     unborn: State | None = None
-    told: State | None = None
+    determined: State | None = None
     hidden: Obligation | None = None
     doubted: Obligation | None = None
     doubt: State | None = None

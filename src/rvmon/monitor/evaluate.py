@@ -71,7 +71,7 @@ def evaluate_trace(
     source = Source(recording, until, row_by_row=named)
     report = judge(compiled, source, Asked(None if only is None else tuple(only)))
     rows = getattr(recording, "rows", None)
-    health = rows.told(report.health) if isinstance(rows, Rows) else report.health
+    health = rows.with_findings(report.health) if isinstance(rows, Rows) else report.health
     if isinstance(recording, FileRecording | TableRecording):
         health = (*health, *recording.unit_doubts())
     return replace(report, health=tuple(health))

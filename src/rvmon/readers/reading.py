@@ -9,7 +9,7 @@ from typing import Any, TypedDict
 from rvmon.trace.schema import Schema
 
 
-class Telling(TypedDict, total=False):
+class SchemaArguments(TypedDict, total=False):
     """The arguments of `Spec.reading`; it says what they mean."""
 
     time: str | None
@@ -18,7 +18,7 @@ class Telling(TypedDict, total=False):
     no_update: Any
 
 
-class ReadingArguments(Telling, total=False):
+class ReadingArguments(SchemaArguments, total=False):
     """The arguments that `Spec.evaluate` and its kin have in common; it says what they mean."""
 
     sources: Iterable[str] | None

@@ -106,7 +106,7 @@ class FileRecording:
             yield line
 
     @property
-    def is_told_otherwise(self) -> bool:
+    def is_configured(self) -> bool:
         """Whether somebody has said how columns are called, or what cells and stamps mean."""
         schema = self._schema
         return bool(schema.columns or schema.gaps or schema.stamps is not None)

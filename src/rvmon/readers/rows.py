@@ -72,6 +72,6 @@ class Rows:
         """The signals that got two values at one stamp."""
         return self._conflicts.health()
 
-    def told(self, health: Sequence[Health]) -> tuple[Health, ...]:
+    def with_findings(self, health: Sequence[Health]) -> tuple[Health, ...]:
         """What a monitor found about these samples, with what was noted here."""
         return (*self.alternations.remarked(health), *self.conflicts())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rvmon.spec.print.printer import format_duration
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -45,8 +45,11 @@ def with_afterword(attempt: Attempt, came: int | None) -> str:
     >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)
     >>> with_afterword(failed, 3 * second + 20_000_000)
     'no `a`; it came at 3.02 s, 20 ms after the deadline'
+    >>> with_afterword(failed, 5 * second + 500_000_000)
+    'no `a`; it came at 5.5 s, 2.5 s after the deadline'
     """
     if came is None or attempt.blame is None or attempt.blame.window[1] is None:
         return attempt.reason
-    late = format_duration(came - attempt.blame.window[1])
-    return f"{attempt.reason}; it came at {format_ticks(came)}, {late} after the deadline"
+    late = came - attempt.blame.window[1]
+    span = format_duration(late) if late < TICKS_PER_SECOND else format_ticks(late)
+    return f"{attempt.reason}; it came at {format_ticks(came)}, {span} after the deadline"

@@ -46,16 +46,12 @@ def thresholds(requirement: Requirement, name: str) -> tuple[Threshold, ...]:
     return tuple(dict.fromkeys(found))
 
 
-_MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-
-
 def _thresholds(atom: Compare, name: str) -> Iterator[Threshold]:
-    op = atom.op.value
     match atom.left, atom.right:
         case SignalValue(name=read), Literal(value=value) if read == name:
-            shown = op
+            shown = atom.op.value
         case Literal(value=value), SignalValue(name=read) if read == name:
-            shown = _MIRRORED.get(op, op)
+            shown = atom.op.mirrored.value
         case _:
             return
     if isinstance(value, int | float):

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from rvmon.explain.anatomy import Strand
 from rvmon.explain.dissect import strands_of
 from rvmon.explain.late import late_arrivals
-from rvmon.explain.nearest_miss import nearest_miss
+from rvmon.explain.not_triggered import why_not_triggered
 from rvmon.explain.truth_over_trace import Eye
 from rvmon.report.choose import shown_attempts
 from rvmon.report.nearest import Candidate, nearest_passing
@@ -117,7 +117,7 @@ def _miss(content: RunPage, name: str) -> str:
     requirement, end = content.spec.requirements[name], run.report.end
     if end is None:
         return ""
-    return nearest_miss(content.spec, requirement, run.samples, end, _sources(content))
+    return why_not_triggered(content.spec, requirement, run.samples, end, _sources(content))
 
 
 def _late(content: RunPage, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:

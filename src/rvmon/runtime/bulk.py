@@ -110,7 +110,7 @@ class BulkRule(Rule):
         self.enter(triggered, plain=True)
         target, _ = machine.rows[machine.bases[location]][kind]
         if target <= PASSED:
-            self._told_in_run(number, triggered, seen, target == PASSED, t, machine.start)
+            self._decide_in_run(number, triggered, seen, target == PASSED, t, machine.start)
             return
         run = self.runs.get(target)
         if run is None:
@@ -223,9 +223,9 @@ class BulkRule(Rule):
             triggered = run.triggers[index]
             at = triggered + cut if t is None else t
             number, seen = run.numbers[index], run.seen[index]
-            self._told_in_run(number, triggered, seen, verdict, at, token)
+            self._decide_in_run(number, triggered, seen, verdict, at, token)
 
-    def _told_in_run(
+    def _decide_in_run(
         self, number: int, triggered: int, seen: Any, verdict: bool, t: int, before: Token
     ) -> None:
         if not verdict:

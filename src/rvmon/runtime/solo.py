@@ -81,7 +81,7 @@ class SoloRule(Rule):
         self.enter(triggered, plain=True)
         target = self.firsts[letter]
         if target <= PASSED:
-            self._told(number, triggered, seen, target == PASSED, t, self.machine.start)
+            self._decide(number, triggered, seen, target == PASSED, t, self.machine.start)
         else:
             self.runs[target] = (triggered, number, seen)
 
@@ -100,9 +100,9 @@ class SoloRule(Rule):
             if target <= PASSED:
                 triggered, number, seen = self.runs.pop(self.place)
                 token: Token = (self.place, ())
-                self._told(number, triggered, seen, target == PASSED, t, token)
+                self._decide(number, triggered, seen, target == PASSED, t, token)
 
-    def _told(
+    def _decide(
         self, number: int, triggered: int, seen: Any, verdict: bool, t: int, before: Token
     ) -> None:
         if not verdict:

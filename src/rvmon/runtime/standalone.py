@@ -138,7 +138,7 @@ class Monitor:
         made = Attempt(name, attempt.number, attempt.triggered, t, verdict, decision, doubt)
         self.fresh.append(made)
 
-    def told(self, t: int) -> list[Attempt]:
+    def flush(self, t: int) -> list[Attempt]:
         """The records since the last call, after a sample at `t` that the unit took."""
         found = self._flush()
         self.unit.after = t
@@ -279,7 +279,7 @@ class Monitor:
         for index, name in enumerate(self.NAMES):
             seen = {one.verdict for one in self.attempts if one.requirement == name}
             if self.unit.torn is None:
-                silent = "NT" if self.unit.is_told(index) else "I"
+                silent = "NT" if self.unit.is_determined(index) else "I"
                 found[name] = next((verdict for verdict in "FIP" if verdict in seen), silent)
             else:
                 found[name] = "F" if "F" in seen else "I"

@@ -69,7 +69,7 @@ class Unit(Nodes, Schedule):
     behind these stand those that judge attempts in doubt."""
     HIDDEN_OF: tuple[int, ...] = ()
     """For each of the latter, the requirement."""
-    TOLD: tuple[int, ...] = ()
+    DETERMINED: tuple[int, ...] = ()
     """Per requirement the node that is true once its trigger was true or false; −1: always."""
 
     step: Callable[[int, Mapping[str, Any]], Sequence[Any]]
@@ -271,9 +271,9 @@ class Unit(Nodes, Schedule):
         for rule in self.rules:
             rule.reach(reached)
 
-    def is_told(self, index: int) -> bool:
+    def is_determined(self, index: int) -> bool:
         """Whether the trigger of a requirement was ever true or false."""
-        place = self.TOLD[index]
+        place = self.DETERMINED[index]
         return self.origin is not None and (place < 0 or self.v[place] == 2)
 
 

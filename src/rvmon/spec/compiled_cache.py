@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cache import cache_folder, files_told, keep, read_kept
+from rvmon.cache import cache_folder, file_stamps, keep, read_kept
 from rvmon.spec.checked.plain_data import from_plain, to_plain
 from rvmon.spec.checked.specification import CheckedSpec
 
@@ -35,7 +35,7 @@ def compile_cached(
     folder = None if "import" in text else cache_folder()
     if folder is None:
         return _compiled(text, name, constants, directory)
-    said = json.dumps([*files_told(str(_HERE)), name, text, sorted((constants or {}).items())])
+    said = json.dumps([*file_stamps(str(_HERE)), name, text, sorted((constants or {}).items())])
     path = folder / f"spec-{hashlib.sha256(said.encode()).hexdigest()}.json"
     found = _read(path)
     if found is None:

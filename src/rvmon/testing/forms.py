@@ -149,8 +149,8 @@ class _Alone:
         """
         verdicts = self.monitor.finish_ns(t_ns)
         # That a requirement without attempts is inconclusive is for the file to say.
-        untold = [name for name, verdict in verdicts.items() if verdict == "I"]
-        report = report_of(self.names, _records(self.monitor.attempts), untold=untold)
+        incomplete = [name for name, verdict in verdicts.items() if verdict == "I"]
+        report = report_of(self.names, _records(self.monitor.attempts), incomplete=incomplete)
         if dict(report.verdicts) != verdicts:
             raise RvmonError(f"the file says {verdicts}, its attempts say {report.verdicts}")
         return report
@@ -219,5 +219,5 @@ class _Compiled:
             )
             if taken != len(rows):
                 raise TimeOrderError(f"row {taken} was not taken")
-            told = run.close(t_ns)
-        return report_of_records(tuple(self.case.spec.requirements), told, origin=0)
+            made = run.close(t_ns)
+        return report_of_records(tuple(self.case.spec.requirements), made, origin=0)

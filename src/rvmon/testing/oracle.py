@@ -105,8 +105,10 @@ def report_on(
         for followed in one.attempts
         if (record := _record(followed)) is not None
     ]
-    untold = [name for name, one in followings.items() if not one.is_told]
-    return report_of(tuple(spec.requirements), attempts, untold=untold, origin=origin, end=end)
+    undetermined = [name for name, one in followings.items() if not one.is_determined]
+    return report_of(
+        tuple(spec.requirements), attempts, incomplete=undetermined, origin=origin, end=end
+    )
 
 
 def _record(followed: Followed) -> Attempt | None:

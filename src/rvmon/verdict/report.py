@@ -131,7 +131,7 @@ class Report:
                 if entry.dropped
             },
             health=document.health,
-            untold=[name for name, entry in entries if entry.verdict is Verdict.INCONCLUSIVE],
+            incomplete=[name for name, entry in entries if entry.verdict is Verdict.INCONCLUSIVE],
             trace=document.trace,
             origin=document.origin,
             end=document.end,
@@ -147,7 +147,7 @@ def report_of(
     *,
     dropped: Mapping[str, Mapping[Verdict, int]] | None = None,
     health: Sequence[Health] = (),
-    untold: Collection[str] = (),
+    incomplete: Collection[str] = (),
     trace: str = "",
     origin: int = 0,
     end: int | None = None,
@@ -159,8 +159,8 @@ def report_of(
         attempts: of these requirements, in any order.
         dropped: by requirement, how many attempts more there were, by verdict.
         health: findings about the input.
-        untold: the ids of those of which attempts may be missing, as their trigger was never true
-            or false: they are inconclusive, unless one failed.
+        incomplete: the ids of those of which attempts may be missing, as their trigger was never
+            true or false: they are inconclusive, unless one failed.
         trace: name of the recording.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the trace, ticks.
@@ -185,7 +185,8 @@ def report_of(
         by_requirement[attempt.requirement][attempt.verdict] += 1
     return Report(
         verdicts={
-            name: fold(seen, told=name not in untold) for name, seen in by_requirement.items()
+            name: fold(seen, complete=name not in incomplete)
+            for name, seen in by_requirement.items()
         },
         attempts=ordered,
         counts={

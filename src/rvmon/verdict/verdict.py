@@ -8,7 +8,7 @@ from enum import StrEnum
 LAW = 2
 """Version of the law by which verdicts are judged; raised when the same run may get another one.
 
-It stands in reports, and in what a page or a command says of itself; the changes are told in
+It stands in reports, and in what a page or a command says of itself; the changes are complete in
 docs/reference/what-changed-in-the-law.md.
 """
 
@@ -22,12 +22,12 @@ class Verdict(StrEnum):
     INCONCLUSIVE = "I"
 
 
-def fold(verdicts: Iterable[Verdict], *, told: bool = True) -> Verdict:
+def fold(verdicts: Iterable[Verdict], *, complete: bool = True) -> Verdict:
     """The verdict of a requirement on a run, from the verdicts of its attempts.
 
     Args:
         verdicts: of its attempts.
-        told: whether all attempts that it may have are among these; if not, as when its trigger
+        complete: whether all attempts that it may have are among these; if not, as when its trigger
             was never true or false, only that one failed says something.
 
     Source: SEMANTICS, section 3.
@@ -38,6 +38,6 @@ def fold(verdicts: Iterable[Verdict], *, told: bool = True) -> Verdict:
     seen = set(verdicts)
     if Verdict.FAIL in seen:
         return Verdict.FAIL
-    if Verdict.INCONCLUSIVE in seen or not told:
+    if Verdict.INCONCLUSIVE in seen or not complete:
         return Verdict.INCONCLUSIVE
     return Verdict.PASS if Verdict.PASS in seen else Verdict.NOT_TRIGGERED

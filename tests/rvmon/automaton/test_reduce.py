@@ -23,7 +23,7 @@ def built(formula, **more):
     factory = Factory()
     obligation = lower(requirement(formula, **more), factory)
     automaton = construct(factory.next(obligation.owed), alphabet_of(obligation.owed), Budget())
-    return automaton, Words(obligation.origins).told
+    return automaton, Words(obligation.origins).label
 
 
 def rows(automaton: Automaton) -> int:

@@ -8,7 +8,7 @@ import pytest
 import rvmon
 from rvmon.cli.judging import Options, judge
 from rvmon.cli.post_analysis import in_order
-from rvmon.explain.nearest_miss import nearest_miss, read_as_values
+from rvmon.explain.not_triggered import read_as_values, why_not_triggered
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.changes import Changes
 from rvmon.readers.recording import FileRecording
@@ -81,7 +81,7 @@ def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
         names = spec.recording(trace).names
         for name in silent:
             requirement = spec.requirements[name]
-            wanted = nearest_miss(spec.checked, requirement, samples, report.end, names)
+            wanted = why_not_triggered(spec.checked, requirement, samples, report.end, names)
             assert report.misses[name] == wanted
 
 

@@ -23,7 +23,7 @@ def reports():
         Attempt("D2", 1, 0, None, Verdict.INCONCLUSIVE, reason="open"),
     ]
     names = ["D0", "D1", "D2", "D3", "D4"]
-    return [report_of(names, attempts, untold=["D4"], trace="run\x01.csv")]
+    return [report_of(names, attempts, incomplete=["D4"], trace="run\x01.csv")]
 
 
 def test_every_verdict_has_its_form():

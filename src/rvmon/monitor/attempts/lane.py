@@ -99,12 +99,12 @@ class Lane(Schedule):
         self._expected.append(compiled)
 
     @property
-    def told(self) -> Iterable[str]:
+    def determined(self) -> Iterable[str]:
         """The requirements of which it was."""
         values, index = self.flow.values, self.flow.graph.index
         for compiled in self._expected if self.flow.origin is not None else ():
-            told = compiled.obligation.told
-            if told is None or values[index[told]] == TRUE:
+            determined = compiled.obligation.determined
+            if determined is None or values[index[determined]] == TRUE:
                 yield compiled.requirement.id
 
     @property

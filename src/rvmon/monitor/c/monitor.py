@@ -136,19 +136,19 @@ class CompiledMonitor(Monitor):
     def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
         import numpy as np
 
-        from rvmon.codegen.c_batch import RECORD, Told
+        from rvmon.codegen.c_batch import RECORD, RunRecords
         from rvmon.monitor.c.recorded import report_of_records
 
         end = self._core.close(t_ns)
         decided = self._core.flush()
         self._note_times()
-        told = Told(
+        made = RunRecords(
             np.frombuffer(self._core.records(), RECORD),
             ordered=False,
             counts=np.array(self._core.counts(), np.int64).reshape(-1, 4),
             end=None if end == NOT_YET else end,
         )
-        return report_of_records(self._ids, told, origin=self._health.began or 0), decided
+        return report_of_records(self._ids, made, origin=self._health.began or 0), decided
 
     def snapshot(self) -> bytes:
         """Refused: what C holds cannot be checked when it comes back.

@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cache import cache_folder, files_told, is_whole, keep, read_kept
+from rvmon.cache import cache_folder, file_stamps, is_whole, keep, read_kept
 from rvmon.monitor.inputs.missing import names_read
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.recording import FileRecording
@@ -53,7 +53,7 @@ def judged_by_program(compiled: CompiledSpec, source: Source, only: Sequence[str
     if folder is None:
         raise NotPlainError("there is no cache to keep a program in")
     package = Path(__file__).parents[2]
-    said = [*files_told(str(package)), to_plain(compiled.checked), only]
+    said = [*file_stamps(str(package)), to_plain(compiled.checked), only]
     key = hashlib.sha256(json.dumps([said, os.environ.get("CC", "")]).encode()).hexdigest()
     record = folder / f"run-{key}.json"
     program = folder / (read_kept(record) or b"none").decode()
@@ -70,7 +70,7 @@ def judged_by_program(compiled: CompiledSpec, source: Source, only: Sequence[str
 def _plain_path(checked: CheckedSpec, source: Source, only: Sequence[str] | None) -> str:
     """The path of a recording that says all that is read, as the program reads it."""
     recording = source.recording
-    if not isinstance(recording, FileRecording) or recording.is_told_otherwise:
+    if not isinstance(recording, FileRecording) or recording.is_configured:
         raise NotPlainError("it is told otherwise than the program reads")
     if source.row_by_row or source.until is not None or not hasattr(os, "posix_spawn"):
         raise NotPlainError("it is read by this process")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rvmon.codegen.c_batch import Told
+from rvmon.codegen.c_batch import RunRecords
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.attempt_json import Pattern, numbers_texts
@@ -94,29 +94,32 @@ class RecordedAttempts(LazyAttempts):
         )
 
 
-def report_of_records(ids: Sequence[str], told: Told, *, origin: int) -> Report:
+def report_of_records(ids: Sequence[str], made: RunRecords, *, origin: int) -> Report:
     """Sort and fold records, as `rvmon.verdict.report.report_of` does attempts.
 
     Args:
         ids: of all requirements that were judged, by number.
-        told: by a compiled monitor.
+        made: by a compiled monitor.
         origin: the instant from which people count seconds, ticks.
 
     Source: SEMANTICS, section 3.
     """
     counts = {
         name: {verdict: int(own[VERDICTS.index(verdict)]) for verdict in _COUNTED}
-        for name, own in zip(ids, told.counts, strict=True)
+        for name, own in zip(ids, made.counts, strict=True)
     }
     return Report(
         verdicts={
-            name: fold([verdict for verdict, count in own.items() if count], told=bool(heard))
-            for (name, own), heard in zip(counts.items(), told.counts[:, 3], strict=True)
+            name: fold(
+                [verdict for verdict, count in own.items() if count],
+                complete=bool(was_determined),
+            )
+            for (name, own), was_determined in zip(counts.items(), made.counts[:, 3], strict=True)
         },
-        attempts=RecordedAttempts(ids, told.records if told.ordered else _ordered(told.records)),
+        attempts=RecordedAttempts(ids, made.records if made.ordered else _ordered(made.records)),
         counts=counts,
         origin=origin,
-        end=told.end,
+        end=made.end,
     )
 
 

@@ -143,12 +143,12 @@ class ColumnJudge:
         health = self._health.report(self._chosen, self._inputs, None)
         ids = [one.requirement.id for one in self._chosen]
         attempts, found = _assembled(ids, self._rules, kept)
-        told = {rule.id: rule.is_told for rule in self._rules}
+        determined = {rule.id: rule.is_determined for rule in self._rules}
         verdicts = {} if others is None else dict(others.verdicts)
         return Report(
             verdicts={
                 name: verdicts.get(name)
-                or fold((one for one, count in counts.items() if count), told=told[name])
+                or fold((one for one, count in counts.items() if count), complete=determined[name])
                 for name, counts in found.items()
             },
             attempts=attempts,

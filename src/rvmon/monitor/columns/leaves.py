@@ -14,7 +14,6 @@ from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
     Compare,
-    CompareOp,
     FieldValue,
     Literal,
     Numeric,
@@ -82,16 +81,6 @@ def combined(truths: Sequence[Truth], combine: Callable[[list[Any]], Any]) -> Tr
     return Truth(must, combine([truth.may for truth in truths]))
 
 
-_COMPARE = {
-    CompareOp.LT: np.less,
-    CompareOp.LE: np.less_equal,
-    CompareOp.EQ: np.equal,
-    CompareOp.NE: np.not_equal,
-    CompareOp.GE: np.greater_equal,
-    CompareOp.GT: np.greater,
-}
-
-
 def compared(leaf: Compare, columns: Columns, rows: int) -> Truth:
     """The truth of a comparison of numbers per row.
 
@@ -105,7 +94,7 @@ def compared(leaf: Compare, columns: Columns, rows: int) -> Truth:
     """
     with np.errstate(all="ignore"):
         left, right = _number(leaf.left, columns), _number(leaf.right, columns)
-        must = np.broadcast_to(_COMPARE[leaf.op](left, right), rows)
+        must = np.broadcast_to(leaf.op.holds(left, right), rows)
         unknown = reduce(np.logical_or, [_unknown(left), _unknown(right)])
     if unknown is False or not np.any(unknown):
         return known_truth(must)

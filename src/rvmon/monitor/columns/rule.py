@@ -52,7 +52,7 @@ class ColumnRule:
 
     Attributes:
         id: of the requirement.
-        is_told: whether its trigger was ever true or false.
+        is_determined: whether its trigger was ever true or false.
     """
 
     def __init__(
@@ -63,19 +63,19 @@ class ColumnRule:
         self._plan = plan
         self._ledger = ledger
         self._is_hidden = hidden
-        self._witness = DeferredReasons(compiled, plan, ledger)
+        self._deferred = DeferredReasons(compiled, plan, ledger)
         obligation, requirement = compiled.obligation, compiled.requirement
         self._trigger = self._node(obligation.trigger)
         self._again = self._node(obligation.again)
         self._unborn = self._node(obligation.unborn)
-        self._told = self._node(obligation.told)
-        self.is_told = self._told < 0
+        self._determined = self._node(obligation.determined)
+        self.is_determined = self._determined < 0
         self._episodes = Episodes() if requirement.mode is Mode.WHENEVER else None
         self._starts = Starts(requirement.pulse, hidden or self._episodes is not None)
         self._count, self._doubts = 0, 0
         self._open = _none()
         self._void: list[Attempts] = []
-        self._tracks = [Track() for _ in self._witness.places]
+        self._tracks = [Track() for _ in self._deferred.places]
         self._letters = (0, 0)
         """Of the last place, if there are open attempts."""
         self._decided: list[Decisions] = []
@@ -94,7 +94,7 @@ class ColumnRule:
     @property
     def nodes(self) -> frozenset[int]:
         """The nodes of which it needs stretches."""
-        asked = (self._trigger, self._again, self._unborn, self._told, *self._witness.places)
+        asked = (self._trigger, self._again, self._unborn, self._determined, *self._deferred.places)
         return frozenset(place for place in asked if place >= 0)
 
     def take(self, piece: Piece, limit: int) -> None:
@@ -108,16 +108,16 @@ class ColumnRule:
             NotByColumnsError: there are attempts in doubt that have to be judged one by one.
         """
         axis = piece.axis
-        self.is_told = self.is_told or len(piece.truths[self._told].must) > 0
+        self.is_determined = self.is_determined or len(piece.truths[self._determined].must) > 0
         begun = self._starts.take(piece.truths[self._trigger], axis)
-        truths = [piece.truths[place] for place in self._witness.places]
+        truths = [piece.truths[place] for place in self._deferred.places]
         for track, truth in zip(self._tracks, truths, strict=True):
             track.take(truth, axis)
         waits = self._episodes is not None and self._episodes.failed_at is not None
         if not len(begun) and not len(self._open) and not waits:
             return
         starts, letters = letters_along(self._compiled.alphabet, truths, axis)
-        judging = Judging(self._moves, self._witness.leaves, piece, (starts, letters), limit)
+        judging = Judging(self._moves, self._deferred.leaves, piece, (starts, letters), limit)
         attempts, outcome = self._judged(piece, begun, judging)
         self._number(piece, attempts)
         self._note(piece, attempts, outcome, starts, letters)
@@ -129,7 +129,7 @@ class ColumnRule:
         axis, truths = piece.axis, piece.truths
 
         def make(places: Numbers, stop: Numbers) -> Attempts:
-            seen = piece.seen(self._witness.leaves, places)
+            seen = piece.seen(self._deferred.leaves, places)
             return starting_attempts(self._moves.initial, places, stop, axis.instants(places), seen)
 
         if self._episodes is None:
@@ -213,7 +213,7 @@ class ColumnRule:
             outcome.anchor,
             letter,
             attempts.seen,
-            piece.seen(self._witness.leaves, places),
+            piece.seen(self._deferred.leaves, places),
             history,
         )
 
@@ -228,9 +228,9 @@ class ColumnRule:
         """
         if not len(self._open) and not self._void:
             return
-        values = {leaf: timeline.value_here(leaf) for leaf in self._witness.leaves}
+        values = {leaf: timeline.value_here(leaf) for leaf in self._deferred.leaves}
         since, until = {}, {}
-        for place, track in zip(self._witness.places, self._tracks, strict=True):
+        for place, track in zip(self._deferred.places, self._tracks, strict=True):
             values[place], since[place], *ends = track.now
             for truth, instant in zip((FALSE, TRUE), ends, strict=True):
                 until[3 * place + truth] = None if instant == UNSEEN else instant
@@ -239,7 +239,7 @@ class ColumnRule:
             values[self._unborn] = TRUE if self._episodes.is_unborn else FALSE
         flow = Stood(self._plan, values, since, until, outages_at(end), last)
         opened = self._opened(self._open, outages_at)
-        judge = self._witness.judge(flow, self._letters, last, opened)
+        judge = self._deferred.judge(flow, self._letters, last, opened)
         if opened and self._episodes is not None and self._open.stop[-1] == FAR:
             opened[-1].clouded = self._episodes.is_clouded
             opened[-1].void |= self._unborn >= 0 and self._episodes.is_unborn
@@ -253,7 +253,7 @@ class ColumnRule:
         return [self._opened_one(attempts, index, outages_at) for index in range(len(attempts))]
 
     def _opened_one(self, attempts: Attempts, index: int, outages_at: OutagesAt) -> Open:
-        seen = self._witness.unpacked(attempts.seen.item(index))
+        seen = self._deferred.unpacked(attempts.seen.item(index))
         made = Open(attempts.triggered.item(index), self._token(attempts.worse, index), seen)
         made.number = attempts.number.item(index)
         made.doubtful_number = attempts.doubtful.item(index)
@@ -265,14 +265,14 @@ class ColumnRule:
         if self._is_hidden:
             made.doubt = self._doubt(made.triggered, seen, outages_at)
         elif made.better is not None:
-            noticed = self._witness.unpacked(attempts.doubt_seen.item(index))
+            noticed = self._deferred.unpacked(attempts.doubt_seen.item(index))
             made.doubt = self._doubt(attempts.doubted.item(index), noticed, outages_at)
         return made
 
     def _doubt(self, instant: int, seen: tuple[int, ...], outages_at: OutagesAt) -> Doubt:
-        values = dict(zip(self._witness.leaves, seen, strict=True))
+        values = dict(zip(self._deferred.leaves, seen, strict=True))
         flow = Stood(self._plan, values, {}, {}, outages_at(instant), instant)
-        return self._witness.judge(flow, (0, 0), instant, []).doubt
+        return self._deferred.judge(flow, (0, 0), instant, []).doubt
 
     def _token(self, tokens: Tokens, index: int) -> Token:
         location = tokens.location.item(index)
@@ -283,7 +283,7 @@ class ColumnRule:
         none = np.empty(0, np.int64)
         empty = Decisions(none, none, none, none > 0, none, none, none, none, none, none)
         made = Decisions.joined(self._decided or [empty])
-        return DecidedAttempts(self._witness, self._moves.clocked, made)
+        return DecidedAttempts(self._deferred, self._moves.clocked, made)
 
 
 def _none() -> Attempts:

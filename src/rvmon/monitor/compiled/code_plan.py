@@ -42,7 +42,7 @@ def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) ->
         one.in_runs(automaton),
         again=obligation.again,
         unborn=obligation.unborn,
-        told=obligation.told,
+        determined=obligation.determined,
         hidden=None if one.hidden is None else _rule(one.hidden, explained, hidden=True),
         noted=tuple(leaf for leaf, _ in one.leaves) if explained else None,
     )

@@ -110,7 +110,7 @@ class CompiledRequirement:
             return DoesNotCloseError("something of the future below an operator of the past")
         try:
             budget = _BESIDE if self.is_beside else Budget()
-            return reduce(construct(self._owed, self.alphabet, budget), self.words.told)
+            return reduce(construct(self._owed, self.alphabet, budget), self.words.label)
         except DoesNotCloseError as error:
             return error.with_traceback(None)  # which would keep the frames of whoever asked
 
@@ -238,7 +238,7 @@ class CompiledRequirement:
     @property
     def _shared(self) -> Iterator[State]:
         obligation = self.obligation
-        states = (obligation.trigger, obligation.told, obligation.doubt)
+        states = (obligation.trigger, obligation.determined, obligation.doubt)
         yield from (one for one in states if one is not None)
         if not self.requirement.captures:
             yield from self._own

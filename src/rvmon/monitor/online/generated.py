@@ -28,7 +28,7 @@ from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 
 Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
-Told = Callable[[int], Sequence[Attempt]]
+Flush = Callable[[int], Sequence[Attempt]]
 
 _HELD = BUSY + 1
 """As `BUSY`, while the monitor is called itself; behind a call that was interrupted as it ended."""
@@ -94,7 +94,7 @@ class GeneratedLanes(Lanes):
         other: Step,
     ) -> None:
         self.other = other
-        self.told: Told = self._told
+        self.flush: Flush = self._flush
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
         self.alone = not forms.others
@@ -128,7 +128,7 @@ class GeneratedLanes(Lanes):
         """Hear that a signal is not known from `t` on."""
         note_lost(self.outages, self.spec, self.unit.SIGNALS[signal], HealthKind(why), t)
 
-    def _told(self, t: int) -> Sequence[Attempt]:
+    def _flush(self, t: int) -> Sequence[Attempt]:
         """What a sample at `t` has decided; it is over."""
         decided = self.ledger.flush()
         self.unit.after = t
@@ -200,14 +200,14 @@ class GeneratedLanes(Lanes):
         if self.alone:
             self._show_inputs()
 
-    def untold(self) -> list[str]:
+    def undetermined(self) -> list[str]:
         """See `Lanes`."""
         own = [
             seat.compiled.requirement.id
             for index, seat in enumerate(self._seats)
-            if not self.unit.is_told(index)
+            if not self.unit.is_determined(index)
         ]
-        return [*own, *super().untold()]
+        return [*own, *super().undetermined()]
 
     def _show_inputs(self) -> None:
         """Note what the unit saw of the inputs where their health is reported from."""
@@ -272,7 +272,7 @@ class GeneratedMonitor(Monitor):
 
     def _attend(self) -> None:
         attends = self._listeners or self.options.keep is not None
-        self._unit_lanes.told = self._hear if attends else self._unit_lanes._told
+        self._unit_lanes.flush = self._hear if attends else self._unit_lanes._flush
 
     def _begin(self) -> None:
         super()._begin()

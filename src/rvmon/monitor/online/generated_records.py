@@ -123,7 +123,7 @@ class GeneratedRecords(DeferredReasons):
         self._ledger = ledger
         self._unit = unit
         self._standing = standing
-        self._tell = ledger.told.append
+        self._tell = ledger.recorded.append
         self._counts = counts
         self._seen_of = _picking(self.leaves)
         self._noted = noted

@@ -295,12 +295,12 @@ class Lanes:
         place = None if _is_doubted(instance) and obligation.doubt is not None else index[doubt]
         return CapturedAttempt(parent, compiled, captured, index[main.trigger], place)
 
-    def untold(self) -> list[str]:
+    def undetermined(self) -> list[str]:
         """The requirements whose trigger was never true or false."""
-        told: set[str] = set()
+        determined: set[str] = set()
         for lane in self.all:
-            told.update(lane.told)
-        return [name for name in self._by_id if name not in told]
+            determined.update(lane.determined)
+        return [name for name in self._by_id if name not in determined]
 
     def _captured_lane(
         self,

@@ -280,7 +280,7 @@ class Monitor:
             self._names,
             self._ledger.attempts,
             dropped=self._kept.dropped,
-            untold=self._lanes.untold(),
+            incomplete=self._lanes.undetermined(),
             health=self._health.report(
                 self.options.requirements, self._lanes.main.flow.inputs, self._intake
             ),
@@ -331,10 +331,8 @@ class Monitor:
         known = [self._last]
         if t is not None:
             known.append(t)
-        if (
-            self._reached is not None
-            and self.options.compiled.checked.time is not TimeModel.SAMPLED
-        ):
+        is_sampled = self.options.compiled.checked.time is TimeModel.SAMPLED
+        if self._reached is not None and not is_sampled:
             known.append(self._reached - 1)
         return max(known)
 

@@ -20,7 +20,7 @@ BEFORE_ALL = -LIMIT
 
 def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
     """Verdicts of which those that are not `F` are `I`."""
-    return {name: fold([verdict], told=False) for name, verdict in verdicts.items()}
+    return {name: fold([verdict], complete=False) for name, verdict in verdicts.items()}
 
 
 def capped(report: Report, torn: int) -> Report:

@@ -227,7 +227,7 @@ class Words:
             clauses.append(all_of(parts))
         return ", or ".join(dict.fromkeys(clauses))
 
-    def told(self, residual: Residual) -> tuple[str, int | None]:
+    def label(self, residual: Residual) -> tuple[str, int | None]:
         """All that people are told of a residual, for clocks that were started at any time."""
         clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]

@@ -95,7 +95,7 @@ Sentence = tuple[Part, ...]
 """Its parts in order."""
 
 
-def told(sentence: Sentence, decided: int, start: int, triggered: int, flow: Standing) -> str:
+def rendered(sentence: Sentence, decided: int, start: int, triggered: int, flow: Standing) -> str:
     """A sentence about one decision.
 
     Args:

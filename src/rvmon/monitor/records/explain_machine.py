@@ -11,7 +11,7 @@ from rvmon.formula.progress import after
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.reasons.obligation_words import settled_alone
-from rvmon.monitor.reasons.sentence import told
+from rvmon.monitor.reasons.sentence import rendered
 from rvmon.monitor.records.explanation import Explanation, earlier, longer, still_owed, unborn
 from rvmon.monitor.records.reasons import Reasons
 from rvmon.runtime.table import run
@@ -52,7 +52,7 @@ def explained(
     cause = finding.cause
     start = finding.start(before[1], t, triggered)
     return Explanation(
-        told(finding.sentence, t, start, triggered, flow),
+        rendered(finding.sentence, t, start, triggered, flow),
         deadline=None if cause is None else reasons.deadline(before),
         blame=None if verdict or cause is None else reasons.words.blame(cause, t, start, flow),
     )

@@ -10,7 +10,7 @@ from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge
 from rvmon.monitor.reasons.cause_network import NetworkCauseFinder
 from rvmon.monitor.reasons.owed_network import owed_at
-from rvmon.monitor.reasons.sentence import told
+from rvmon.monitor.reasons.sentence import rendered
 from rvmon.monitor.records.explanation import Explanation, earlier, longer, still_owed, unborn
 from rvmon.verdict.attempt import Blame
 
@@ -34,7 +34,7 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
         # What had long been settled when the attempt began was no deadline of it.
         if alone is not None and alone[0] >= attempt.token[1][0] - 1:
             deadline = alone[0]
-    sentence = told(words.sentence(cause, verdict), t, start, attempt.triggered, judge.flow)
+    sentence = rendered(words.sentence(cause, verdict), t, start, attempt.triggered, judge.flow)
     return Explanation(sentence, deadline=deadline, blame=blame)
 
 

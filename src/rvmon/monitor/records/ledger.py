@@ -30,7 +30,7 @@ class Ledger:
         attempts: all records given out.
         void: attempts that have met what they owe, but say nothing: the place of the requirement,
             the attempt, its record without a number.
-        told: decisions whose records are made: the instant, the place of the requirement in the
+        recorded: decisions whose records are made: the instant, the place of the requirement in the
             file, the number of the attempt, the record.
     """
 
@@ -44,7 +44,7 @@ class Ledger:
         self._doubts: dict[str, int] = {}
         self.void: list[tuple[int, Open, Attempt]] = []
         self._decided: list[tuple[AttemptJudge, Open, Attempt]] = []
-        self.told: list[tuple[int, int, int, Attempt]] = []
+        self.recorded: list[tuple[int, int, int, Attempt]] = []
 
     def sure(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """Take an attempt whose trigger was true, at `t` first, to be numbered by that.
@@ -158,17 +158,17 @@ class Ledger:
         if self._started or self._doubtful:
             self._number_new()
         if not self._decided:
-            if not self.told:
+            if not self.recorded:
                 return ()
-            if len(self.told) == 1:
-                ((_, _, _, record),) = self.told
+            if len(self.recorded) == 1:
+                ((_, _, _, record),) = self.recorded
                 records = [record]
             else:
                 # No two are of one instant, requirement and number: no records are compared.
-                self.told.sort()
-                records = [entry[3] for entry in self.told]
+                self.recorded.sort()
+                records = [entry[3] for entry in self.recorded]
         else:
-            made = [(rank, record) for _, rank, _, record in self.told]
+            made = [(rank, record) for _, rank, _, record in self.recorded]
             made += [
                 (judge.compiled.rank, replace(record, number=_number(attempt)))
                 for judge, attempt, record in self._decided
@@ -176,7 +176,7 @@ class Ledger:
             self._decided.clear()
             made.sort(key=lambda entry: _order(*entry))
             records = [record for _, record in made]
-        self.told.clear()
+        self.recorded.clear()
         self.attempts += records
         return records
 

@@ -24,14 +24,6 @@ from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax.expressions import Comparison, Expression, Name
 
-_MIRRORED = {
-    CompareOp.LT: CompareOp.GT,
-    CompareOp.LE: CompareOp.GE,
-    CompareOp.GT: CompareOp.LT,
-    CompareOp.GE: CompareOp.LE,
-    CompareOp.EQ: CompareOp.EQ,
-    CompareOp.NE: CompareOp.NE,
-}
 _EQUALITY = (CompareOp.EQ, CompareOp.NE)
 
 
@@ -48,7 +40,7 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
         return _age(left, node.op, limit, node.span)
     if isinstance(right, Age):
         limit = _comparable(left, node.left.span)
-        return _age(right, _MIRRORED[node.op], limit, node.span)
+        return _age(right, node.op.mirrored, limit, node.span)
     first = _comparable(left, node.left.span)
     second = _comparable(right, node.right.span)
     return _quantities(node.op, first, second, node.span)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 from rvmon.diagnostics.span import Span
@@ -18,14 +17,6 @@ from rvmon.spec.syntax.units import base_unit, product, quotient, root
 Placed = tuple[Quantity, Span]
 """A quantity with the place of its expression."""
 
-_COMPARE: dict[CompareOp, Callable[[Fraction, Fraction], bool]] = {
-    CompareOp.LT: operator.lt,
-    CompareOp.LE: operator.le,
-    CompareOp.EQ: operator.eq,
-    CompareOp.NE: operator.ne,
-    CompareOp.GE: operator.ge,
-    CompareOp.GT: operator.gt,
-}
 _DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
 
 
@@ -39,7 +30,7 @@ def compare(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compare |
     unit = _common_unit(sides, "compared with", span)
     if left[0].constant is not None and right[0].constant is not None:
         exact = [_exact(value, unit) for value, _ in sides]
-        return Constant(_COMPARE[op](*exact), span)
+        return Constant(op.holds(*exact), span)
     first, second = _nodes(sides, unit)
     return Compare(op, first, second, span)
 

@@ -7,8 +7,11 @@ meaning is SEMANTICS 2.
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Any
 
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked.arithmetic import NumericOp
@@ -82,14 +85,59 @@ Numeric = Literal | SignalValue | FieldValue | Captured | UpdateValue | Arithmet
 
 
 class CompareOp(StrEnum):
-    """Comparisons of numbers; labels know only `==` and `!=`."""
+    """Comparisons of numbers; labels know only `==` and `!=`.
 
-    LT = "<"
-    LE = "<="
-    EQ = "=="
-    NE = "!="
-    GE = ">="
-    GT = ">"
+    Attributes:
+        python: the name of the function in `operator`.
+        c: the name of the function in generated C.
+        said: it as an English verb.
+
+    >>> CompareOp.LE.holds(2, 3), CompareOp.LE.mirrored, CompareOp.LE.denied
+    (True, <CompareOp.GE: '>='>, <CompareOp.GT: '>'>)
+    """
+
+    LT = "<", "lt", "less", "is below"
+    LE = "<=", "le", "at_most", "is at most"
+    EQ = "==", "eq", "equals", "is"
+    NE = "!=", "ne", "differs", "is not"
+    GE = ">=", "ge", "at_least", "is at least"
+    GT = ">", "gt", "more", "is above"
+
+    python: str
+    c: str
+    said: str
+
+    def __new__(cls, sign: str, python: str = "", c: str = "", said: str = "") -> CompareOp:
+        """A member: its sign, with how others write it."""
+        made = str.__new__(cls, sign)
+        made._value_ = sign
+        made.python, made.c, made.said = python, c, said
+        return made
+
+    @property
+    def holds(self) -> Callable[[Any, Any], Any]:
+        """Compares two numbers, or arrays of them."""
+        found: Callable[[Any, Any], Any] = getattr(operator, self.python)
+        return found
+
+    @property
+    def mirrored(self) -> CompareOp:
+        """What is true of `b` and `a` where this is of `a` and `b`."""
+        return CompareOp(self.translate(_MIRROR))
+
+    @property
+    def denied(self) -> CompareOp:
+        """What is true where this is not."""
+        return _DENIED.get(self) or next(op for op, other in _DENIED.items() if other is self)
+
+
+_MIRROR = str.maketrans("<>", "><")
+
+_DENIED = {
+    CompareOp.LT: CompareOp.GE,
+    CompareOp.LE: CompareOp.GT,
+    CompareOp.EQ: CompareOp.NE,
+}
 
 
 @dataclass(frozen=True, slots=True)

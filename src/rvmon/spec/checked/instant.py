@@ -29,12 +29,6 @@ Facts = Mapping[Hashable, bool]
 FIRST: Facts = {Bound.START: True}
 """Of the first instant of a run."""
 
-_OPPOSITE = {
-    CompareOp.GE: CompareOp.LT,
-    CompareOp.GT: CompareOp.LE,
-    CompareOp.NE: CompareOp.EQ,
-}
-
 
 def facts_of(formula: Formula, truth: bool = True) -> dict[Hashable, bool]:
     """What has to be so where a formula of the present and past is true, or false.
@@ -155,8 +149,9 @@ def _compared(formula: Compare) -> tuple[Hashable, bool]:
 
     One that reads a field of an event has no opposite: both are false where that does not occur.
     """
-    opposite = None if _events(formula) else _OPPOSITE.get(formula.op)
-    return (opposite or formula.op, formula.left, formula.right), opposite is None
+    positive = formula.op in (CompareOp.LT, CompareOp.LE, CompareOp.EQ) or bool(_events(formula))
+    op = formula.op if positive else formula.op.denied
+    return (op, formula.left, formula.right), positive
 
 
 def _events(formula: Compare) -> list[str]:

@@ -101,7 +101,7 @@ class View:
         return [Truth.FALSE if one is Truth.UNBORN else one for one in self._trigger]
 
     @property
-    def is_told(self) -> bool:
+    def is_determined(self) -> bool:
         """Whether the trigger was ever TRUE or FALSE."""
         if is_upon_end(self.requirement):
             return bool(self.word.letters)

@@ -48,11 +48,11 @@ class Followings:
 
     Attributes:
         attempts: in the order of their starts.
-        is_told: whether its trigger was ever TRUE or FALSE.
+        is_determined: whether its trigger was ever TRUE or FALSE.
     """
 
     attempts: Sequence[Followed]
-    is_told: bool
+    is_determined: bool
 
 
 def follow(requirement: Requirement, word: Word) -> Followings:
@@ -75,7 +75,7 @@ def follow(requirement: Requirement, word: Word) -> Followings:
     doubtful = (one for one in found if one.start.sure != one.start.position)
     for number, one in enumerate(doubtful, start=1):
         one.doubtful_number = number
-    return Followings(found, any(view.is_told for view in seen))
+    return Followings(found, any(view.is_determined for view in seen))
 
 
 def _followed(view: View) -> list[Followed]:

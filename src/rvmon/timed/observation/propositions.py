@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Mapping
 from typing import assert_never
 
@@ -11,7 +10,6 @@ from rvmon.formula.state import FALSE, TRUE, Lapsed, Lost, StateOp, Unborn
 from rvmon.formula.state import State as Proposition
 from rvmon.spec.checked.formula import (
     Compare,
-    CompareOp,
     Constant,
     EventAtom,
     Literal,
@@ -21,15 +19,6 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.timed.model.evaluate import Evaluator
 from rvmon.timed.zones.discrete import State
-
-_COMPARE = {
-    CompareOp.LT: operator.lt,
-    CompareOp.LE: operator.le,
-    CompareOp.EQ: operator.eq,
-    CompareOp.NE: operator.ne,
-    CompareOp.GE: operator.ge,
-    CompareOp.GT: operator.gt,
-}
 
 
 class NotExpressibleError(Exception):
@@ -114,7 +103,7 @@ class Labelling:
             case EventAtom(name=name):
                 return name in labels
             case Compare(op=op, left=left, right=right):
-                return bool(_COMPARE[op](self._number(left, state), self._number(right, state)))
+                return bool(op.holds(self._number(left, state), self._number(right, state)))
             case _:
                 raise AssertionError("refused before")
 

@@ -47,7 +47,7 @@ class _Miss:
         return tuple(part for part in self.parts if part not in self.there)
 
 
-def nearest_miss(
+def why_not_triggered(
     spec: CheckedSpec,
     requirement: Requirement,
     samples: Sequence[Sample],

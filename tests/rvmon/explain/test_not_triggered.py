@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import loads
-from rvmon.explain.nearest_miss import nearest_miss
+from rvmon.explain.not_triggered import why_not_triggered
 from rvmon.trace.sample import Sample
 
 SPEC = """
@@ -69,12 +69,12 @@ def test_what_the_trigger_lacked(name):
     trigger, rows, expected = CASES[name]
     spec = loads(SPEC.format(trigger)).checked
     samples = [Sample(t, values) for t, values in rows]
-    assert nearest_miss(spec, spec.requirements["R1"], samples, samples[-1].t) == expected
+    assert why_not_triggered(spec, spec.requirements["R1"], samples, samples[-1].t) == expected
 
 
 def test_a_name_without_a_source_is_never_known():
     """What has no column is unknown throughout, never false."""
     spec = loads(SPEC.format("a and b")).checked
     samples = [Sample(0, {"a": True})]
-    found = nearest_miss(spec, spec.requirements["R1"], samples, 9, frozenset({"a"}))
+    found = why_not_triggered(spec, spec.requirements["R1"], samples, 9, frozenset({"a"}))
     assert found == "`b` was never known to be true while `a` was (first at 0 s)"
