@@ -5,12 +5,12 @@ import re
 
 import pytest
 from tests.tools.differential import disagreements
+from tests.tools.ways import Maker
 
 import rvmon
 from rvmon.errors import TraceError
 from rvmon.monitor.attempts import keyed as keyed_module
 from rvmon.testing.case import Case
-from rvmon.testing.forms import Maker
 from rvmon.trace.sample import Sample
 
 HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
