@@ -120,6 +120,7 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
     )
     parser.add_argument("--time", choices=tuple(MODELS), help="the time model; default: any")
     parser.add_argument("--depth", type=int, default=4, help="of the deepest consequent")
+    parser.add_argument("--fail-fast", action="store_true", help="stop soon")
     return parser.parse_args(argv)
 
 
@@ -133,6 +134,8 @@ def main(argv: Sequence[str]) -> int:
         while count["pairs"] < options.pairs:
             judge_seed(f"{options.seed}/{number}", options, count)
             number += 1
+            if options.fail_fast and count["disagreements"]:
+                break
     shown = ", ".join(
         f"{name} {count[name]}"
         for name in ("pairs", "by arrays", "refused", "attempts", "disagreements")

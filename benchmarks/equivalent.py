@@ -104,5 +104,22 @@ EQUIVALENT = {
     "least(position, last));`": (
         "time passes up to the position before its letter is read, here or in the step itself"
     ),
+    "python_leaf_cases.py dropped not: `not isinstance(self.plan.graph.nodes[leaves[0]].leaf, "
+    "SignalAtom)` => `isinstance(self.plan.graph.nodes[leaves[0]].leaf, SignalAtom)`": (
+        "a value that brings a leaf no other truth is gone through all the same; another value of "
+        "a boolean always brings one"
+    ),
+    "unit.py dropped operand: `triggers & 1 and rule.starts(self.v[rule.trigger])` => "
+    "`rule.starts(self.v[rule.trigger])`": (
+        "an episode whose trigger has not changed is only asked once more"
+    ),
+    "factory.py and/or: `arg in (self.state_true, self.state_false) or arg.op is StateOp.SURE` => "
+    "`arg in (self.state_true, self.state_false) and arg.op is StateOp.SURE`": (
+        "what is two-valued is asked once more whether it is true"
+    ),
+    "lower.py dropped operand: `state.op is not StateOp.SURE and any(map(_may_be_unknown, "
+    "state.args))` => `state.op is not StateOp.SURE`": (
+        "attempts in doubt are provided for where there are none"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""

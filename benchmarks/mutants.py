@@ -5,10 +5,10 @@
 Changes are drawn evenly over their kinds, from the lines of the engine's files that the test
 executes (of C, from all lines). Each is tried in a copy of the package. A mutant is killed if the
 test finds a disagreement, hangs or breaks, or if the engine refuses other specifications than it
-did; one that survives is tried again with samples in portions and with snapshots, with 10,000
-pairs, with the engines that have its files in common, then by the tests of their packages. Those
-listed in `EQUIVALENT` change no behaviour, for the reason given there; others are drawn in their
-place. Exits 1 if one survives.
+did. A few pairs find most of them; one that survives is tried again with all, with samples in
+portions and with snapshots, with 10,000 pairs, with the engines that have its files in common, then
+by the tests of their packages. Those listed in `EQUIVALENT` change no behaviour, for the reason
+given there; others are drawn in their place. Exits 1 if one survives.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def main(argv: Sequence[str]) -> int:
     with interrupted_by_sigterm(), tempfile.TemporaryDirectory() as directory:
         trial = Trial(Path(directory), options)
         left = drawn
-        for stage in stages_of(options.engine, files, options.pairs):
+        for stage in stages_of(options.engine, files, options.pairs)[: options.stages]:
             if left:
                 print(f"{len(left)} go through {stage}", flush=True)
             left = [mutant for mutant in left if not trial.kills(mutant, stage)]
@@ -88,6 +88,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--engine", choices=ENGINES, default="automaton")
     parser.add_argument("--time", choices=("held", "sampled", "clocked"))
     parser.add_argument("--without", nargs="*", default=[], metavar="FEATURE")
+    parser.add_argument("--stages", type=int, help="only the first so many tries")
     parser.add_argument("--since", metavar="REVISION", help="only in lines that are newer")
     return parser.parse_args(argv)
 
@@ -103,7 +104,7 @@ def _command(options: argparse.Namespace, stage: Stage | Tests) -> list[str]:
     if options.time:
         drawn += ["--time", options.time]
     if stage.engines == (COLUMNS,):
-        return ["-m", "benchmarks.columns", *drawn]
+        return ["-m", "benchmarks.columns", "--fail-fast", *drawn]
     if options.without:
         drawn += ["--without", *options.without]
     command = ["-m", "benchmarks.differential", "--fail-fast", "--online-every", "3"]
@@ -133,7 +134,7 @@ class Tests:
 
 def stages_of(engine: str, files: Sequence[Path], pairs: int) -> list[Stage | Tests]:
     """What a mutant of an engine, which consists of `files`, goes through until it is killed."""
-    stages: list[Stage | Tests] = [Stage((engine,), pairs)]
+    stages: list[Stage | Tests] = [Stage((engine,), pairs // 10), Stage((engine,), pairs)]
     if engine in SWITCHABLE:
         stages.append(Stage((f"{engine}+{NEXT}", f"{engine}+{INTERRUPT}"), pairs))
     stages.append(Stage((engine,), THOROUGH))
@@ -158,17 +159,22 @@ def _changes(files: Sequence[Path], options: argparse.Namespace) -> Iterator[Mut
 
 
 def _newer_lines(revision: str) -> dict[Path, set[int]]:
-    """The lines of the package that are not as they were then; moved files are recognised."""
+    """The lines of the package that are not as they were then; what was moved is recognised."""
     command = ["git", "diff", "--unified=0", "--find-renames", revision, "--", str(PACKAGE)]
     told = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    gone = {line[1:].strip() for line in told.splitlines() if re.match("-(?!-- )", line)}
     found: dict[Path, set[int]] = {}
     lines: set[int] = set()
+    number = 0
     for line in told.splitlines():
         if name := re.match(r"\+\+\+ b/(.+)", line):
             lines = found.setdefault(ROOT / name[1], set())
-        elif hunk := re.match(r"@@ -\S+ \+(\d+)(?:,(\d+))? @@", line):
-            first = int(hunk[1])
-            lines.update(range(first, first + int(hunk[2] or 1)))
+        elif hunk := re.match(r"@@ -\S+ \+(\d+)", line):
+            number = int(hunk[1])
+        elif line.startswith("+"):
+            if line[1:].strip() not in gone:
+                lines.add(number)
+            number += 1
     return found
 
 
@@ -183,6 +189,7 @@ def _executed_lines(files: Sequence[Path], options: argparse.Namespace) -> dict[
             "coverage",
             "run",
             f"--data-file={data}",
+            f"--include={','.join(map(str, files))}",
             *_command(options, Stage((options.engine,), options.pairs)),
         ]
         subprocess.run(

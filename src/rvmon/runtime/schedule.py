@@ -183,8 +183,7 @@ class Schedule:
         gap = self.GAP
         following = t + 1
         if gap is not None:
-            late = max(t - self.position, 0)
-            following = self.position + (late // gap + 1) * gap
+            following = self.position + ((t - self.position) // gap + 1) * gap
         self.resume_at = min(self.resume_at, following)
 
     def note(self, rule: Rule) -> None:

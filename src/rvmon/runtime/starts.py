@@ -109,7 +109,7 @@ class Starts:
     @property
     def is_sure(self) -> bool:
         """Whether an attempt that starts here has a trigger that is true."""
-        return not self.hidden and (not self.episodic or self.values[self.trigger] == TRUE)
+        return not self.episodic or bool(self.values[self.trigger] == TRUE)
 
     @property
     def is_unborn(self) -> bool:

@@ -16,16 +16,21 @@ from tests.tools.build import (
     g,
     k,
     p,
+    q,
+    r,
     requirement,
     spec_of,
     start,
+    timeline,
     true,
     two,
     x,
+    y,
 )
 from tests.tools.differential import disagreements
 
 from rvmon.monitor import build_monitor, compile_spec
+from rvmon.spec.checked.formula import Captured
 from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
@@ -36,6 +41,31 @@ OF_K = (Capture("v", k),)
 BOTH_AT_1 = (Sample(0, {"f": True}), Sample(1, {"f": True, "g": {"k": 0}}))
 
 CASES = {
+    "an invariant alone goes on after each failure": (
+        requirement(q, whenever=p),
+        timeline(p="1111101", q="1010110"),
+    ),
+    "what comes when an episode is over takes nothing from the values it captured": (
+        requirement(eventually(compared(y, "==", Captured("v")), 0, 6), whenever=p, captures=OF_X),
+        timeline(p="10u..", x="12222", y="000010"),
+    ),
+    "an episode of values not known any more that was over when the trigger was lost": (
+        requirement(
+            eventually(compared(y, "==", Captured("v"))),
+            whenever=p,
+            captures=OF_X,
+            at_end=EndPolicy.FAIL,
+        ),
+        timeline(p="1u0u.", x="12222", y="00000"),
+    ),
+    "an episode with captured values goes on after a failure": (
+        requirement(compared(y, "==", Captured("v")), whenever=p, captures=OF_X),
+        timeline(p="11111", x="11111", y="10110"),
+    ),
+    "an episode fails and goes on while an attempt of the one before is open": (
+        requirement(two(q, "and", eventually(r, 0, 5)), whenever=p),
+        timeline(p="101111", q="111011", r="000000"),
+    ),
     "a window opened between two samples": (
         requirement(two(true, "U", true, 2, 4)),
         (Sample(0, {}), Sample(1, {}), Sample(4, {})),

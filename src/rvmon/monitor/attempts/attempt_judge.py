@@ -168,9 +168,7 @@ class AttemptJudge(Rule):
     @property
     def is_sure(self) -> bool:
         """See `Rule`."""
-        if self.hidden or self.doubted:
-            return False
-        return not self.episodic or bool(self.values[self._asked] == TRUE)
+        return not (self.doubted or (self.episodic and self.values[self._asked] != TRUE))
 
     def settle_flags(self) -> None:
         """See `Rule`; where it is not known what was captured, all flags are set already."""

@@ -66,7 +66,6 @@ class CapturedAttempt:
             lane.blurs = False
         elif lane.blurs and not lane.flow.is_cut and self.may_begin_otherwise:
             lane.flow.cut_at(t)
-            lane.blurs = False
         if lane.flow.cut == t:
             doubt = doubt_in(flow, self._leaves, t)
             for _, attempt in self._attempts:
