@@ -22,6 +22,7 @@ from rvmon.monitor.build import build_monitor
 from rvmon.monitor.freeze import Freezer, Thawer
 from rvmon.monitor.judge import Judge
 from rvmon.monitor.monitor import Monitor
+from rvmon.trace.time import whole_ticks
 from rvmon.verdict.verdict import LAW
 
 if TYPE_CHECKING:
@@ -116,6 +117,9 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
     thawer = Thawer(_plans(compiled))
     monitor.lanes.rebuild(thawer.thaw(document["lanes"]))
     thawer.into(monitor, document["state"])
+    for instant in (monitor._last, monitor._reached, monitor._torn):
+        if instant is not None:
+            whole_ticks(instant)
     moved: dict[str, list[int]] = {}
     for name, judge, machine in _progressing(monitor):
         if name not in moved:
