@@ -11,6 +11,7 @@ from rvmon.monitor.build import build_monitor
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.online.snapshot import document_of, put_back
+from rvmon.trace.time import whole_ticks
 
 
 def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
@@ -58,4 +59,7 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
         keep=document["keep"],
     )
     put_back(document, monitor.options, monitor.lanes, monitor)
+    for instant in (monitor._last, monitor._reached, monitor._torn):
+        if instant is not None:
+            whole_ticks(instant)
     return monitor

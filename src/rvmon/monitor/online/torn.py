@@ -14,7 +14,7 @@ from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
-BEFORE_ALL = -LIMIT
+BEFORE_ALL = 1 - LIMIT
 """The instant of a call that was torn before any sample was taken."""
 
 

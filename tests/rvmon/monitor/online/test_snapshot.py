@@ -218,3 +218,44 @@ def test_a_snapshot_whose_times_have_passed_is_refused():
         except RvmonError:
             refused += 1
     assert refused
+
+
+@pytest.mark.parametrize("value", [float("inf"), float("nan"), 1.5, "x"])
+@pytest.mark.parametrize("engine", ["auto", "network"])
+def test_an_instant_that_is_none_is_refused(engine, value):
+    """How far the run has come is a whole number of ticks, or it is not known."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor(engine=engine)
+    for t, values in SAMPLES[:5]:
+        monitor.step(t, values)
+    reached = str(int(SAMPLES[4][0] * 10**9))
+    head, _, body = monitor.snapshot().partition(b"\n")
+    state = json.loads(body)["state"]
+    places = [index for index, one in enumerate(state) if str(one) == reached]
+    assert len(places) >= 2
+    for place in places:
+        document = json.loads(body)
+        document["state"][place] = value
+        sealed = json.dumps(document, separators=(",", ":")).encode()
+        seal = hashlib.sha256(sealed).hexdigest().encode()
+        with pytest.raises(RvmonError, match="damaged"):
+            spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed)
+
+
+def test_a_run_that_was_torn_at_its_first_step_is_restored():
+    """Of an interrupt before all samples no instant is told."""
+    spec = rvmon.loads(TEXT)
+    monitor = spec.monitor(engine="network")
+
+    class Torn(BaseException):
+        pass
+
+    def tear(*_):
+        raise Torn
+
+    monitor.lanes.sample = tear
+    with pytest.raises(Torn):
+        monitor.step(*SAMPLES[0])
+    report = spec.restore(monitor.snapshot()).finish()
+    assert {*report.verdicts.values()} == {"I"}
+    assert ("interrupted", None) in {(one.kind.value, one.first) for one in report.health}
