@@ -155,7 +155,9 @@ def _probe(names: Names, probe: Probe, name: str) -> str:
                 return f"truth_of(true, {held} == {held})"
             return f"truth_of(true, m->occurs[{names.event(name)}] != IS_UNKNOWN)"
         case Probe.UPDATED:
-            return f"truth_of(true, m->updated[{names.number(name)}] != 0U)"
+            number = names.number(name)
+            updated = f"truth_of(true, m->updated[{number}] != 0U)"
+            return f"((m->absent[{number}] != 0U) ? (uint8_t)IS_UNKNOWN : {updated})"
         case Probe.CHANGED:
             number = names.number(name)
             return f"((m->absent[{number}] != 0U) ? (uint8_t)IS_UNKNOWN : m->changed[{number}])"

@@ -112,7 +112,7 @@ def _probe(plan: Plan, probe: Probe, name: str) -> str:
                 return f"0 if s[{plan.signals.index(name)}] is None else 2"
             return f"0 if self.o[{plan.events.index(name)}] == 1 else 2"
         case Probe.UPDATED:
-            return f"2 if {name!r} in self.u else 0"
+            return f"1 if {name!r} in self.absent else 2 if {name!r} in self.u else 0"
         case Probe.CHANGED:
             return f"1 if {name!r} in self.absent else self.c.get({plan.signals.index(name)}, 0)"
         case _:

@@ -154,11 +154,11 @@ def _probe(probe: Probe, name: str, inputs: Inputs) -> Evaluate:
             if slot is None:
                 return lambda _: FALSE if inputs.occurs(name) == UNKNOWN else TRUE
             return lambda _: FALSE if slot.value is None else TRUE
+        case _ if name in inputs.absent:
+            return lambda _: UNKNOWN
         case Probe.UPDATED:
             return lambda _: TRUE if name in inputs.updated else FALSE
         case Probe.CHANGED:
-            if name in inputs.absent:
-                return lambda _: UNKNOWN
             return lambda _: inputs.changed.get(name, FALSE)
         case _:
             assert_never(probe)

@@ -103,7 +103,7 @@ def _may_be_unknown(state: State) -> bool:
         case Constant() | BoundAtom() | Elapsed() | Unborn() | Lapsed():
             return False
         case ProbeAtom(probe=probe):
-            return probe is Probe.CHANGED
+            return probe is not Probe.KNOWN
         case _:
             return True
 

@@ -110,7 +110,9 @@ class Reading:
                 values = columns[name]
                 return steady(known_truth(values == values if values.dtype.kind == "f" else yes))
             case ProbeAtom(probe=Probe.UPDATED, name=name):
-                return Flat(known_truth(yes if name in names else no), known_truth(no))
+                if name not in names:
+                    return steady(Truth(no, yes))
+                return Flat(known_truth(yes), known_truth(no))
             case BoundAtom(bound=Bound.START):
                 no[0] = self._row == 0
                 return Flat(known_truth(no), known_truth(np.zeros(rows, bool)))

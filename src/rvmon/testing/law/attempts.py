@@ -303,7 +303,7 @@ def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
         for occurrence in whole.occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )
-    state = EventState(updated=whole.updated and bool(kept), occurrences=kept)
+    state = EventState(whole.updated if kept else Truth.FALSE, kept)
     return replace(letter, events={**letter.events, field.event: state})
 
 

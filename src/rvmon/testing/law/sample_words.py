@@ -110,18 +110,18 @@ def _letter(
     for name, signal in spec.signals.items():
         if names is not None and name not in names:
             _refuse(name, past)
-            signals[name] = SignalState(changed=Truth.UNKNOWN)
+            signals[name] = SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN)
         else:
             signals[name] = _signal(name, past, new, instant, signal.stale_after)
     events = {}
     for name in spec.events:
         if names is not None and name not in names:
             _refuse(name, past)
-            events[name] = EventState(occurrences=(Occurrence(Truth.UNKNOWN, {}),))
+            events[name] = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),))
         else:
             entries = [sample.values[name] for sample in new if name in sample.values]
             found = tuple(occurrence for entry in entries for occurrence in _occurrences(entry))
-            events[name] = EventState(bool(entries), found)
+            events[name] = EventState(truth_of(bool(entries)), found)
     return Letter(instant, signals, events)
 
 
@@ -148,7 +148,7 @@ def _signal(
     since_birth = list(dropwhile(lambda update: update.value is None, updates))
     return SignalState(
         value=None if stale else last.value,
-        updated=count > 0,
+        updated=truth_of(count > 0),
         changed=disjunction(_differ(a, b) for a, b in pairs[max(len(updates) - 1 - count, 0) :]),
         last=last,
         before=updates[-2] if len(updates) > 1 else None,

@@ -350,12 +350,12 @@ def _probe(probe: Probe, name: str, letter: Letter) -> Truth:
     if name in letter.events:
         event = letter.events[name]
         if probe is Probe.UPDATED:
-            return truth_of(event.updated)
+            return event.updated
         raise ValueError(f"`{probe}({name})`: only `updated` speaks of events")
     signal = letter.signals[name]
     match probe:
         case Probe.UPDATED:
-            return truth_of(signal.updated)
+            return signal.updated
         case Probe.KNOWN:
             return truth_of(signal.value is not None)
         case Probe.CHANGED:

@@ -23,7 +23,7 @@ class SignalState:
 
     Attributes:
         value: the held one; `None` if unknown for whatever reason.
-        updated: whether an update falls to this position.
+        updated: whether an update falls to this position; unknown of a name without a source.
         changed: whether an update to another value does.
         last: the last update so far.
         before: the one before that.
@@ -32,7 +32,7 @@ class SignalState:
     """
 
     value: Scalar = None
-    updated: bool = False
+    updated: Truth = Truth.FALSE
     changed: Truth = Truth.FALSE
     last: Update | None = None
     before: Update | None = None
@@ -52,7 +52,7 @@ class Occurrence:
 class EventState:
     """What is known of an event at a position."""
 
-    updated: bool = False
+    updated: Truth = Truth.FALSE
     occurrences: tuple[Occurrence, ...] = ()
 
 

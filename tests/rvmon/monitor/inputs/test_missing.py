@@ -47,6 +47,31 @@ def without(name):
     return {own: column for own, column in COLUMNS.items() if own != name}
 
 
+UPDATES = """
+spec updates
+signal p : bool
+signal beat : real
+event e
+requirement R1
+  always (not updated(beat) or p)
+requirement R2
+  upon updated(e) then within 1 s p
+requirement R3
+  always age(beat) <= 1 s
+requirement R4
+  always not changed(beat)
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", "columns", "python", "automaton", "network"])
+def test_updates_of_a_missing_name_are_not_known(engine):
+    """That a column is missing says neither that something came nor that nothing did."""
+    spec = rvmon.loads(UPDATES)
+    columns = {"t": [0.0, 1.0, 3.0], "p": [False, True, False]}
+    report = spec.evaluate(columns, engine=engine, allow_missing=True)
+    assert {*report.verdicts.values()} == {"I"}
+
+
 @pytest.mark.parametrize("engine", ["auto", "python", "automaton", "network"])
 def test_a_name_that_is_read_has_a_column(spec, tmp_path, engine):
     """All doors refuse a recording without it, unless it may lack it: what reads it is I."""
