@@ -131,5 +131,10 @@ EQUIVALENT = {
     "`self.is_told = self.is_told or len(piece.truths[self._told].must) > (1)`": (
         "each stretch has two entries: there is never one alone"
     ),
+    "outages.py dropped operand: `spec.signals[name].stale_after or 0` => "
+    "`spec.signals[name].stale_after`": "the bound is only told of what has one",
+    "starts.py constant: `self.eyed = False` => `self.eyed = (True)`": (
+        "it is asked for when an attempt has begun, which sets it"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""
