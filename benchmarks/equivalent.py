@@ -121,5 +121,20 @@ EQUIVALENT = {
     "state.args))` => `state.op is not StateOp.SURE`": (
         "attempts in doubt are provided for where there are none"
     ),
+    "episodes.py dropped operand: `len(places) and len(parts) < _ROUNDS` => "
+    "`len(parts) < _ROUNDS`": "no attempts are judged once more",
+    "episodes.py constant: `lost = len(unknown) > 0 and bool(unknown[-1] > start)` => "
+    "`lost = len(unknown) > (1) and bool(unknown[-1] > start)`": (
+        "each stretch has two entries: there is never one alone"
+    ),
+    "rule.py constant: `self.is_told = self.is_told or len(piece.truths[self._told].must) > 0` => "
+    "`self.is_told = self.is_told or len(piece.truths[self._told].must) > (1)`": (
+        "each stretch has two entries: there is never one alone"
+    ),
+    "outages.py dropped operand: `spec.signals[name].stale_after or 0` => "
+    "`spec.signals[name].stale_after`": "the bound is only told of what has one",
+    "starts.py constant: `self.eyed = False` => `self.eyed = (True)`": (
+        "it is asked for when an attempt has begun, which sets it"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""

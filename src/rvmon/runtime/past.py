@@ -188,6 +188,8 @@ def doubt(before: int, now: int, value: int, pulse: bool, every: bool = False) -
 
     >>> doubt(FALSE, UNKNOWN, FALSE, False), doubt(UNKNOWN, FALSE, UNKNOWN, False)
     (1, 0)
+    >>> doubt(UNKNOWN, TRUE, UNKNOWN, True)
+    2
     """
     if now == FALSE:
         return FALSE

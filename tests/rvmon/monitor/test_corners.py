@@ -15,7 +15,9 @@ from tests.tools.build import (
     following,
     g,
     k,
+    no,
     p,
+    previous,
     q,
     r,
     requirement,
@@ -41,6 +43,18 @@ OF_K = (Capture("v", k),)
 BOTH_AT_1 = (Sample(0, {"f": True}), Sample(1, {"f": True, "g": {"k": 0}}))
 
 CASES = {
+    "an event that was not known occurs at the next position": (
+        requirement(p, upon=e),
+        timeline(e="u10u1", p="10010"),
+    ),
+    "the position before the first, asked for the future": (
+        requirement(two(previous(eventually(q, 0, 1)), "or", no(previous(eventually(p, 0, 1))))),
+        timeline(p="101", q="010"),
+    ),
+    "the position before, asked for the future at each": (
+        requirement(previous(eventually(q, 0, 1)), whenever=p),
+        timeline(p="111", q="111"),
+    ),
     "an invariant alone goes on after each failure": (
         requirement(q, whenever=p),
         timeline(p="1111101", q="1010110"),
@@ -125,6 +139,8 @@ def test_corner(name, engine, time):
     judged, actions = CASES[name]
     if time is TimeModel.HELD and "moves with each sample" in name:
         judged = replace(judged, consequent=eventually(p, 1, 1))
+    if engine == "progression" and "asked for the future" in name:
+        engine = "network"
     spec = spec_of(judged, time=time, period=4 if time is TimeModel.CLOCKED else None)
 
     def make(case):

@@ -76,7 +76,7 @@ class ColumnJudge:
         self._ignoring = compiled.checked.ignoring
         self._health = HealthLog()
         self._inputs = Inputs(compiled.checked, names)
-        self._outages = ColumnOutages(compiled.checked, names, self._stale)
+        self._outages = ColumnOutages(compiled.checked, names)
         self._last: int | None = None
 
     def take(self, times: NDArray[np.int64], columns: Columns) -> None:
@@ -133,7 +133,6 @@ class ColumnJudge:
         last = self._last or 0
         end = last if until is None else max(last, until)
         piece = self._timeline.last_piece(end)
-        self._outages.pass_to(end)
         for rule in self._all_rules:
             rule.take(piece, end)
             stands_at = last if piece.axis.start == piece.axis.stop else piece.axis.stop - 1

@@ -198,6 +198,20 @@ def test_what_left_an_attempt_open_is_told_with_its_stretch(case, size):
     assert report == of_a_monitor(spec, columns, int(t[-1]))
 
 
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton"])
+def test_what_was_not_updated_is_told_with_its_stretch(engine):
+    """A value is stale a tick after the time that it is given, until the next row."""
+    spec = rvmon.loads(
+        "spec s\ntime held\nsignal x : real stale after 3 ns\nevent e\n"
+        "requirement R1\n  upon e\n  then G[5 ns, 8 ns] x > 1\n"
+    )
+    t = np.append([0, 1], np.arange(20, 2018))
+    columns = {"t_ns": t, "x": np.full(2000, 5.0), "e": t == 0}
+    [attempt] = spec.evaluate(columns, engine=engine).attempts
+    told = "`x` was not known from 4 ns to 20 ns: no update for 3 ns (stale)"
+    assert attempt.reason == f"left open by the input: {told}"
+
+
 @pytest.mark.parametrize("engine", ["columns", "python", "automaton"])
 def test_an_attempt_in_doubt_tells_why_its_trigger_was_not_known(engine):
     """It is that which left it open, whatever is owed."""
