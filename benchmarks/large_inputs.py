@@ -40,6 +40,34 @@ print(f"{len(decided):,} attempts decided in {time.process_time() - begun:.2f} s
 """
 """All that is open is decided by one step."""
 
+OPEN_INSTANCES = """
+import gc, time, rvmon
+monitor = rvmon.loads('''spec s
+event req(id: int)
+event done(id: int)
+requirement R1
+  upon req.id == k
+  then within 50000 s done.id == k
+  for each k in req.id
+''').monitor()
+pauses, begun = [0.0], []
+def pause(phase, _):
+    if phase == "start":
+        begun.append(time.process_time())
+    else:
+        pauses.append(time.process_time() - begun.pop())
+gc.callbacks.append(pause)
+def stepped(t, values):
+    first = time.process_time()
+    monitor.step_ns(t * 1_000_000_000, values)
+    return time.process_time() - first
+took = [stepped(t, {"req": {"id": t}}) for t in range(20_000)]
+print(f"{sum(took):.1f} s, the longest {max(took):.2f} s", end=", ")
+print(f"the collector's {max(pauses):.2f} s", end="; ")
+print(f"all decided in {stepped(1_000_000, {}):.2f} s")
+"""
+"""Instances of `for each` are opened one by one, then time decides all at once."""
+
 
 class Cost(NamedTuple):
     """What one process cost, and how it ended."""
@@ -101,6 +129,10 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
     yield (
         "1,000,000 open attempts: one step decides them",
         lambda: [sys.executable, "-c", OPEN_ATTEMPTS],
+    )
+    yield (
+        "20,000 open instances: one step decides them",
+        lambda: [sys.executable, "-c", OPEN_INSTANCES],
     )
     for count in (20_000, 100_000):
         yield (

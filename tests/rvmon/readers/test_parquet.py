@@ -65,3 +65,23 @@ def test_a_damaged_file_is_refused_with_its_name(part, tmp_path):
     path.write_bytes(data)
     with pytest.raises(rvmon.TraceError, match=r"a\.parquet: .*Parquet file"):
         rvmon.loads(SPEC).evaluate(path)
+
+
+@pytest.mark.parametrize("most", [b"\xfe" + b"\xff" * 8 + b"\x01", b"\xfe\xff\xff\xff\x0f"])
+def test_sizes_and_offsets_that_overflow_are_refused(most, tmp_path):
+    """With the largest number at any place of the footer, a file is refused or judged as it was."""
+    expected = judged(tmp_path)
+    path = tmp_path / "a.parquet"
+    data = path.read_bytes()
+    start = len(data) - 8 - int.from_bytes(data[-8:-4], "little")
+    refused = 0
+    for place in range(start, len(data) - 8, 17):
+        footer = data[start:place] + most + data[place + 1 : -8]
+        path.write_bytes(data[:start] + footer + len(footer).to_bytes(4, "little") + b"PAR1")
+        try:
+            found = str(rvmon.loads(SPEC).evaluate(path).verdicts["R1"])
+        except rvmon.TraceError:
+            refused += 1
+        else:
+            assert found == expected
+    assert refused

@@ -79,8 +79,13 @@ class OneCall:
             ) from error
         finally:
             self._spared = None
-            if None in self._turn and self._turn[None] is own:
-                del self._turn[None]
+            # Threads that run at once may give it back between a look whether it is there and
+            # another whose it is.
+            try:
+                if self._turn[None] is own:
+                    del self._turn[None]
+            except KeyError:
+                pass
 
     def spare(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
         """Make a part of the call under way that changes nothing, whatever it raises."""

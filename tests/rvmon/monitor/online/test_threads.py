@@ -273,6 +273,7 @@ def test_a_monitor_is_handed_from_thread_to_thread() -> None:
 
 def test_without_a_global_lock_every_step_takes_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """In a Python whose threads run at once, steps are let in by a lock and judge alike."""
+    monkeypatch.setattr(sys, "_is_gil_enabled", lambda: True, raising=False)
     usual = _monitor()
     monkeypatch.setattr(sys, "_is_gil_enabled", lambda: False, raising=False)
     locked = _monitor()
