@@ -50,7 +50,7 @@ def block_of_table(
     stamps, given = _array_of(columns[layout.stamps.column])
     kinds = {"ns": "i", "iso": ""}.get(layout.stamps.unit, "if")
     if given is not None or stamps.dtype.kind not in kinds:
-        raise NotPlainError
+        raise NotPlainError("its stamps are no plain numbers")
     found = {}
     for column in layout.columns:
         if column.field is not None or column.kind is Kind.LABEL:
@@ -58,7 +58,7 @@ def block_of_table(
         cells = columns[layout.header[column.index]]
         found[column.name] = _values(cells, column, schema, fillable)
     if any(len(column) != len(stamps) for column in found.values()):
-        raise NotPlainError
+        raise NotPlainError("its columns are not equally long")
     times = ticks_of_column(stamps, layout.stamps)
     if not _ascend(times):
         raise NotPlainError("its instants do not increase")
@@ -116,9 +116,9 @@ def _array_of(column: Any) -> tuple[NDArray[Any], NDArray[np.bool_] | None]:
         column = column.to_numpy() if type(column.dtype).__module__.startswith("numpy") else None
     # A subclass may mean something by its cells that is not seen here.
     if type(column) not in (np.ndarray, np.memmap) or column.ndim != 1:
-        raise NotPlainError
+        raise NotPlainError("a column is no array of numbers or truth values")
     if column.dtype.kind not in "bif" or column.dtype.itemsize > _WIDEST:
-        raise NotPlainError
+        raise NotPlainError("a column is no array of numbers or truth values")
     return column, given
 
 
@@ -162,4 +162,4 @@ def _fitted(values: NDArray[Any], kind: Kind) -> NDArray[Any]:
         whole = values.astype(np.int64)
         if (whole == values).all():
             return whole
-    raise NotPlainError
+    raise NotPlainError("a column holds other values than were declared")

@@ -12,16 +12,7 @@ if TYPE_CHECKING:
 
 
 class NotPlainError(Exception):
-    """The recording has to be read row by row; the message says why, if it is more than its form.
-
-    >>> str(NotPlainError())
-    'it is not plain numbers and truth values at instants that increase'
-    """
-
-    def __init__(
-        self, why: str = "it is not plain numbers and truth values at instants that increase"
-    ) -> None:
-        super().__init__(why)
+    """The recording has to be read row by row; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,22 +54,22 @@ def csv_blocks(
         if body:
             block = _block(body, layout, fillable, held)
             if last is not None and block.times[0] <= last:
-                raise NotPlainError
+                raise NotPlainError("its instants do not increase")
             last = block.times[-1]
             held |= {column.name: block.columns[column.name][-1] for column in layout.signals}
             yield block
     if last is None:
-        raise NotPlainError
+        raise NotPlainError("it has no rows")
 
 
 def _plain_layout(header: bytes, schema: Schema) -> Layout:
     names = header.decode().split(",")
     if max(map(len, names)) > csv.field_size_limit():
-        raise NotPlainError
+        raise NotPlainError("it has very long cells")
     try:
         layout = read_layout(names, schema)
     except TraceError:
-        raise NotPlainError from None
+        raise NotPlainError("its header cannot be read") from None
     for column in (*layout.events, *layout.signals):
         if column.field is not None or column.kind is Kind.LABEL:
             raise NotPlainError(f"`{layout.header[column.index]}` holds no numbers or truth values")
@@ -82,14 +82,14 @@ def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[
     width = len(layout.header)
     rows, rest = divmod(len(ends), width)
     if rest:
-        raise NotPlainError
+        raise NotPlainError("its lines are not all alike")
     table = ends.reshape(rows, width)
     is_end = text[table] == ord("\n")
     if not is_end[:, -1].all() or is_end[:, :-1].any():
-        raise NotPlainError
+        raise NotPlainError("its lines are not all alike")
     starts = np.concatenate(([0], ends[:-1] + 1)).reshape(rows, width)
     if (table - starts).max() > csv.field_size_limit():  # whoever reads rows refuses it
-        raise NotPlainError
+        raise NotPlainError("it has very long cells")
 
     def cells(index: int) -> Cells:
         return Cells(text, starts[:, index], table[:, index])
@@ -100,7 +100,7 @@ def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[
     try:
         ticks_in_range(times)
     except TraceError:  # whoever reads rows says in which it is
-        raise NotPlainError from None
+        raise NotPlainError("some instant is out of range") from None
     columns: dict[str, NDArray[Any]] = {
         column.name: _values(cells(column.index), column, fillable, held)
         for column in layout.signals
@@ -123,7 +123,7 @@ def _values(
         return _plain(read(cells))
     before = held.get(column.name)
     if column.name not in fillable or not (given[0] or before is not None):
-        raise NotPlainError
+        raise NotPlainError(f"`{column.name}` has gaps that may matter")
     rows = np.flatnonzero(given)
     some = np.array([], np.dtype(type(before)))
     if len(rows):
@@ -135,7 +135,7 @@ def _occurrences(cells: Cells, name: str, fillable: frozenset[str]) -> NDArray[n
     """Where an event occurs; an empty cell says that it does not."""
     given = np.flatnonzero(cells.ends > cells.starts)
     if len(given) < len(cells.ends) and name not in fillable:
-        raise NotPlainError
+        raise NotPlainError(f"`{name}` has gaps that may matter")
     made = np.zeros(len(cells.ends), bool)
     if len(given):
         made[given] = _plain(
@@ -146,5 +146,5 @@ def _occurrences(cells: Cells, name: str, fillable: frozenset[str]) -> NDArray[n
 
 def _plain(values: NDArray[Any] | None) -> NDArray[Any]:
     if values is None:
-        raise NotPlainError
+        raise NotPlainError("a cell is no plain number or truth value")
     return values

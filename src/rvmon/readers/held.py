@@ -25,9 +25,9 @@ def held_values(some: NDArray[Any], given: NDArray[np.bool_], before: Any | None
             count as further ones.
     """
     if before is None and not given[:1].all():
-        raise NotPlainError
+        raise NotPlainError("a signal has no value in the first row")
     if before != before or (some.dtype.kind == "f" and np.isnan(some).any()):
-        raise NotPlainError
+        raise NotPlainError("NaN stands above gaps")
     first = np.array([] if before is None else [before], some.dtype if len(some) else None)
     filled: NDArray[Any] = np.concatenate((first, some))[np.cumsum(given) - 1 + len(first)]
     return filled

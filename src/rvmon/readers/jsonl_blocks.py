@@ -74,7 +74,7 @@ def jsonl_blocks(
     """
     ignored.clear()
     if schema.stamps is not None or schema.columns:
-        raise NotPlainError
+        raise NotPlainError("stamps or names are told otherwise")
     decoder = shape = None
     last = None
     held: dict[str, Any] = {}
@@ -84,7 +84,7 @@ def jsonl_blocks(
         rows = _decoded(text, decoder)
         times = _instants([row.stamp for row in rows], shape)
         if not (times[1:] > times[:-1]).all() or (last is not None and times[0] <= last):
-            raise NotPlainError
+            raise NotPlainError("its instants do not increase")
         last = times[-1]
         columns: dict[str, NDArray[Any]] = {}
         for name, kind in schema.signals.items():
@@ -98,20 +98,20 @@ def jsonl_blocks(
             ignored[name] += sum(cell is not msgspec.UNSET for cell in _cells(rows, place) or ())
         yield Block(times, columns)
     if last is None:
-        raise NotPlainError
+        raise NotPlainError("it has no rows")
 
 
 def _decoded(text: bytes, decoder: Any) -> list[Any]:
     """The lines of a text, each of which holds one object."""
     lines = text.count(b"\n")
     if text.count(b"\n{") + 1 != lines or text.count(b"}\n") != lines or text[:1] != b"{":
-        raise NotPlainError
+        raise NotPlainError("its lines are not all alike")
     try:
         rows: list[Any] = decoder.decode_lines(text)
     except (msgspec.DecodeError, RecursionError):
-        raise NotPlainError from None
+        raise NotPlainError("a line is no object of JSON") from None
     if len(rows) != lines:
-        raise NotPlainError
+        raise NotPlainError("its lines are not all alike")
     return rows
 
 
@@ -120,10 +120,10 @@ def _shape_of(line: bytes, schema: Schema) -> tuple[Any, _Shape]:
     try:
         first = msgspec.json.decode(line)
     except (msgspec.DecodeError, RecursionError):
-        raise NotPlainError from None
+        raise NotPlainError("its first line is no object of JSON") from None
     stamps = [name for name in DEFAULT_COLUMNS if isinstance(first, dict) and name in first]
     if len(stamps) != 1 or ("events" in first and "events" not in schema.signals):
-        raise NotPlainError
+        raise NotPlainError("its first line has not one stamp")
     shape = _Shape(stamps[0])
     del first[stamps[0]]
     fields, names = _fields(first, "", "", schema, shape)
@@ -156,12 +156,12 @@ def _fields(
         own, name = f"f{number}", prefix + key
         names[own] = key
         if name in shape.places or name in shape.ignored:  # `a.b` beside `b` in `a`
-            raise NotPlainError
+            raise NotPlainError("two keys stand for one name")
         type_: Any = _ANYTHING
         if name in schema.signals:
             kind = schema.signals[name]
             if kind not in _TYPES:
-                raise NotPlainError
+                raise NotPlainError("a signal holds labels")
             type_ = _TYPES[kind]
             shape.places[name] = place + own
         elif name in schema.events:
@@ -185,23 +185,23 @@ def _cells(rows: Sequence[Any], place: str | None) -> list[Any] | None:
 def _instants(stamps: list[Any], shape: _Shape) -> NDArray[np.int64]:
     found = np.array(stamps)
     if found.dtype.kind not in ("i" if shape.stamp == "t_ns" else "fi"):
-        raise NotPlainError
+        raise NotPlainError("its stamps are no plain numbers")
     try:
         return ticks_of_column(found, stamps_of(shape.stamp))
     except TraceError:  # whoever reads lines says in which it is
-        raise NotPlainError from None
+        raise NotPlainError("some instant is out of range") from None
 
 
 def _values(cells: list[Any] | None, kind: Kind, before: Any, *, gaps: bool) -> NDArray[Any]:
     """The values of a signal; gaps are filled with what it holds."""
     if cells is None:
-        raise NotPlainError
+        raise NotPlainError("a signal is not in its first line")
     some = [cell for cell in cells if cell is not msgspec.UNSET]
     values = _truths(some) if kind is Kind.BOOL else _numbers(some, kind)
     if len(some) == len(cells):
         return values
     if not gaps:
-        raise NotPlainError
+        raise NotPlainError("a signal has gaps that may matter")
     given = np.array([cell is not msgspec.UNSET for cell in cells])
     return held_values(values, given, before)
 
@@ -210,9 +210,9 @@ def _truths(cells: list[Any]) -> NDArray[np.bool_]:
     try:
         found = np.frombuffer(bytes(cells), np.uint8)
     except ValueError:  # a number that is no byte
-        raise NotPlainError from None
+        raise NotPlainError("a truth value is something else") from None
     if len(found) and found.max() > 1:
-        raise NotPlainError
+        raise NotPlainError("a truth value is something else")
     return found.view(np.bool_)
 
 
@@ -221,7 +221,7 @@ def _numbers(cells: list[Any], kind: Kind) -> NDArray[Any]:
         return np.empty(0, np.int64 if kind is Kind.INT else np.float64)
     found = np.array(cells)
     if found.dtype.kind not in _FITTING[kind]:
-        raise NotPlainError
+        raise NotPlainError("a number is something else")
     return found if kind is Kind.INT else found.astype(np.float64, copy=False)
 
 
@@ -230,5 +230,5 @@ def _occurrences(cells: list[Any] | None, count: int, *, gaps: bool) -> NDArray[
     if cells is None:
         cells = [msgspec.UNSET] * count
     if msgspec.UNSET in cells and not gaps:
-        raise NotPlainError
+        raise NotPlainError("an event has gaps that may matter")
     return np.array([cell is True for cell in cells], bool)

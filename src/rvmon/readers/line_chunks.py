@@ -54,9 +54,9 @@ def whole_lines(path: str | Path, size: int) -> Iterator[bytes]:
                 else:
                     rest += piece
                     if len(rest) > 4 * size:
-                        raise NotPlainError
+                        raise NotPlainError("it has very long lines")
     except OSError:
-        raise NotPlainError from None
+        raise NotPlainError("it cannot be read") from None
     if rest:
         yield _plain(rest + b"\n")
 
@@ -65,5 +65,5 @@ def _plain(text: bytes) -> bytes:
     if b"\r" in text:
         text = text.replace(b"\r\n", b"\n")
     if not text.isascii() or b"\r" in text:
-        raise NotPlainError
+        raise NotPlainError("it has odd characters")
     return text

@@ -118,7 +118,7 @@ def parquet_blocks(
     try:
         yield from _plain_blocks(path, schema, fillable)
     except TraceError:  # whoever reads rows says in which it is
-        raise NotPlainError from None
+        raise NotPlainError("it cannot be read in blocks") from None
 
 
 def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) -> Iterator[Block]:
@@ -131,7 +131,7 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
     for stamps, *batch in _batches(path, layout):
         times = _instants(stamps, layout.stamps)
         if not len(times) or times[0] <= last or not (times[1:] > times[:-1]).all():
-            raise NotPlainError
+            raise NotPlainError("its instants do not increase")
         last = int(times[-1])
         found = {}
         for column, cells in zip(columns, batch, strict=True):
@@ -148,14 +148,14 @@ def _instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
     from rvmon.readers.ticks import ticks_of_column
 
     if column.null_count or stamps.unit == "iso":
-        raise NotPlainError
+        raise NotPlainError("its stamps are no plain numbers")
     return ticks_of_column(_array_of(column, "i" if stamps.unit == "ns" else "fi"), stamps)
 
 
 def _array_of(column: Any, kinds: str) -> NDArray[Any]:
     array: NDArray[Any] = column.to_numpy(zero_copy_only=False)
     if array.dtype.kind not in kinds:
-        raise NotPlainError
+        raise NotPlainError("a column holds other values than were declared")
     return array
 
 
@@ -164,7 +164,7 @@ def _occurrences(column: Any, *, gaps: bool) -> NDArray[Any]:
     from pyarrow import types
 
     if not types.is_boolean(column.type) or (column.null_count and not gaps):
-        raise NotPlainError
+        raise NotPlainError("an event has payloads, or gaps that may matter")
     return _array_of(column.fill_null(False) if column.null_count else column, "b")
 
 
@@ -184,7 +184,7 @@ def _values_held(
     if not cells.null_count:
         return _array_of(cells, kinds)
     if not gaps:
-        raise NotPlainError
+        raise NotPlainError("a signal has gaps that may matter")
     some = _array_of(cells.drop_null(), kinds)
     return held_values(some, np.asarray(cells.is_valid()), held.get(column.name))
 
