@@ -8,7 +8,8 @@ PACKAGE = Path(__file__).resolve().parent.parent / "src" / "rvmon"
 
 _FORMULAS = ("formula/*.py",)
 _INPUTS = tuple(
-    f"dataflow/{name}.py" for name in ("flow", "graph", "inputs", "leaves", "numbers", "previous")
+    f"dataflow/{name}.py"
+    for name in ("flow", "graph", "inputs", "leaves", "numbers", "outages", "previous")
 )
 _ATTEMPTS = tuple(
     f"monitor/{name}.py"

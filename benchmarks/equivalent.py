@@ -136,5 +136,12 @@ EQUIVALENT = {
     "starts.py constant: `self.eyed = False` => `self.eyed = (True)`": (
         "it is asked for when an attempt has begun, which sets it"
     ),
+    "starts.py and/or: `not self.episodic or (self.is_sure and (not self.is_unborn))` => "
+    "`not self.episodic and (self.is_sure and (not self.is_unborn))`": (
+        "only asked of episodes: one that is sure is looked at though there is nothing to see"
+    ),
+    "schedule.py off by one: `t + 1` => `t`": (
+        "where only samples are positions the next one is asked, after one that was asked in vain"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""

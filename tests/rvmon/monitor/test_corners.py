@@ -31,6 +31,7 @@ from tests.tools.build import (
 )
 from tests.tools.differential import disagreements
 
+import rvmon
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.formula import Captured
 from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
@@ -148,3 +149,13 @@ def test_corner(name, engine, time):
 
     for finish in (None, 2, 9):
         assert disagreements(Case(spec, actions, finish), make, online=True) == []
+
+
+def test_what_is_read_twice_is_born_when_both_can_be_told():
+    """With one value nothing was judged of its change, though all of the value itself."""
+    spec = rvmon.loads(
+        "spec s\nsignal v : real\nrequirement R1\n  always (delta(v) <= 1 and v <= 2)\n"
+        "requirement R2\n  always v <= 2\n"
+    )
+    report = spec.evaluate({"t_ns": [0], "v": [1.0]})
+    assert report.verdicts == {"R1": "I", "R2": "P"}
