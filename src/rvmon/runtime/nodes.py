@@ -12,13 +12,12 @@ from rvmon.runtime.values import FALSE, NEVER, TRUE, UNKNOWN
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    Pairs = tuple[tuple[int, int], ...]
+
 LIMIT = 1 << 62
 BUSY = LIMIT + 1
 """Stands for the instant after which samples are taken, while one is: none is after it."""
 MISSING = object()
-
-
-Pairs = tuple[tuple[int, int], ...]
 
 
 class Nodes:

@@ -67,6 +67,33 @@ def test_it_is_python_3_8_and_imports_the_standard_library_only():
     )
 
 
+def test_no_class_is_subscripted_as_it_runs():
+    """`tuple[int, ...]` is an error before Python 3.9, unless nobody evaluates it."""
+    tree = ast.parse(python_file(rvmon.loads(SPEC).plan()))
+    tree.body = [one for one in tree.body if not isinstance(one, ast.If)]  # TYPE_CHECKING
+    found = []
+
+    class Evaluated(ast.NodeVisitor):
+        def visit_AnnAssign(self, node):  # noqa: N802
+            if node.value is not None:
+                self.visit(node.value)
+
+        def visit_arg(self, node):
+            """An annotation."""
+
+        def visit_FunctionDef(self, node):  # noqa: N802
+            for one in (*node.body, node.args):
+                self.visit(one)
+
+        def visit_Subscript(self, node):  # noqa: N802
+            if isinstance(node.value, ast.Name) and node.value.id in ("tuple", "list", "dict"):
+                found.append(ast.unparse(node))
+            self.generic_visit(node)
+
+    Evaluated().visit(tree)
+    assert not found
+
+
 def test_it_refuses_what_the_spec_does_not_know():
     """Wrong names, values and times are named and change nothing."""
     monitor = loaded(python_file(rvmon.loads(SPEC).plan())).SpecMonitor()
