@@ -74,18 +74,18 @@ def test_no_class_is_subscripted_as_it_runs():
     found = []
 
     class Evaluated(ast.NodeVisitor):
-        def visit_AnnAssign(self, node):  # noqa: N802
+        def visit_AnnAssign(self, node):
             if node.value is not None:
                 self.visit(node.value)
 
         def visit_arg(self, node):
             """An annotation."""
 
-        def visit_FunctionDef(self, node):  # noqa: N802
+        def visit_FunctionDef(self, node):
             for one in (*node.body, node.args):
                 self.visit(one)
 
-        def visit_Subscript(self, node):  # noqa: N802
+        def visit_Subscript(self, node):
             if isinstance(node.value, ast.Name) and node.value.id in ("tuple", "list", "dict"):
                 found.append(ast.unparse(node))
             self.generic_visit(node)
