@@ -22,6 +22,12 @@ BORN = [
     *((12, {"p": True, "r": False}), (13, {"q": None}), (14, {"e": True}), (15, {"p": False})),
 ]
 
+LATE = [
+    *(("p", False), ("p", True), ("p", False), ("p", True), ("q", True), ("p", False)),
+    *(("p", True), ("p", False), ("r", False), ("p", True), ("q", False), ("p", False)),
+    *(("r", True), ("p", True), ("q", True), ("p", False), ("p", True), ("q", False)),
+]
+
 
 def run(spec, engine, samples, at=None):
     """All that a run tells; put away and taken up again before the sample at `at` seconds."""
@@ -58,3 +64,20 @@ def test_what_is_never_born_is_waited_for():
         (t, {name: value for name, value in values.items() if name != "q"}) for t, values in BORN
     ]
     assert run(spec, "python", samples) == run(spec, "automaton", samples)
+
+
+def test_a_value_alone_is_followed_where_others_are_born():
+    """Of many requirements, in held time: before that, what it leads to is worked out in full."""
+    texts = [
+        f"requirement R{n}\n  upon p and not once[0 ns, {n} ns] (q and r)\n  then q"
+        for n in range(1, 16)
+    ]
+    signals = SIGNALS.replace("sampled", "held")
+    spec = rvmon.loads("\n".join([f"spec s\n{signals}", *texts]))
+    samples = [(t, {name: value}) for t, (name, value) in enumerate(LATE)]
+    told = []
+    for engine in ("python", "automaton"):
+        monitor = spec.monitor(engine=engine)
+        steps = [[*map(repr, monitor.step_ns(t, values))] for t, values in samples]
+        told.append((steps, monitor.finish_ns(40)))
+    assert told[0] == told[1]

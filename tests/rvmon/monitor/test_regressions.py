@@ -135,6 +135,18 @@ CASES = {
         [(0, {"p": True}), (2, {"e": True}), (5, {})],
         9,
     ),
+    "what was born and is lost is not unborn": (
+        "sampled",
+        "upon start\n  then always[4 ns, 4 ns] (p since[1 ns, 2 ns] (q and not p))",
+        [(t, {"p": t == 0, "q": t < 2 or None}) for t in range(6)],
+        None,
+    ),
+    "of two occurrences at a tick one is not known, and a signal is not born": (
+        "sampled every 3 ns",
+        "whenever true\n  then not g.k > x",
+        [(0, {}), (1, {"g": None}), (2, {"g": {"k": 1, "m": 1}}), (4, {"x": 5.0})],
+        9,
+    ),
 }
 
 

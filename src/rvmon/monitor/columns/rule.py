@@ -235,14 +235,12 @@ class ColumnRule:
             for truth, instant in zip((FALSE, TRUE), ends, strict=True):
                 until[3 * place + truth] = None if instant == UNSEEN else instant
             until[3 * place + UNKNOWN] = None
-        if self._episodes is not None and self._unborn >= 0:
-            values[self._unborn] = TRUE if self._episodes.is_unborn else FALSE
         flow = Stood(self._plan, values, since, until, outages_at(end), last)
         opened = self._opened(self._open, outages_at)
         judge = self._deferred.judge(flow, self._letters, last, opened)
         if opened and self._episodes is not None and self._open.stop[-1] == FAR:
             opened[-1].clouded = self._episodes.is_clouded
-            opened[-1].void |= self._unborn >= 0 and self._episodes.is_unborn
+            opened[-1].void |= self._episodes.is_unborn
         for attempt in opened:
             self._ledger.ended(judge, attempt, end, end)
         for attempts in self._void:

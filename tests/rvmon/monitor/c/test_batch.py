@@ -161,3 +161,17 @@ def test_a_signal_is_not_born_by_nan():
     for engine in ("auto", "c"):
         (attempt,) = spec.evaluate(trace, engine=engine).attempts
         assert (attempt.verdict, attempt.decided) == ("I", None), engine
+
+
+@pytest.mark.parametrize("owed", ["delta(x) < 1", "changed(x) -> p", "updated(x) -> p"])
+def test_each_row_is_an_update(owed):
+    """No row is passed over where an update counts that changes nothing."""
+    spec = spec_of("signal p : bool\nsignal x : real", f"always ({owed})")
+    rows = np.arange(300)
+    trace = {"t_ns": rows, "p": rows % 100 > 0, "x": np.floor(rows / 50) ** 2}
+    told = [
+        [(one.triggered, one.decided, one.verdict) for one in report.attempts]
+        for report in (spec.evaluate(trace, engine=engine) for engine in ("automaton", "c"))
+    ]
+    assert told[0] == told[1]
+    assert any(verdict == "F" for _, _, verdict in told[0])
