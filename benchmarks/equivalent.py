@@ -127,8 +127,9 @@ EQUIVALENT = {
     "`lost = len(unknown) > (1) and bool(unknown[-1] > start)`": (
         "each stretch has two entries: there is never one alone"
     ),
-    "rule.py constant: `self.is_told = self.is_told or len(piece.truths[self._told].must) > 0` => "
-    "`self.is_told = self.is_told or len(piece.truths[self._told].must) > (1)`": (
+    "rule.py constant: `self.is_determined = self.is_determined or "
+    "len(piece.truths[self._determined].must) > 0` => `self.is_determined = self.is_determined or "
+    "len(piece.truths[self._determined].must) > (1)`": (
         "each stretch has two entries: there is never one alone"
     ),
     "outages.py dropped operand: `spec.signals[name].stale_after or 0` => "
@@ -136,9 +137,11 @@ EQUIVALENT = {
     "starts.py constant: `self.eyed = False` => `self.eyed = (True)`": (
         "it is asked for when an attempt has begun, which sets it"
     ),
-    "starts.py and/or: `not self.episodic or (self.is_sure and (not self.is_unborn))` => "
-    "`not self.episodic and (self.is_sure and (not self.is_unborn))`": (
-        "only asked of episodes: one that is sure is looked at though there is nothing to see"
+    "starts.py and/or: `not self.episodic or (not self.hidden and values[self.trigger] == TRUE and "
+    "(self.unborn < 0 or values[self.unborn] != TRUE))` => `not self.episodic and (not self.hidden "
+    "and values[self.trigger] == TRUE and (self.unborn < 0 or values[self.unborn] != TRUE))`": (
+        "asked of an episode, one that is sure is looked at though there is nothing to see; asked "
+        "of a run, its attempts are moved one by one"
     ),
     "schedule.py off by one: `t + 1` => `t`": (
         "where only samples are positions the next one is asked, after one that was asked in vain"
