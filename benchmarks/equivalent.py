@@ -146,5 +146,47 @@ EQUIVALENT = {
     "schedule.py off by one: `t + 1` => `t`": (
         "where only samples are positions the next one is asked, after one that was asked in vain"
     ),
+    "python_leaves.py and/or: `isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN` "
+    "=> `isinstance(leaf, SignalAtom | Compare) or unborn != UNKNOWN`": (
+        "what is unknown before its birth is unknown either way"
+    ),
+    "python_nodes.py dropped operand: `is_part and (not wanted[place]) and (depth < "
+    "_DEEPEST)` => `is_part and (not wanted[place])`": (
+        "an expression is longer; Python takes what the language's own limit of depth lets in"
+    ),
+    "python_nodes.py function: `max((depths[operand] for operand in operands[place]), "
+    "default=0)` => `min((depths[operand] for operand in operands[place]), default=0)`": (
+        "an expression is longer; Python takes what the language's own limit of depth lets in"
+    ),
+    "python_nodes.py operator: `asked >> n & 1` => `asked >> n | 1`": (
+        "nodes have values of their own that nobody asks for"
+    ),
+    "monitor_clock.c.in comparison: `for (i = 0; (m->failures > 0) && (i < @PREFIX@_RULES); "
+    "i++) {` => `for (i = 0; (m->failures >= 0) && (i < @PREFIX@_RULES); i++) {`": (
+        "requirements are gone through of which none has failed"
+    ),
+    "monitor_clock.c.in comparison: `|| m->rules_restless || (m->failures > 0);` => `|| "
+    "m->rules_restless || (m->failures >= 0);`": (
+        "it is only looked at earlier than need be whether something is due"
+    ),
+    "monitor_clock.c.in off by one: `const int64_t ahead = (m->rule[i].failed_at - "
+    "m->position) / STEP + 1;` => `const int64_t ahead = (m->rule[i].failed_at - m->position) "
+    "/ STEP;`": "a position before the next is visited, at which no attempt starts yet",
+    "monitor_past.c.in constant: `uint8_t found = (value != IS_FALSE) ? IS_TRUE : IS_FALSE;` "
+    "=> `uint8_t found = (value != IS_FALSE) ? IS_TRUE : IS_TRUE;`": (
+        "where nothing is hidden no attempt in doubt begins, and none runs that asks for the value"
+    ),
+    "c_nodes.py function: `all((found.get(operand) == first for operand in operands))` => "
+    "`any((found.get(operand) == first for operand in operands))`": (
+        "what stands above a doubt reads nothing else"
+    ),
+    "core_form.py and/or: `isinstance(formula, Unary) and formula.op is UnaryOp.PREVIOUS` => "
+    "`isinstance(formula, Unary) or formula.op is UnaryOp.PREVIOUS`": (
+        "a negation that was made up is the core formula of what it denies, which tells of itself"
+    ),
+    "four.py dropped operand: `not isinstance(leaf, SignalAtom | Compare) or not "
+    "signals_of(leaf)` => `not isinstance(leaf, SignalAtom | Compare)`": (
+        "an atom that reads no signal has the same truth in all readings"
+    ),
 }
 """By file and change, as `Mutant.change` writes it."""

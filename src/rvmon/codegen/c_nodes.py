@@ -158,7 +158,7 @@ def guards_of(plan: Plan) -> dict[int, int]:
         operands = graph.operands[place]
         if state.op is StateOp.DOUBT:
             found[place] = place
-        elif place in needed and operands:
+        elif operands:
             first = found.get(operands[0], UNDETERMINED)
             alike = all(found.get(operand) == first for operand in operands)
             if first != UNDETERMINED and alike and group_of(first) == group_of(place):

@@ -18,7 +18,6 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.operators import Tense
 from rvmon.spec.checked.reading import rewritten
 from rvmon.spec.checked.tense import has_future
 
@@ -61,7 +60,7 @@ class Lowering:
         if isinstance(formula, Constant):
             return self.factory.constant(formula.value is positive)
         made_up = id(formula) in self._made_up
-        if has_future(formula) or (made_up and _is_connective(formula)):
+        if made_up or has_future(formula):
             made = self._core_future(formula, positive)
         else:
             sense = Sense.TRUE if positive else Sense.FALSE
@@ -140,10 +139,6 @@ class Lowering:
                 self.origins.setdefault(literal, Origin(_spelled(present, conjunction), True))
             parts.append(literal)
         return (factory.all_of if conjunction else factory.any_of)(parts)
-
-
-def _is_connective(formula: Formula) -> bool:
-    return isinstance(formula, Unary | Binary) and formula.op.entry.tense is Tense.PRESENT
 
 
 def _is_step(formula: Formula) -> bool:

@@ -135,11 +135,11 @@ CASES = {
         [(0, {"p": True}), (2, {"e": True}), (5, {})],
         9,
     ),
-    "what was born and is lost is not unborn": (
-        "sampled",
-        "upon start\n  then always[4 ns, 4 ns] (p since[1 ns, 2 ns] (q and not p))",
-        [(t, {"p": t == 0, "q": t < 2 or None}) for t in range(6)],
-        None,
+    "one update is no change yet": (
+        "held",
+        "whenever true\n  then delta(x) <= 1",
+        [(0, {"x": 1.0}), (1, {"x": 1.0})],
+        1,
     ),
     "of two occurrences at a tick one is not known, and a signal is not born": (
         "sampled every 3 ns",
