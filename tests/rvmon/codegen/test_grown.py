@@ -81,3 +81,35 @@ def test_a_value_alone_is_followed_where_others_are_born():
         steps = [[*map(repr, monitor.step_ns(t, values))] for t, values in samples]
         told.append((steps, monitor.finish_ns(40)))
     assert told[0] == told[1]
+
+
+BESIDE = "time held\nsignal p : bool\nsignal q : bool\nsignal r : bool\nsignal u : bool\nevent e\n"
+
+SECOND = 1_000_000_000
+
+BESIDES = {
+    "an episode that goes on, beside attempts": (
+        "requirement R1\n  whenever p then within 2 s q\n"
+        "requirement R2\n  upon e then within 1 s r\n",
+        [(2 * SECOND + 1, {"r": True}), (3 * SECOND, {"r": False}), (4 * SECOND + 9, {"q": True})],
+    ),
+    "what is due, beside a window that ends later": (
+        "requirement R1\n  whenever p then within 2 s r\n"
+        "requirement R2\n  always (u -> once[0 s, 10 s] q)\n",
+        [(1, {"q": True}), (SECOND, {"q": False}), (5 * SECOND, {"r": True})],
+    ),
+}
+
+
+@pytest.mark.parametrize("which", BESIDES)
+def test_nothing_is_slept_through_beside_other_requirements(which):
+    requirements, samples = BESIDES[which]
+    spec = rvmon.loads(BESIDE + requirements)
+    first = {"p": True, "q": False, "r": False, "u": False}
+    runs = {}
+    for engine in ("python", "automaton"):
+        monitor = spec.monitor(engine=engine)
+        told = [repr(monitor.step_ns(t, values)) for t, values in [(0, first), *samples]]
+        runs[engine] = told, monitor.finish_ns(9 * SECOND)
+    assert runs["python"] == runs["automaton"]
+    assert runs["python"][1].verdicts["R1"] == "F"
