@@ -9,7 +9,6 @@ from rvmon.codegen.python_leaves import known_test
 from rvmon.codegen.python_nodes import BEFORE, NodeWriter, bits, is_timed
 from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
 from rvmon.codegen.unit_plan import Plan, asks_knowledge
-from rvmon.formula.state import COMBINING, StateOp
 from rvmon.spec.checked.formula import Constant, SignalAtom
 
 _DEEPEST = 8
@@ -160,20 +159,12 @@ class ConeWriter:
         late = f"t == self.wake < LIMIT{rest} and not self.meets(t, {cone})"
         return f"(t < self.wake or {late}){rest}"
 
-    def growing(self) -> tuple[tuple[int, Awaited, Awaited, Awaited], ...]:
+    def growing(self) -> tuple[tuple[int, Awaited], ...]:
         """What is awaited, as `rvmon.runtime.nodes.Nodes.GROWING` has it."""
         if self.visit.straight:
-            grown, signals = self.nodes.grown, self.plan.signals
-            born = tuple((signals.index(name), 1 + moved) for name, moved in grown.born.items())
-            return ((1, self._awaited(grown.last), born, tuple(self._twins())),)
+            return ((1, self._awaited(self.nodes.last)),)
         found = ((self._bit(name), self._awaited(used)) for name, used in self.used.items())
-        return tuple((bit, awaited, (), ()) for bit, awaited in found if awaited)
-
-    def _twins(self) -> Iterator[tuple[int, int]]:
-        """Nodes that remember, each with one that will be the same."""
-        for place, other in self.nodes.grown.same.items():
-            if self.plan.graph.nodes[place].op not in (StateOp.LEAF, *COMBINING):
-                yield place, other
+        return tuple((bit, awaited) for bit, awaited in found if awaited)
 
     def _is_grown(self, name: str) -> str:
         """Whether the nodes have the values that are taken to be theirs; empty: they always do."""
@@ -186,7 +177,7 @@ class ConeWriter:
 
     def _awaited(self, places: Iterable[int]) -> tuple[tuple[int, int], ...]:
         """The values that nodes have to have for these to keep theirs."""
-        last = self.nodes.grown.last
+        last = self.nodes.last
         found: set[int] = set()
         stack = list(places)
         while stack:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
-from rvmon.codegen.grown import Grown
 from rvmon.codegen.python_leaves import leaf_expression
 from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import COMBINING, Elapsed, State, StateOp
@@ -51,12 +50,12 @@ def bits(places: tuple[int, ...]) -> int:
     return sum(1 << place for place in places)
 
 
-def roles_of(plan: Plan, grown: Grown) -> Roles:
+def roles_of(plan: Plan, last: Mapping[int, int]) -> Roles:
     """See which nodes are read by requirements, and which need no value of their own.
 
     Args:
         plan: has the nodes.
-        grown: what holds of them for ever: what then is needed by nobody has no value, either.
+        last: the values that nodes keep for ever: what then is needed by nobody has none, either.
     """
     graph = plan.graph
     letters = [0 for _ in graph.nodes]
@@ -73,12 +72,15 @@ def roles_of(plan: Plan, grown: Grown) -> Roles:
         for named in (rule.unborn, rule.determined):
             asked |= 0 if named is None else 1 << graph.index[named]
     wanted = [letters[n] or triggers[n] or asked >> n & 1 for n in range(len(graph.nodes))]
-    operands = [grown.operands(plan, place) for place in range(len(graph.nodes))]
+    operands = [
+        () if place in last else tuple(one for one in graph.operands[place] if one not in last)
+        for place in range(len(graph.nodes))
+    ]
     above = _above(graph.nodes, operands, wanted)
     kept = 0
     depths = [0 for _ in graph.nodes]
     for place, state in enumerate(graph.nodes):
-        if place in grown.last or not (wanted[place] or above[place] or state.leaf):
+        if place in last or not (wanted[place] or above[place] or state.leaf):
             continue
         depth = 1 + max((depths[operand] for operand in operands[place]), default=0)
         # A denial costs less than to keep it.
@@ -156,7 +158,7 @@ class NodeWriter:
     Args:
         plan: has the nodes.
         roles: of the nodes.
-        grown: what is taken to hold of them.
+        last: the values that nodes are taken to keep, by place.
         queued: whether the nodes that change by time alone stand in a queue.
 
     Attributes:
@@ -164,10 +166,10 @@ class NodeWriter:
         used: the nodes of which it was made use that they keep their value.
     """
 
-    def __init__(self, plan: Plan, roles: Roles, grown: Grown, *, queued: bool) -> None:
+    def __init__(self, plan: Plan, roles: Roles, last: Mapping[int, int], *, queued: bool) -> None:
         self.plan = plan
         self.roles = roles
-        self.grown = grown
+        self.last = last
         self.kept = [place for place in range(len(plan.graph.nodes)) if roles.kept >> place & 1]
         self.used: set[int] = set()
         self.watched = None if queued else timed_nodes(plan, roles)
@@ -180,9 +182,6 @@ class NodeWriter:
     def statements(self, place: int) -> Iterator[str]:
         """Put the value of a node at `t` into `n`; the other names are those of `ARRAYS`."""
         state = self.plan.graph.nodes[place]
-        if place in self.grown.same and state.leaf is None:
-            yield f"n = {self.value(place)}"
-            return
         match state.op:
             case StateOp.LEAF | StateOp.NOT | StateOp.AND | StateOp.OR | StateOp.SURE:
                 yield f"n = {self.formula(place)}"
@@ -217,10 +216,9 @@ class NodeWriter:
 
     def value(self, place: int) -> str:
         """A node as an operand."""
-        if place in self.grown.last:
+        if place in self.last:
             self.used.add(place)
-            return str(self.grown.last[place])
-        place = self.grown.same.get(place, place)
+            return str(self.last[place])
         if place in self.settled:
             return self.settled[place]
         state = self.plan.graph.nodes[place]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.automaton.table import tables_of
 from rvmon.codegen.comment import comment
-from rvmon.codegen.grown import Grown, grown_nodes
+from rvmon.codegen.grown import last_values
 from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_nodes import (
@@ -51,7 +51,7 @@ def judges(plan: Plan) -> str:
 class _Writer:
     def __init__(self, plan: Plan, arriving: frozenset[str] | None) -> None:
         self.plan = plan
-        self.roles = roles_of(plan, Grown())
+        self.roles = roles_of(plan, {})
         names = (*plan.signals, *plan.events)
         present = tuple(name for name in names if arriving is None or name in arriving)
         self.judges = [
@@ -59,13 +59,11 @@ class _Writer:
             *("Rule" for rule in plan.rules if rule.hidden is not None),
         ]
         calm = all(judge == "SoloRule" for judge in self.judges)
-        grown = grown_nodes(plan)
-        roles = roles_of(plan, grown)
+        last = last_values(plan)
+        roles = roles_of(plan, last)
         queued = is_queued(plan, roles)
-        if not is_straight(roles):
-            grown, roles = Grown(grown.last), self.roles
-        later = NodeWriter(plan, roles, grown, queued=queued)
-        nodes = NodeWriter(plan, self.roles, Grown(), queued=queued)
+        later = NodeWriter(plan, roles if is_straight(roles) else self.roles, last, queued=queued)
+        nodes = NodeWriter(plan, self.roles, {}, queued=queued)
         self.visit = VisitWriter(plan, nodes, later, calm=calm)
         self.cones = ConeWriter(plan, self.visit.grown, self.visit)
         self.intake = IntakeWriter(plan, self.visit, self.cones, present)
@@ -86,7 +84,7 @@ class _Writer:
         yield ""
         yield from indented(self.visit.watch())
         yield from indented(self.visit.lines())
-        yield from indented(["if self.growing:", "    self.grow(t)"], 2)
+        yield from indented(["if self.growing:", "    self.grow()"], 2)
         yield ""
         yield from indented(ConeWriter(self.plan, self.visit.nodes, self.visit).looked_up())
 
@@ -163,7 +161,6 @@ class _Writer:
         yield f"MARKED = {marked!r}"
         yield f"HISTORIES = {histories!r}"
         yield f"GROWING = {self.cones.growing()!r}"
-        yield f"FRESH = {_tuple(f'({place}, g{place})' for place in self.visit.fresh)}"
         if all(rule.noted is not None for rule in plan.rules):
             yield f"NOTED = {_tuple(f'noted{index}' for index in range(len(plan.rules)))}"
         yield "RULES = ("

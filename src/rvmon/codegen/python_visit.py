@@ -53,13 +53,6 @@ def is_straight(roles: Roles) -> bool:
     return roles.kept.bit_count() <= _STRAIGHT
 
 
-def _function(name: str, lines: list[str]) -> Iterator[str]:
-    yield f"def {name}(self, t):"
-    yield from indented([*at_hand(lines), *lines, "return n"])
-    yield ""
-    yield ""
-
-
 class VisitWriter:
     """Writes the method that moves a monitor to a position.
 
@@ -90,15 +83,15 @@ class VisitWriter:
             for rule in plan.rules
         )
         self.straight = is_straight(grown.roles)
-        self.fresh = [place for place in grown.kept if place not in nodes.kept]
-        """The nodes that have a value of their own only then."""
 
     def functions(self) -> Iterator[str]:
         """One function per node, for the first position and for many nodes."""
         for place in self.nodes.kept:
-            yield from _function(f"n{place}", list(self.nodes.statements(place)))
-        for place in self.fresh:
-            yield from _function(f"g{place}", list(self.grown.statements(place)))
+            lines = list(self.nodes.statements(place))
+            yield f"def n{place}(self, t):"
+            yield from indented([*at_hand(lines), *lines, "return n"])
+            yield ""
+            yield ""
 
     def sparse(self) -> int:
         """The nodes that have to see every sample where samples are far apart."""

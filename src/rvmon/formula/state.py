@@ -72,8 +72,7 @@ class StateOp(Enum):
     start, or not; TRUE at the others of a stretch behind the first of these; else FALSE."""
 
 
-JOINING = (StateOp.AND, StateOp.OR)
-COMBINING = (*JOINING, StateOp.NOT, StateOp.SURE)
+COMBINING = (StateOp.AND, StateOp.OR, StateOp.NOT, StateOp.SURE)
 """What remembers nothing."""
 
 

@@ -110,11 +110,8 @@ class Nodes:
     MARKED: Mapping[int, tuple[int, int | None]]
     """Per node that keeps stretches of time, its bounds."""
     HISTORIES: tuple[int, ...] = ()
-    GROWING: tuple[tuple[int, Pairs, Pairs, Pairs], ...] = ()
-    """Bits of `grown`, each with what it waits for: the values that nodes have to come to, how
-    often signals have to be born, and nodes that have to be the same as others."""
-    FRESH: tuple[tuple[int, Callable[[Any, int], int]], ...] = ()
-    """Nodes that have a value of their own from then on only, with what gives it."""
+    GROWING: tuple[tuple[int, Pairs], ...] = ()
+    """Bits of `grown`, each with the nodes that have to have come to the value they keep."""
 
     clerk: Any
 
@@ -196,34 +193,17 @@ class Nodes:
         if worse == better and worse.__class__ is better.__class__:
             self.b[place] = worse
 
-    def grow(self, t: int) -> None:
-        """See what has come to be for ever at the position `t`."""
-        v, wakes, births = self.v, self.wakes, self.births
+    def grow(self) -> None:
+        """See which nodes have come to the values that they keep."""
+        v, wakes = self.v, self.wakes
         self.growing = False
-        for bit, values, born, twins in self.GROWING:
+        for bit, awaited in self.GROWING:
             if self.grown & bit:
                 continue
-            if (
-                all(births[signal] >= least for signal, least in born)
-                and all(v[place] == value and wakes[place] >= NEVER for place, value in values)
-                and all(self._are_twins(place, other, t) for place, other in twins)
-            ):
+            if all(v[place] == value and wakes[place] >= NEVER for place, value in awaited):
                 self.grown |= bit
-                for place, _ in twins:
-                    wakes[place] = NEVER
-                for place, value_of in self.FRESH:
-                    v[place] = value_of(self, t)
             else:
                 self.growing = True
-
-    def _are_twins(self, place: int, other: int, t: int) -> bool:
-        """Whether nodes of equal operands will always have the same value."""
-        if self.v[place] != self.v[other] or self.wakes[place] != self.wakes[other]:
-            return False
-        if place in self.marked:
-            return self.marked[place].is_same(self.marked[other], t)
-        w, b = self.w, self.b
-        return w[place] == w[other] and b[place] == b[other]
 
     def elapsed_(self, place: int, t: int, duration: int) -> int:
         """Whether so much time has passed since the first position."""

@@ -96,16 +96,6 @@ class Since:
         made.runs = deque([list(one) for one in self.runs])
         return made
 
-    def is_same(self, other: Since, t: int) -> bool:
-        """Whether both will always have the same value from the position `t` on."""
-        if self.better is not None or other.better is not None:
-            return False
-        mine = (self.left, self.right, self.growing)
-        return mine == (other.left, other.right, other.growing) and self._from(t) == other._from(t)
-
-    def _from(self, t: int) -> list[tuple[int, int]]:
-        return [(max(start, t), end) for start, end in self.runs if end >= t]
-
     def _same(self, other: Since) -> bool:
         """Whether they have come to remember the same."""
         mine = (self.left, self.right, self.growing)

@@ -1,9 +1,13 @@
 """From the birth of all signals on less is asked of state formulas, and nothing else changes."""
 
+import random
+
 import pytest
 
 import rvmon
 from rvmon.runtime.nodes import Nodes
+from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.show import show
 
 SIGNALS = "time sampled\nsignal p : bool\nsignal q : bool\nsignal r : bool\nevent e\n"
 
@@ -46,8 +50,8 @@ def test_birth_changes_nothing_else(formula, at, monkeypatch):
     grown = []
     grow = Nodes.grow
 
-    def seen(unit, t):
-        grow(unit, t)
+    def seen(unit):
+        grow(unit)
         grown.append(unit.grown)
 
     monkeypatch.setattr(Nodes, "grow", seen)
@@ -113,3 +117,59 @@ def test_nothing_is_slept_through_beside_other_requirements(which):
         runs[engine] = told, monitor.finish_ns(9 * SECOND)
     assert runs["python"] == runs["automaton"]
     assert runs["python"][1].verdicts["R1"] == "F"
+
+
+def born_late(rng):
+    """Samples of one signal each, of which `p` comes last."""
+    t, samples = 0, []
+    late = rng.randint(3, 25)
+    for number in range(30):
+        t += rng.choice((1, 1, 2, 5, 12))
+        name = rng.choice("qqr" if number < late else "pqr")
+        samples.append((t, {name: None if rng.random() < 0.05 else rng.random() < 0.5}))
+    return samples
+
+
+def agree(spec, samples):
+    """Whether generated code and tables tell the same of each sample and at the end."""
+    runs = []
+    for engine in ("python", "automaton"):
+        monitor = spec.monitor(engine=engine)
+        told = [[*map(repr, monitor.step_ns(t, values))] for t, values in samples]
+        runs.append((told, monitor.finish_ns(samples[-1][0] + 20)))
+    return runs[0] == runs[1]
+
+
+MANY = "".join(
+    f"requirement R{n}\n  always ((r and (not q) and (once q)) -> "
+    f"((once[0 ns, {n} ns] (p or q)) since q))\n"
+    for n in range(3, 15)
+)
+
+
+@pytest.mark.parametrize("requirements", [MANY, MANY[: MANY.index("requirement R4")]])
+def test_many_requirements_wait_for_a_signal_that_is_born_late(requirements):
+    """Some of many are followed before all signals are born: only what is the same by then is."""
+    spec = rvmon.loads(
+        "time held\nsignal p : bool\nsignal q : bool\nsignal r : bool\n" + requirements
+    )
+    for seed in range(40):
+        samples = born_late(random.Random(seed))
+        assert agree(spec, samples), samples
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", ["held", "sampled"])
+@pytest.mark.parametrize("count", [2, 8])
+def test_random_requirements_wait_for_a_signal_that_is_born_late(time, count):
+    shape = Shape(future=False, numbers=False, events=False)
+    for seed in range(25):
+        rng = random.Random(f"{time}/{count}/{seed}")
+        texts = [
+            f"requirement R{n}\n  always ({show(formula(rng, shape, 3))})" for n in range(count)
+        ]
+        signals = [f"signal {name} : bool" for name in "pqr"]
+        spec = rvmon.loads("\n".join([f"time {time}", *signals, *texts]))
+        for _ in range(4):
+            samples = born_late(rng)
+            assert agree(spec, samples), (texts, samples)
