@@ -64,6 +64,12 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--engine", nargs="+", default=["auto"], metavar="ENGINE", help=_ENGINES)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--depth", type=int, default=4)
+    parser.add_argument(
+        "--many", type=int, default=8, metavar="PERCENT", help="specs with 8 to 14 requirements"
+    )
+    parser.add_argument(
+        "--long", type=int, default=8, metavar="PERCENT", help="traces three times as long"
+    )
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
@@ -87,7 +93,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
 def profile_of(options: argparse.Namespace) -> Profile:
     """What the specs may hold."""
     without: dict[str, Any] = dict.fromkeys(options.without, False)
-    whole = Profile(time=MODELS.get(options.time or ""), depth=options.depth)
+    whole = Profile(time=MODELS.get(options.time or ""), depth=options.depth, many=options.many)
     return replace(whole, **without)
 
 
@@ -95,7 +101,7 @@ def main(argv: list[str]) -> int:
     """Run the campaign and print its figures."""
     options = parse(argv)
     profile = profile_of(options)
-    traces = TraceProfile(unknowns=not options.known)
+    traces = TraceProfile(unknowns=not options.known, long=options.long)
     seeds = [f"{options.seed}/{number}" for number in range(options.pairs // options.traces)]
     size = 5 if options.fail_fast else 250
     parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]

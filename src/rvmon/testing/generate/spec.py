@@ -18,6 +18,8 @@ from rvmon.spec.checked.formula import (
     Numeric,
     SignalAtom,
     SignalValue,
+    Unary,
+    UnaryOp,
 )
 from rvmon.spec.checked.specification import (
     Capture,
@@ -58,6 +60,8 @@ class Profile:
         time: the time model; `None`: any.
         depth: of the deepest consequent.
         requirements: at most so many.
+        many: the per cent of specifications that hold 8 to 14, half of them laws on truth values and
+            their past alone: engines share what such requirements have in common.
         numbers: whether comparisons and probes may occur.
         past: whether past operators may occur.
         future: whether future operators may occur.
@@ -73,6 +77,7 @@ class Profile:
     time: TimeModel | None = None
     depth: int = 4
     requirements: int = 2
+    many: int = 0
     numbers: bool = True
     past: bool = True
     future: bool = True
@@ -93,10 +98,13 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
         profile: what may occur.
     """
     time = profile.time or pick(rng, tuple(TimeModel))
-    found = [
-        _requirement(rng, profile, time, f"R{number}")
-        for number in range(1, rng.randint(1, profile.requirements) + 1)
-    ]
+    number = rng.randint(1, profile.requirements)
+    draw = _requirement
+    if profile.many and chance(rng, profile.many):
+        number = rng.randint(8, 14)
+        if profile.past and chance(rng, 50):
+            draw = _law
+    found = [draw(rng, profile, time, f"R{place}") for place in range(1, number + 1)]
     return CheckedSpec(
         name="random",
         title="",
@@ -159,6 +167,16 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         pulse=is_pulse(trigger),
         captures=captures,
         for_each=for_each,
+    )
+
+
+def _law(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
+    """`always φ`, of truth values and their past."""
+    shape = Shape(time is not TimeModel.HELD, future=False, numbers=False, events=False)
+    lasting = formula(rng, shape, min(profile.depth, 3))
+    start = BoundAtom(Bound.START)
+    return Requirement(
+        name, Mode.UPON, start, Unary(UnaryOp.ALWAYS, lasting), pulse=is_pulse(start)
     )
 
 

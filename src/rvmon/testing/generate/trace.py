@@ -21,12 +21,15 @@ class TraceProfile:
     Attributes:
         samples: at most so many.
         span: as many ticks from the first to the last sample, about.
+        long: the per cent of traces that may be three times as long, where signals come later and
+            more seldom.
         unknowns: whether values may be `None` or NaN and sources absent.
         advances: whether `advance` is called.
     """
 
     samples: int = 12
     span: int = 40
+    long: int = 0
     unknowns: bool = True
     advances: bool = True
 
@@ -51,17 +54,18 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
     # that begin later.
     often = 40 if any(one.for_each for one in spec.requirements.values()) else 25
     unknown = (30 if chance(rng, often) else 5) if profile.unknowns else 0
-    late = {name: rng.randint(1, 5) for name in spec.signals if chance(rng, 20)}
-    values = _Values(spec, numbers, names, unknown, _several(spec), late)
+    longer = 3 if profile.long and chance(rng, profile.long) else 1
+    late = {n: rng.randint(1, 5 * longer) for n in spec.signals if chance(rng, 20 * longer)}
+    values = _Values(spec, numbers, names, unknown, _several(spec), late, 35 // longer)
     time = start = pick(rng, (0, 1, 5, -3))
     actions: list[Sample | int] = []
-    for index in range(rng.randint(0 if chance(rng, 5) else 1, profile.samples)):
+    for index in range(rng.randint(0 if chance(rng, 5) else 1, longer * profile.samples)):
         if index:
             gap = _gap(rng, gaps)
             if profile.advances and chance(rng, 15):
                 actions.append(time + rng.randint(0, gap))
             time += gap
-        if time - start > profile.span:
+        if time - start > longer * profile.span:
             break
         actions.append(Sample(time, values.sample(rng, index)))
     if profile.advances and chance(rng, 25):
@@ -121,7 +125,8 @@ def _several(spec: CheckedSpec) -> frozenset[str]:
 class _Values:
     """How to draw the values of one sample; `unknown` per cent of them are not known.
 
-    Signals that are `late` have nothing to say before so many samples, or that it is not known.
+    Signals that are `late` have nothing to say before so many samples, or that it is not known;
+    then they say something in `often` per cent of the samples.
     """
 
     spec: CheckedSpec
@@ -130,6 +135,7 @@ class _Values:
     unknown: int
     several: frozenset[str]
     late: Mapping[str, int]
+    often: int
 
     def sample(self, rng: Rng, index: int) -> dict[str, Value]:
         """Random updates; most signals get a value in the first sample that may bring one."""
@@ -141,7 +147,7 @@ class _Values:
             if index < first:
                 if self.unknown and chance(rng, 10):
                     values[name] = None
-            elif chance(rng, 85 if index == first else 35):
+            elif chance(rng, 85 if index == first else self.often):
                 values[name] = self._scalar(rng, signal.type)
         for name, event in self.spec.events.items():
             if self._has_source(name) and chance(rng, 30):
