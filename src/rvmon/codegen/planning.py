@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from rvmon.codegen.unit_plan import Plan, PlannedRule, Uses
 from rvmon.dataflow.graph import Graph, graph_of
+from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import Leaf, Unborn
-from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
+from rvmon.formula.state import UNKNOWN, State, Unborn
+from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 
@@ -20,22 +22,66 @@ def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
         rules: in the order of the file.
     """
     graph = graph_of(state for rule in rules for state in rule.states)
-    gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
-    uses = {name: _uses(graph, name) for name in graph.by_name}
-    return Plan(spec, tuple(rules), graph, gap, tuple(spec.signals), tuple(spec.events), uses)
+    names = (tuple(spec.signals), tuple(spec.events))
+    return Plan(spec, tuple(rules), graph, gap_of(spec), *names, uses_of([graph], ()))
 
 
-def _uses(graph: Graph, name: str) -> Uses:
-    leaves = [leaf for place in graph.by_name[name] if (leaf := graph.nodes[place].leaf)]
+def plan_of_lane(
+    spec: CheckedSpec, graph: Graph, names: Iterable[str], uses: Mapping[str, Uses]
+) -> Plan:
+    """The plan of what only evaluates state formulas: somebody else judges.
+
+    Args:
+        spec: they belong to.
+        graph: the formulas.
+        names: the signals and events to keep something of.
+        uses: what is asked of them.
+    """
+    kept = frozenset(names)
+    signals = tuple(name for name in spec.signals if name in kept)
+    events = tuple(name for name in spec.events if name in kept)
+    return Plan(spec, (), graph, gap_of(spec), signals, events, uses)
+
+
+def gap_of(spec: CheckedSpec) -> int | None:
+    """Ticks between two positions; `None` if only samples are positions."""
+    return {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+
+
+def uses_of(graphs: Iterable[Graph], captured: Iterable[Numeric]) -> dict[str, Uses]:
+    """What is asked of signals and events.
+
+    Args:
+        graphs: the formulas.
+        captured: the expressions of `let`.
+    """
+    leaves: dict[str, list[State]] = {}
+    for graph in graphs:
+        for name, places in graph.by_name.items():
+            leaves.setdefault(name, []).extend(graph.nodes[place] for place in places)
+    found = {name: _uses(own, name) for name, own in leaves.items()}
+    for expression in captured:
+        for name in inputs_of(expression):
+            found.setdefault(name, Uses())
+        for part in operands(expression):
+            if isinstance(part, UpdateValue):
+                found[part.name] = replace(found[part.name], history=True)
+    return found
+
+
+def _uses(leaves: Sequence[State], name: str) -> Uses:
     return Uses(
-        history=any(_asks_history(leaf, name) for leaf in leaves),
+        history=any(_asks_history(state, name) for state in leaves),
         marked=any(
-            isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN for leaf in leaves
+            isinstance(state.leaf, ProbeAtom) and state.leaf.probe is not Probe.KNOWN
+            for state in leaves
         ),
+        birth=any(isinstance(s.leaf, Unborn) or s.unborn != UNKNOWN for s in leaves),
     )
 
 
-def _asks_history(leaf: Leaf, name: str) -> bool:
+def _asks_history(state: State, name: str) -> bool:
+    leaf = state.leaf
     if isinstance(leaf, ProbeAtom):
         return leaf.probe is Probe.CHANGED
     if isinstance(leaf, Unborn):

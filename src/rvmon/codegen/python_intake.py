@@ -73,16 +73,11 @@ class IntakeWriter:
         yield ""
         yield from self._take()
         yield ""
-        names = [*self.plan.signals, *self.plan.events]
-        for number, name in enumerate(names):
-            lines = ["dirty = 0", *self.values.taken("x", name), "return dirty"]
-            yield f"def take{number}(self, t, x):"
-            yield f"    # {name!a}"
-            yield from indented([*at_hand(lines), *lines])
-            yield ""
-        yield f"TAKE = {{{', '.join(f'{name!r}: take{n}' for n, name in enumerate(names))}}}"
+
+    def takers(self) -> Iterator[str]:
+        """By name, what is looked at in a sample of which nothing was checked."""
         yield "TAKERS = {"
-        for number, name in enumerate(names):
+        for number, name in enumerate((*self.plan.signals, *self.plan.events)):
             if name in self.arriving:
                 takes = f"{self.values.classes(name)}, {self.values.labels(name)!r}, take{number}"
                 yield f"    {name!r}: ({takes}),"

@@ -35,7 +35,7 @@ def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
         return _before_birth(plan, leaf, str(unborn))
     match leaf:
         case Lapsed():
-            raise ValueError("captured values are not generated")
+            return f"self.lapsed_({place}, t)"
         case Lost():
             return "1"
         case Unborn(signals=signals):
@@ -149,8 +149,8 @@ def _number(plan: Plan, expression: Numeric) -> str:
         case Arithmetic(op=op, args=args):
             listed = ", ".join(_number(plan, arg) for arg in args)
             return f"finite({op.entry.python}, {listed})"
-        case Captured():
-            raise ValueError("captured values are not generated")
+        case Captured(name=name):
+            return f"self.captured[{name!r}]"
         case _:
             assert_never(expression)
 

@@ -50,6 +50,13 @@ def bits(places: tuple[int, ...]) -> int:
     return sum(1 << place for place in places)
 
 
+def roles_alike(plan: Plan) -> Roles:
+    """All nodes have a value of their own; whom they concern is said elsewhere."""
+    graph = plan.graph
+    none = tuple(0 for _ in graph.nodes)
+    return Roles(none, none, (1 << len(graph.nodes)) - 1, tuple(map(bits, graph.parents)))
+
+
 def roles_of(plan: Plan, last: Mapping[int, int]) -> Roles:
     """See which nodes are read by requirements, and which need no value of their own.
 
@@ -188,12 +195,14 @@ class NodeWriter:
             case StateOp.DOUBT:
                 (operand,) = self.plan.graph.operands[place]
                 yield f"m = {self.value(operand)}"
-                yield f"if m != 1 and w[{place}] != 1 and not v[{place}]:"
+                found = f"self.doubt_({place}, t, m, {state.pulse}, {state.every})"
                 if state.every:
-                    raise ValueError("instances are not generated")
-                yield "    n = 0"
-                yield "else:"
-                yield f"    n = self.doubt_({place}, t, m, {state.pulse})"
+                    yield f"n = {found}"
+                else:
+                    yield f"if m != 1 and w[{place}] != 1 and not v[{place}]:"
+                    yield "    n = 0"
+                    yield "else:"
+                    yield f"    n = {found}"
                 yield f"w[{place}] = m"
             case StateOp.PREVIOUS:
                 (operand,) = self.plan.graph.operands[place]

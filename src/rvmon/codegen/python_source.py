@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from rvmon.automaton.table import tables_of
 from rvmon.codegen.comment import comment
 from rvmon.codegen.grown import last_values
+from rvmon.codegen.python_class import listed, node_constants, node_functions, slots, takes
 from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_leaf_cases import ConeWriter
-from rvmon.codegen.python_nodes import (
-    NodeWriter,
-    bits,
-    is_queued,
-    keeps_stretches,
-    memory_before,
-    roles_of,
-    value_before,
-)
+from rvmon.codegen.python_nodes import NodeWriter, is_queued, roles_of
 from rvmon.codegen.python_visit import VisitWriter, indented, is_straight
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State
 from rvmon.runtime.solo import only_location
-from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.spec.checked.specification import Mode
-from rvmon.spec.print.printer import format_formula
 
 _TABULATED = 5
 """The letters of so many propositions stand in a table."""
@@ -69,31 +60,24 @@ class _Writer:
         self.intake = IntakeWriter(plan, self.visit, self.cones, present)
 
     def lines(self) -> Iterator[str]:
-        yield from self._leaves()
-        yield from self.visit.functions()
+        yield from node_functions(self.visit.nodes)
         yield from self._letters()
         yield from self.intake.functions()
         yield "class Generated(Unit):"
         yield f'    """{judges(self.plan)}"""'
         yield ""
-        held = (f"last{signal}" for signal in range(len(self.plan.signals)))
-        yield f"    __slots__ = {tuple(held)!r}"
+        yield f"    __slots__ = {slots(self.plan)!r}"
         yield from indented(self._constants())
         yield ""
         yield from indented(self.intake.lines())
+        yield from indented(takes(self.intake.values))
+        yield from indented(self.intake.takers())
         yield ""
         yield from indented(self.visit.watch())
         yield from indented(self.visit.lines())
         yield from indented(["if self.growing:", "    self.grow()"], 2)
         yield ""
         yield from indented(ConeWriter(self.plan, self.visit.nodes, self.visit).looked_up())
-
-    def _leaves(self) -> Iterator[str]:
-        """What the numbers of the nodes that are read off the input stand for."""
-        for place, state in enumerate(self.plan.graph.nodes):
-            if isinstance(state.leaf, SignalAtom | Compare | ProbeAtom):
-                yield f"# {place}: {comment(format_formula(state.leaf))}"
-        yield ""
 
     def _letters(self) -> Iterator[str]:
         for index, rule in enumerate(self.plan.judged):
@@ -125,44 +109,20 @@ class _Writer:
         kept += [f"v[{place}]" for place in places] + [f"since[{place}]" for place in places]
         kept += [f"until[{3 * place + truth}]" for place in places for truth in (0, 2)]
         yield f"def noted{index}(seen, t, before, rule, v, since, until):"
-        yield f"    return {_tuple(kept)}"
+        yield f"    return {listed(kept)}"
         yield ""
         yield ""
 
     def _constants(self) -> Iterator[str]:
-        plan, roles, nodes = self.plan, self.roles, self.plan.graph.nodes
-        kept = [bool(roles.kept >> place & 1) for place in range(len(nodes))]
-        readers = {name: bits(places) for name, places in plan.graph.by_name.items()}
-        marked = {
-            place: (state.low, state.high)
-            for place, state in enumerate(nodes)
-            if keeps_stretches(state)
-        }
-        uses = plan.uses
-        histories = tuple(
-            index for index, name in enumerate(plan.signals) if name in uses and uses[name].history
-        )
-        yield f"SIGNALS = {plan.signals!r}"
-        yield f"EVENTS = {plan.events!r}"
-        yield f"GAP = {plan.gap!r}"
-        yield f"NODES = {len(nodes)}"
-        yield f"KEPT = {roles.kept}"
-        functions = (f"n{place}" if own else "None" for place, own in enumerate(kept))
-        yield f"EVALUATE = {_tuple(functions)}"
-        yield f"PARENTS = {roles.parents!r}"
+        plan, roles = self.plan, self.roles
+        yield from node_constants(plan, roles)
         if self.cones.joins:
             yield "ABOVE = closures(PARENTS)"
         yield f"LETTERS = {roles.letters!r}"
         yield f"TRIGGERS = {roles.triggers!r}"
-        yield f"READERS = { ({name: readers.get(name, 0) for name in plan.signals})!r}"
-        yield f"MOMENTARY = {self._momentary()!r}"
-        yield f"BEFORE = {tuple(value_before(state) for state in nodes)!r}"
-        yield f"MEMORY = {tuple(memory_before(state) for state in nodes)!r}"
-        yield f"MARKED = {marked!r}"
-        yield f"HISTORIES = {histories!r}"
         yield f"GROWING = {self.cones.growing()!r}"
         if all(rule.noted is not None for rule in plan.rules):
-            yield f"NOTED = {_tuple(f'noted{index}' for index in range(len(plan.rules)))}"
+            yield f"NOTED = {listed(f'noted{index}' for index in range(len(plan.rules)))}"
         yield "RULES = ("
         for index, (rule, judge) in enumerate(zip(plan.judged, self.judges, strict=True)):
             hidden = index >= len(plan.rules)
@@ -182,24 +142,6 @@ class _Writer:
 
     def _place(self, state: State | None) -> int:
         return -1 if state is None else self.plan.graph.index[state]
-
-    def _momentary(self) -> tuple[tuple[int, tuple[str, ...]], ...]:
-        """The leaves that speak of one position, with the names of which they need one."""
-        graph, events = self.plan.graph, self.plan.events
-        return tuple(
-            (
-                place,
-                tuple(
-                    sorted(
-                        name
-                        for name in reads.names
-                        if name in events or isinstance(graph.nodes[place].leaf, ProbeAtom)
-                    )
-                ),
-            )
-            for place, reads in graph.reads.items()
-            if reads.momentary
-        )
 
 
 def _judge(rule: PlannedRule) -> str:
@@ -224,7 +166,3 @@ def _weighed(places: Sequence[int], weights: Sequence[Sequence[int]]) -> str:
     return " + ".join(
         f"{tuple(own)!r}[v[{place}]]" for place, own in zip(places, weights, strict=True)
     )
-
-
-def _tuple(parts: Iterable[str]) -> str:
-    return f"({''.join(f'{part}, ' for part in parts)})"

@@ -1,22 +1,36 @@
-"""A generated Python monitor in this process."""
+"""Generated Python in this process."""
 
 from __future__ import annotations
 
 import heapq
 import math
 import operator
-from typing import Any
+from typing import Any, TypeVar
 
+from rvmon.codegen.python_lane import lane_source
 from rvmon.codegen.python_source import unit_source
 from rvmon.codegen.unit_plan import Plan
 from rvmon.runtime.bulk import BulkRule
-from rvmon.runtime.nodes import BUSY, LIMIT, MISSING
+from rvmon.runtime.nodes import BUSY, LIMIT, MISSING, Nodes
 from rvmon.runtime.past import compared, finite, number
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.solo import SoloRule
 from rvmon.runtime.table import letter_table
 from rvmon.runtime.unit import Unit, closures
 from rvmon.runtime.values import NEVER
+
+_OPERATIONS = ("lt", "le", "eq", "ne", "ge", "gt", "add", "sub", "mul", "truediv", "neg")
+_NAMES: dict[str, Any] = {
+    **{name: getattr(operator, name) for name in _OPERATIONS},
+    "__name__": "rvmon.generated", "math": math, "heappush": heapq.heappush,
+    "NEVER": NEVER, "LIMIT": LIMIT, "BUSY": BUSY, "MISSING": MISSING, "Unit": Unit,
+    "Rule": Rule, "BulkRule": BulkRule, "SoloRule": SoloRule,
+    "letter_table": letter_table, "closures": closures,
+    "compared": compared, "finite": finite, "number": number,
+}
+"""What generated code may call."""
+
+Made = TypeVar("Made", bound=Nodes)
 
 
 def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]:
@@ -26,21 +40,22 @@ def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]
         plan: what to judge.
         arriving: the names that have a source; default all.
     """
-    operations = ("lt", "le", "eq", "ne", "ge", "gt", "add", "sub", "mul", "truediv", "neg")
-    namespace: dict[str, Any] = {name: getattr(operator, name) for name in operations}
-    namespace |= {
-        "__name__": "rvmon.generated",
-        "math": math,
-        "NEVER": NEVER,
-        "LIMIT": LIMIT,
-        "BUSY": BUSY,
-    }
-    namespace |= {"MISSING": MISSING, "Unit": Unit, "heappush": heapq.heappush}
-    namespace |= {"Rule": Rule, "BulkRule": BulkRule, "SoloRule": SoloRule}
-    namespace |= {"letter_table": letter_table, "closures": closures}
-    namespace |= {"compared": compared, "finite": finite, "number": number}
-    source = unit_source(plan, arriving)
+    return _made(unit_source(plan, arriving), Unit)
+
+
+def lane_class(plan: Plan, base: type[Made]) -> type[Made]:
+    """A class that evaluates the state formulas of a plan.
+
+    Args:
+        plan: has the formulas, and no rules.
+        base: what it derives from.
+    """
+    return _made(lane_source(plan), base)
+
+
+def _made(source: str, base: type[Made]) -> type[Made]:
+    namespace = {**_NAMES, "Base": base}
     # The source holds names and numbers of the specification as literals only.
     exec(compile(source, "<generated monitor>", "exec"), namespace)  # noqa: S102
-    made: type[Unit] = namespace["Generated"]
+    made: type[Made] = namespace["Generated"]
     return made

@@ -9,7 +9,7 @@ from rvmon.codegen.python_nodes import bits
 from rvmon.codegen.python_visit import indented
 from rvmon.codegen.unit_plan import Plan
 from rvmon.dataflow.numbers import inputs_of
-from rvmon.formula.state import UNKNOWN, Leaf, Unborn
+from rvmon.formula.state import Leaf
 from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 
@@ -137,10 +137,8 @@ class ValueWriter:
 
     def tells_birth(self, name: str) -> bool:
         """Whether something depends on when a signal had its first value."""
-        nodes = self.plan.graph.nodes
-        places = self.plan.graph.by_name.get(name, ())
-        leaves = [nodes[place] for place in places]
-        return any(isinstance(state.leaf, Unborn) or state.unborn != UNKNOWN for state in leaves)
+        uses = self.plan.uses.get(name)
+        return uses is not None and uses.birth
 
     def _found(self, name: str) -> Iterator[str]:
         """What depends on whether the value of a signal is known."""
@@ -157,14 +155,14 @@ class ValueWriter:
     def _marked_event(self, name: str) -> Iterator[str]:
         yield f"self.u.add({name!r})"
         yield "self.gathered = True"
-        yield f"dirty |= {bits(self.plan.graph.by_name[name])}"
+        yield f"dirty |= {bits(self.plan.graph.by_name.get(name, ()))}"
 
     def _on_every_update(self, variable: str, name: str) -> Iterator[str]:
         signal = self.plan.signals.index(name)
         uses = self.plan.uses.get(name)
         if uses is not None and (uses.history or uses.marked):
             yield f"self.mark(t, {signal}, {variable})"
-            yield f"dirty |= {bits(self.plan.graph.by_name[name])}"
+            yield f"dirty |= {bits(self.plan.graph.by_name.get(name, ()))}"
         stale_after = self.plan.spec.signals[name].stale_after
         if stale_after is not None:
             yield f"if self.stale_at[{signal}] < NEVER:"

@@ -84,15 +84,6 @@ class VisitWriter:
         )
         self.straight = is_straight(grown.roles)
 
-    def functions(self) -> Iterator[str]:
-        """One function per node, for the first position and for many nodes."""
-        for place in self.nodes.kept:
-            lines = list(self.nodes.statements(place))
-            yield f"def n{place}(self, t):"
-            yield from indented([*at_hand(lines), *lines, "return n"])
-            yield ""
-            yield ""
-
     def sparse(self) -> int:
         """The nodes that have to see every sample where samples are far apart."""
         graph = self.plan.graph

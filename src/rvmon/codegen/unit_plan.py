@@ -62,10 +62,12 @@ class Uses:
     Attributes:
         history: the last two updates matter (`prev`, `delta`, `rate`, `changed`).
         marked: whether there is an update matters (`updated`, `changed`).
+        birth: when it had its first value matters.
     """
 
     history: bool = False
     marked: bool = False
+    birth: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,9 +79,9 @@ class Plan:
         rules: in the order of the file.
         graph: their state formulas, shared.
         gap: ticks between two positions; `None` if only samples are positions.
-        signals: names in the order of the file; the place of a name is its number.
+        signals: names of which something is kept; the place of a name is its number.
         events: the same.
-        uses: by name, of those that are read.
+        uses: by name, of those that are read, here or by what begins with what is remembered here.
     """
 
     spec: CheckedSpec

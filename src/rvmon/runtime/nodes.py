@@ -42,6 +42,9 @@ class Nodes:
         clerk: hears which signals are not known.
         growing: whether more bits may come to stand in `grown`.
         grown: a bit for each part of what is generated that takes the signals to have been born.
+        position: that the values are of.
+        dirty: the nodes that may have changed since.
+        fading: the nodes that speak of that position only.
         wakes: per node, when it changes by itself.
         wake: before this instant, no sample coming, nothing happens; `LIMIT` at most.
         queued: per node, the instant at which `timers` has it next.
@@ -54,7 +57,9 @@ class Nodes:
         "births",
         "c",
         "clerk",
+        "dirty",
         "expired",
+        "fading",
         "first",
         "gathered",
         "growing",
@@ -65,6 +70,7 @@ class Nodes:
         "o",
         "origin",
         "p",
+        "position",
         "queued",
         "s",
         "silent",
@@ -82,7 +88,7 @@ class Nodes:
     STATE: tuple[str, ...] = (
         *("v", "since", "until", "s", "last", "first", "o", "p", "u", "c", "h", "w", "b", "marked"),
         *("origin", "before", "gathered", "wake", "wakes", "queued", "stale_at", "expired"),
-        *("timers", "births", "growing", "grown"),
+        *("timers", "births", "growing", "grown", "dirty", "fading"),
     )
     VARIED = ("w", "b")
 
@@ -153,6 +159,9 @@ class Nodes:
         self.timers: list[tuple[int, int]] = []
         self.grown = 0
         self.growing = bool(self.GROWING)
+        self.position = 0
+        self.dirty = 0
+        self.fading = 0
 
     @property
     def last(self) -> tuple[Any, ...]:
@@ -166,6 +175,55 @@ class Nodes:
     def last(self, values: Sequence[Any]) -> None:
         for signal, value in enumerate(values):
             setattr(self, f"last{signal}", value)
+
+    # Positions.
+
+    def enter(self, t: int) -> None:
+        """Go to just before the first position, at `t`, where all nodes are to be evaluated."""
+        self.origin = t
+        self.position = t - (self.GAP or 1)
+        self.since[:] = [t] * self.NODES
+        self.dirty = self.KEPT
+
+    def evaluate(self, t: int, dirty: int) -> tuple[int, int, int]:
+        """Evaluate nodes and what depends on them.
+
+        Returns the requirements of which the letter changed, those of which the trigger changed,
+        and the nodes to evaluate again at the next position.
+        """
+        letters = triggers = fading = 0
+        v, since, until = self.v, self.since, self.until
+        functions = self.EVALUATE
+        momentary = self.momentary
+        while dirty:
+            bit = dirty & -dirty
+            dirty ^= bit
+            place = bit.bit_length() - 1
+            new = functions[place](self, t)  # type: ignore[misc]
+            if new and bit & momentary:
+                fading |= bit
+            old = v[place]
+            if new != old:
+                own = self.LETTERS[place]
+                if own:
+                    until[3 * place + old] = self.before
+                    since[place] = t
+                    letters |= own
+                v[place] = new
+                dirty |= self.PARENTS[place]
+                triggers |= self.TRIGGERS[place]
+        return letters, triggers, fading
+
+    def next_change(self) -> int:
+        """The first position after this one at which a value can change by time alone."""
+        if self.GAP is None or self.origin is None:
+            return NEVER
+        found = self.next_timer()
+        if self.fading:
+            found = min(found, self.position + self.GAP)
+        if found >= NEVER:
+            return NEVER
+        return self.position + -(-(found - self.position) // self.GAP) * self.GAP
 
     # What nodes call.
 
@@ -218,10 +276,10 @@ class Nodes:
             for event in events
         )
 
-    def doubt_(self, place: int, t: int, now: int, pulse: bool) -> int:
+    def doubt_(self, place: int, t: int, now: int, pulse: bool, every: bool) -> int:
         """Whether a trigger may have been hidden at `t`, where its truth is `now`."""
-        found = doubt(self.w[place] or FALSE, now, self.v[place], pulse)
-        stays = doubt(now, now, found, pulse) == found
+        found = doubt(self.w[place] or FALSE, now, self.v[place], pulse, every)
+        stays = doubt(now, now, found, pulse, every) == found
         self.set_wake(place, NEVER if stays else t + (self.GAP or 1))
         return found
 

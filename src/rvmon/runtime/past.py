@@ -75,7 +75,7 @@ class Since:
         return FALSE, NEVER
 
     def _step_both(self, t: int, last: int, left: int, right: int) -> tuple[int, int]:
-        better = self.better or self._copy()
+        better = self.better or self.copy()
         self.better = None
         holds, wake = self.step(t, last, _worse(left), _worse(right))
         may_hold, other = better.step(t, last, _better(left), _better(right))
@@ -90,16 +90,24 @@ class Since:
         else:
             self.runs.append([start, end])
 
-    def _copy(self) -> Since:
+    def copy(self) -> Since:
+        """The same, independent from now on."""
         made = Since(self.low, self.high, self.gap)
         made.left, made.right, made.growing = self.left, self.right, self.growing
         made.runs = deque([list(one) for one in self.runs])
+        made.better = None if self.better is None else self.better.copy()
         return made
 
     def _same(self, other: Since) -> bool:
         """Whether they have come to remember the same."""
         mine = (self.left, self.right, self.growing)
         return mine == (other.left, other.right, other.growing) and self.runs == other.runs
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """What it remembers, by value."""
+        better = None if self.better is None else self.better.memory
+        return self.left, self.right, self.growing, [*map(tuple, self.runs)], better
 
 
 def _worse(truth: int) -> int:
@@ -203,6 +211,13 @@ class History:
         self.last: Any = None
         self.before: Any = None
         self.at = self.before_at = 0
+
+    def copy(self) -> History:
+        """The same, independent from now on."""
+        made = History()
+        made.updates, made.last, made.before = self.updates, self.last, self.before
+        made.at, made.before_at = self.at, self.before_at
+        return made
 
     def update(self, t: int, value: Any) -> int:
         """Take an update; returns whether it brought another value."""

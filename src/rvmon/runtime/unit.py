@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.nodes import LIMIT, Nodes
 from rvmon.runtime.schedule import Schedule
-from rvmon.runtime.values import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -25,8 +24,6 @@ class Unit(Nodes, Schedule):
         began: the instant of the first sample; `None` before it.
         after: samples have to be later than this instant.
         news: whether something was decided since it was last set to `False`.
-        dirty: the nodes that may have changed since the position.
-        fading: the nodes that speak of that position only.
         torn: the instant of a sample at which generated code was interrupted; `None`: it was not.
     """
 
@@ -36,15 +33,12 @@ class Unit(Nodes, Schedule):
         "asked",
         "awaited",
         "began",
-        "dirty",
         "due_at",
         "dues",
         "eyed",
-        "fading",
         "failing",
         "machines",
         "news",
-        "position",
         "repeating",
         "restless",
         "resume_at",
@@ -55,7 +49,7 @@ class Unit(Nodes, Schedule):
     STATE = (
         *Nodes.STATE,
         *Schedule.STATE,
-        *("began", "after", "news", "dirty", "fading"),
+        *("began", "after", "news"),
     )
 
     ABOVE: tuple[int, ...] = ()
@@ -92,11 +86,8 @@ class Unit(Nodes, Schedule):
         self.clerk = clerk
         self.began: int | None = None
         self.set_up([self._rule(index, one) for index, one in enumerate(clerks)])
-        self.position = 0
         self.after = -LIMIT
         self.news = False
-        self.dirty = 0
-        self.fading = 0
         self.torn: int | None = None
 
     def _rule(self, index: int, clerk: Any) -> Rule:
@@ -108,42 +99,10 @@ class Unit(Nodes, Schedule):
     # Positions.
 
     def enter(self, t: int) -> None:
-        """Go to just before the first position, at `t`, where all nodes are to be evaluated."""
+        """See `Nodes`."""
         if self.began is None:
             self.began = t
-        self.origin = t
-        self.position = t - (self.GAP or 1)
-        self.since[:] = [t] * self.NODES
-        self.dirty = self.KEPT
-
-    def evaluate(self, t: int, dirty: int) -> tuple[int, int, int]:
-        """Evaluate nodes and what depends on them.
-
-        Returns the requirements of which the letter changed, those of which the trigger changed,
-        and the nodes to evaluate again at the next position.
-        """
-        letters = triggers = fading = 0
-        v, since, until = self.v, self.since, self.until
-        functions = self.EVALUATE
-        momentary = self.momentary
-        while dirty:
-            bit = dirty & -dirty
-            dirty ^= bit
-            place = bit.bit_length() - 1
-            new = functions[place](self, t)  # type: ignore[misc]
-            if new and bit & momentary:
-                fading |= bit
-            old = v[place]
-            if new != old:
-                own = self.LETTERS[place]
-                if own:
-                    until[3 * place + old] = self.before
-                    since[place] = t
-                    letters |= own
-                v[place] = new
-                dirty |= self.PARENTS[place]
-                triggers |= self.TRIGGERS[place]
-        return letters, triggers, fading
+        super().enter(t)
 
     def meets(self, t: int, cone: int) -> bool:
         """Have timers ring at `t`; whether what they may change is among some nodes.
@@ -218,17 +177,6 @@ class Unit(Nodes, Schedule):
         self.wake = wake
 
     # Time.
-
-    def next_change(self) -> int:
-        """The first position after this one at which a value can change by time alone."""
-        if self.GAP is None or self.origin is None:
-            return NEVER
-        found = self.next_timer()
-        if self.fading:
-            found = min(found, self.position + self.GAP)
-        if found >= NEVER:
-            return NEVER
-        return self.position + -(-(found - self.position) // self.GAP) * self.GAP
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`, positions there included, without a further sample."""
