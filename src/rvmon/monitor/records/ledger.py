@@ -49,7 +49,7 @@ class Ledger:
     def sure(self, judge: AttemptJudge, attempt: Open, t: int) -> None:
         """Take an attempt whose trigger was true, at `t` first, to be numbered by that.
 
-        The rank of its instance decides between equal instants.
+        Its trigger decides between equal instants, then the rank of its instance.
 
         Args:
             judge: of the attempt.
@@ -246,9 +246,9 @@ def _forecast(judge: AttemptJudge, attempt: Open, now: int) -> Verdict | None:
     return forecast_of(judge, attempt, now) if attempt.sure and not attempt.void else None
 
 
-def _turn(entry: tuple[int, AttemptJudge, Open]) -> tuple[int, int]:
-    t, judge, _ = entry
-    return t, judge.rank
+def _turn(entry: tuple[int, AttemptJudge, Open]) -> tuple[int, int, int]:
+    t, judge, attempt = entry
+    return t, attempt.triggered, judge.rank
 
 
 def _number(attempt: Open) -> int:

@@ -123,3 +123,22 @@ def test_only_the_latest_that_are_over_are_remembered(monkeypatch):
         sizes.append(len(monitor.lanes.all))
     assert max(sizes[600:]) <= max(sizes[:600])
     assert len(monitor.snapshot()) < 20_000
+
+
+def test_of_attempts_that_are_sure_at_once_the_one_that_began_first_has_the_lower_number():
+    """Value 1 is triggered or not from 27 on, as `p` is not known, and −1 anew at 32 only."""
+    spec = rvmon.loads(
+        "time sampled\nsignal p : bool stale after 3 ns\nevent g(k : int)\n"
+        "requirement R\n  whenever p or g.k == n\n  then eventually[1 ns, 1 ns] true\n"
+        "  for each n in g.k\n"
+    )
+    for engine in ("auto", "automaton", "network", "progression"):
+        monitor = spec.monitor(engine=engine)
+        for t, values in ((0, {"p": False}), (1, {"g": {"k": -1}}), (16, {"g": {"k": 1}})):
+            monitor.step_ns(t, values)
+        monitor.step_ns(27, {"g": {"k": -1}})
+        monitor.step_ns(32, {"p": True})
+        attempts = monitor.finish_ns().attempts
+        found = {one.number: (one.triggered, one.captured["n"]) for one in attempts}
+        assert found[4] == (27, 1)
+        assert found[5] == (32, -1)
