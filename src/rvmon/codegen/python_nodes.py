@@ -57,12 +57,13 @@ def roles_alike(plan: Plan) -> Roles:
     return Roles(none, none, (1 << len(graph.nodes)) - 1, tuple(map(bits, graph.parents)))
 
 
-def roles_of(plan: Plan, last: Mapping[int, int]) -> Roles:
+def roles_of(plan: Plan, last: Mapping[int, int], before: Roles | None = None) -> Roles:
     """See which nodes are read by requirements, and which need no value of their own.
 
     Args:
         plan: has the nodes.
         last: the values that nodes keep for ever: what then is needed by nobody has none, either.
+        before: what they were for until they kept these: no other has a value by then.
     """
     graph = plan.graph
     letters = [0 for _ in graph.nodes]
@@ -93,7 +94,10 @@ def roles_of(plan: Plan, last: Mapping[int, int]) -> Roles:
         # A denial costs less than to keep it.
         is_cheap = state.op is StateOp.NOT and depth == 1
         is_part = state.op in COMBINING and (is_cheap or len(above[place]) == 1)
-        if is_part and not wanted[place] and depth < _DEEPEST:
+        is_part = is_part and not wanted[place] and depth < _DEEPEST
+        if before is not None:
+            is_part = not before.kept >> place & 1
+        if is_part:
             depths[place] = depth
         else:
             kept |= 1 << place

@@ -51,7 +51,7 @@ class _Writer:
         ]
         calm = all(judge == "SoloRule" for judge in self.judges)
         last = last_values(plan)
-        roles = roles_of(plan, last)
+        roles = roles_of(plan, last, self.roles)
         queued = is_queued(plan, roles)
         later = NodeWriter(plan, roles if is_straight(roles) else self.roles, last, queued=queued)
         nodes = NodeWriter(plan, self.roles, {}, queued=queued)

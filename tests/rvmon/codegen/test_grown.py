@@ -158,6 +158,20 @@ def test_many_requirements_wait_for_a_signal_that_is_born_late(requirements):
         assert agree(spec, samples), samples
 
 
+def test_what_has_a_value_once_all_are_born_had_one_before():
+    """A deep formula is shallower then: it is cut into values at the same places all the same."""
+    spec = rvmon.loads(
+        "time held\nsignal p : bool\nsignal q : bool\nsignal r : bool\nevent f\n"
+        "requirement R\n  upon f\n  then (false since[1 ns, 1 ns] (r xor q))\n"
+    )
+    for engine in ("python", "automaton"):
+        monitor = spec.monitor(engine=engine)
+        monitor.step_ns(-3, {})
+        monitor.step_ns(-2, {"q": True, "r": False})
+        (attempt,) = monitor.step_ns(5, {"f": True})
+        assert attempt.verdict == "F"
+
+
 @pytest.mark.law
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("count", [2, 8])
