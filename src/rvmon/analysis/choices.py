@@ -9,18 +9,18 @@ from itertools import combinations, product
 from typing import TypeVar, assert_never
 
 from rvmon.analysis.solve import Variable, parts_of, turning_values
-from rvmon.dataflow.inputs import Inputs
-from rvmon.dataflow.leaves import captured_names, evaluator, reads
-from rvmon.formula.state import Elapsed, Leaf
+from rvmon.dataflow.inputs import OneSample
+from rvmon.dataflow.leaves import captured_names, reads, truth_of
+from rvmon.formula.state import Leaf
 from rvmon.spec.checked.formula import (
-    BoundAtom,
     Compare,
-    Constant,
+    EventAtom,
     FieldValue,
     Literal,
     Numeric,
     Probe,
     ProbeAtom,
+    SignalAtom,
     SignalValue,
     UpdateValue,
 )
@@ -81,7 +81,7 @@ def choices_of(
     names = tuple(name for name in (*spec.signals, *spec.events) if name in concerned)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered)
-    seen = _Seen(spec, leaves, remembered)
+    seen = _Seen(leaves, remembered)
     found: dict[tuple[object, ...], Valuation] = {}
     complete = True
     for tried, chosen in enumerate(_calm_first([options.of(name) for name in names])):
@@ -202,27 +202,21 @@ def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, 
 class _Seen:
     """What the formulas see of a valuation."""
 
-    def __init__(
-        self, spec: CheckedSpec, leaves: Iterable[Leaf], remembered: frozenset[str]
-    ) -> None:
-        self.inputs = Inputs(spec, None)
-        self.plain = []
+    def __init__(self, leaves: Iterable[Leaf], remembered: frozenset[str]) -> None:
+        self.plain: list[Leaf] = []
         self.raw: set[str] = set(remembered)
         for leaf in leaves:
-            if isinstance(leaf, BoundAtom | Constant | Elapsed):
-                continue
             own = reads(leaf).names
             if captured_names(leaf) or own & remembered or isinstance(leaf, ProbeAtom):
                 self.raw |= own
-            else:
-                self.plain.append(evaluator(leaf, self.inputs, {}, lambda: 0))
+            elif isinstance(leaf, SignalAtom | EventAtom | Compare):
+                self.plain.append(leaf)
 
     def key(self, valuation: Valuation) -> tuple[object, ...]:
         """Equal for valuations between which no formula tells."""
-        self.inputs.forget_occurrences()
-        self.inputs.apply(0, {n: v for n, v in valuation.items() if not isinstance(v, Silence)})
+        seen = OneSample({n: v for n, v in valuation.items() if not isinstance(v, Silence)})
         raw = tuple(_hashable(value) for name, value in valuation.items() if name in self.raw)
-        return (*(evaluate(0) for evaluate in self.plain), *raw)
+        return (*(truth_of(leaf, seen) for leaf in self.plain), *raw)
 
 
 def _hashable(value: Value | Silence) -> object:

@@ -16,9 +16,9 @@ from typing import Generic, TypeVar, assert_never
 
 from rvmon.analysis.choices import Silence, values_of
 from rvmon.analysis.solve import is_solved
-from rvmon.dataflow.inputs import Inputs
-from rvmon.dataflow.leaves import captured_names, evaluator, reads
-from rvmon.formula.state import TRUE, Lapsed, Leaf, State, StateOp, Unborn
+from rvmon.dataflow.inputs import OneSample
+from rvmon.dataflow.leaves import captured_names, reads, truth_of
+from rvmon.formula.state import TRUE, Lapsed, Leaf, State, StateOp
 from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
@@ -83,7 +83,6 @@ class Letters:
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
-        self._inputs = Inputs(spec, None)
         self._seen: dict[tuple[Source, tuple[State, ...]], tuple[Truths, ...]] = {}
 
     def table(self, states: Sequence[State], view: Callable[[Truths], T]) -> Table[T] | None:
@@ -153,13 +152,10 @@ class Letters:
             return ((False,), (True,))
         if (source, leaves) not in self._seen:
             own = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
-            read = [evaluator(leaf, self._inputs, {}, lambda: 0) for leaf in own]
             found: dict[Truths, None] = {}
             for value in values_of(self.spec, own, source):
-                self._inputs.forget_occurrences()
-                if not isinstance(value, Silence):
-                    self._inputs.apply(0, {source: value})
-                found[tuple(evaluate(0) == TRUE for evaluate in read)] = None
+                seen = OneSample({} if isinstance(value, Silence) else {source: value})
+                found[tuple(truth_of(leaf, seen) == TRUE for leaf in own)] = None
             self._seen[source, leaves] = tuple(found)
         return self._seen[source, leaves]
 
@@ -251,7 +247,7 @@ def _is_free(node: State) -> bool:
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
     """Whether all truths of a leaf are seen by trying values."""
     match leaf:
-        case Constant() | SignalAtom() | EventAtom() | Unborn() | Lapsed():
+        case Constant() | SignalAtom() | EventAtom() | Lapsed():
             return True
         case Compare():
             solved = is_solved(leaf) and not captured_names(leaf)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import assert_never
 
-from rvmon.dataflow.inputs import Inputs
+from rvmon.dataflow.inputs import OneSample
 from rvmon.dataflow.numbers import reader
 from rvmon.spec.checked.formula import (
     Arithmetic,
@@ -19,7 +19,6 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 Variable = SignalValue | FieldValue
 
@@ -110,8 +109,8 @@ def _roots(leaf: Compare, variable: Variable) -> Iterator[float]:
 
 
 def _difference(leaf: Compare, variable: Variable, value: float) -> float | None:
-    empty = Inputs(CheckedSpec("", "", TimeModel.HELD, {}, {}, {}), None)
-    sides = [reader(_put(side, variable, value), empty, {})({}) for side in (leaf.left, leaf.right)]
+    put = [_put(side, variable, value) for side in (leaf.left, leaf.right)]
+    sides = [reader(side, OneSample({}), {})({}) for side in put]
     numbers = [float(side) for side in sides if isinstance(side, int | float)]
     return numbers[0] - numbers[1] if len(numbers) == 2 else None
 

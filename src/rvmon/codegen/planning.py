@@ -11,7 +11,7 @@ from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import UNKNOWN, State, Unborn
 from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue
-from rvmon.spec.checked.specification import CheckedSpec, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec
 
 
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
@@ -23,7 +23,7 @@ def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     """
     graph = graph_of(state for rule in rules for state in rule.states)
     names = (tuple(spec.signals), tuple(spec.events))
-    return Plan(spec, tuple(rules), graph, gap_of(spec), *names, uses_of([graph], ()))
+    return Plan(spec, tuple(rules), graph, spec.gap, *names, uses_of([graph], ()))
 
 
 def plan_of_lane(
@@ -40,12 +40,7 @@ def plan_of_lane(
     kept = frozenset(names)
     signals = tuple(name for name in spec.signals if name in kept)
     events = tuple(name for name in spec.events if name in kept)
-    return Plan(spec, (), graph, gap_of(spec), signals, events, uses)
-
-
-def gap_of(spec: CheckedSpec) -> int | None:
-    """Ticks between two positions; `None` if only samples are positions."""
-    return {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+    return Plan(spec, (), graph, spec.gap, signals, events, uses)
 
 
 def uses_of(graphs: Iterable[Graph], captured: Iterable[Numeric]) -> dict[str, Uses]:

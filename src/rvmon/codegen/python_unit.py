@@ -22,11 +22,22 @@ from rvmon.runtime.values import NEVER
 _OPERATIONS = ("lt", "le", "eq", "ne", "ge", "gt", "add", "sub", "mul", "truediv", "neg")
 _NAMES: dict[str, Any] = {
     **{name: getattr(operator, name) for name in _OPERATIONS},
-    "__name__": "rvmon.generated", "math": math, "heappush": heapq.heappush,
-    "NEVER": NEVER, "LIMIT": LIMIT, "BUSY": BUSY, "MISSING": MISSING, "Unit": Unit,
-    "Rule": Rule, "BulkRule": BulkRule, "SoloRule": SoloRule,
-    "letter_table": letter_table, "closures": closures,
-    "compared": compared, "finite": finite, "number": number,
+    "__name__": "rvmon.generated",
+    "math": math,
+    "heappush": heapq.heappush,
+    "NEVER": NEVER,
+    "LIMIT": LIMIT,
+    "BUSY": BUSY,
+    "MISSING": MISSING,
+    "Unit": Unit,
+    "Rule": Rule,
+    "BulkRule": BulkRule,
+    "SoloRule": SoloRule,
+    "letter_table": letter_table,
+    "closures": closures,
+    "compared": compared,
+    "finite": finite,
+    "number": number,
 }
 """What generated code may call."""
 

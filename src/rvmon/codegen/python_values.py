@@ -90,7 +90,7 @@ class ValueWriter:
             yield f"if {variable} != {variable}:"
             yield f"    {variable} = None"
             yield f"    if s[{signal}] is not None:"
-            yield f"        self.clerk.lost({signal}, t, 'nan')"
+            yield f"        self.clerk.lost({name!r}, t, 'nan')"
         yield from self._on_every_update(variable, name)
         yield f"if self.first[{signal}] is None:"
         yield f"    self.first[{signal}] = t"
@@ -124,7 +124,7 @@ class ValueWriter:
         yield from self._found(name)
         if not given:
             yield f"if {variable} is None:"
-            yield f"    self.clerk.lost({signal}, t, 'none')"
+            yield f"    self.clerk.lost({name!r}, t, 'none')"
             yield from self._found(name)
         last = variable if given else f"MISSING if {variable} is None else {variable}"
         yield from self.replaced(variable, name, last)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from itertools import product
 
-from rvmon.dataflow.inputs import Inputs, payloads_of
+from rvmon.dataflow.inputs import Input
 from rvmon.dataflow.numbers import events_of, reader
 from rvmon.dataflow.steps import INFINITE
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
@@ -39,7 +39,7 @@ OF_TRUTH: Mapping[int, Margin] = {
 def margin_reader(
     leaf: Leaf,
     truth: Callable[[], int],
-    inputs: Inputs,
+    inputs: Input,
     captured: Mapping[str, Scalar],
     spec: CheckedSpec,
 ) -> Callable[[], Margin]:
@@ -66,14 +66,8 @@ def margin_reader(
     events = events_of(leaf.left, leaf.right)
 
     def of_occurrences() -> Margin:
-        if any(event in inputs.absent for event in events):
-            return OF_TRUTH[UNKNOWN]
         found = OF_TRUTH[FALSE]
-        choices = [
-            [p for value in inputs.occurrences.get(event, ()) for p in payloads_of(value)]
-            for event in events
-        ]
-        for chosen in product(*choices):
+        for chosen in product(*map(inputs.payloads_of, events)):
             payloads = {e: p for e, p in zip(events, chosen, strict=True) if p is not None}
             own = of(payloads) if len(payloads) == len(events) else OF_TRUTH[UNKNOWN]
             found = max(found[0], own[0]), max(found[1], own[1])

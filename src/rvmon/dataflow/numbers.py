@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import assert_never
 
-from rvmon.dataflow.inputs import Inputs
+from rvmon.dataflow.inputs import Input
 from rvmon.formula.numeric import operands
-from rvmon.runtime.past import finite, number
+from rvmon.runtime.past import History, finite, number
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
@@ -15,7 +15,6 @@ from rvmon.spec.checked.formula import (
     Literal,
     Numeric,
     SignalValue,
-    UpdateFunction,
     UpdateValue,
 )
 from rvmon.trace.sample import Payload, Scalar
@@ -26,27 +25,21 @@ Payloads = Mapping[str, Payload]
 Read = Callable[[Payloads], Scalar]
 
 
-def reader(expression: Numeric, inputs: Inputs, captured: Mapping[str, Scalar]) -> Read:
+def reader(expression: Numeric, inputs: Input, captured: Mapping[str, Scalar]) -> Read:
     """A function that gives the value of an expression at the current position."""
     match expression:
         case Literal(value=value):
             return lambda _: value
         case SignalValue(name=name):
-            slot = inputs.slots[name]
-            return lambda _: slot.value
+            return lambda _: inputs.value_of(name)
         case FieldValue(event=event, field=field):
             return lambda payloads: number(payloads[event].get(field))
         case Captured(name=name):
             known = captured[name]
             return lambda _: known
         case UpdateValue(function=function, name=name):
-            slot = inputs.slots[name]
-            asked = {
-                UpdateFunction.PREV: slot.prev,
-                UpdateFunction.DELTA: slot.delta,
-                UpdateFunction.RATE: slot.rate,
-            }[function]
-            return lambda _: asked(slot.value)
+            asked = getattr(History, function.value)
+            return lambda _: asked(inputs.history_of(name), inputs.value_of(name))
         case Arithmetic(op=op, args=args):
             return _arithmetic(op.entry.apply, [reader(arg, inputs, captured) for arg in args])
         case _:

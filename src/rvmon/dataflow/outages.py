@@ -1,8 +1,9 @@
-"""Stretches of time over which a signal was not known."""
+"""What is not known of signals, and over which stretches of time."""
 
 from __future__ import annotations
 
 from collections.abc import Set
+from copy import copy
 from dataclasses import dataclass
 
 from rvmon.spec.checked.specification import CheckedSpec
@@ -29,27 +30,47 @@ class Outage:
     bound: int = 0
 
 
-def outages_at_first(spec: CheckedSpec, absent: Set[str]) -> dict[str, Outage]:
-    """What is not known before the first sample.
+class Outages:
+    """What is not known of the signals and events of a run.
 
     Args:
         spec: declares the names.
-        absent: those without a source.
+        sources: the names that can arrive; `None`: all.
+
+    Attributes:
+        absent: the names without a source.
+        now: by name, what is not known.
     """
-    found = {name: Outage(name, HealthKind.MISSING) for name in spec.signals}
-    return found | {name: Outage(name, HealthKind.ABSENT) for name in absent}
 
+    STATE = ("now",)
 
-def note_lost(
-    outages: dict[str, Outage], spec: CheckedSpec, name: str, why: HealthKind, t: int
-) -> None:
-    """Note that a signal is not known from `t` on; one that already was not stays as noted."""
-    if name not in outages:
-        outages[name] = Outage(name, why, t, None, spec.signals[name].stale_after or 0)
+    def __init__(self, spec: CheckedSpec, sources: Set[str] | None) -> None:
+        names = {*spec.signals, *spec.events}
+        self.absent: frozenset[str] = frozenset(() if sources is None else names - sources)
+        self.now = {name: Outage(name, HealthKind.MISSING) for name in spec.signals}
+        self.now |= {name: Outage(name, HealthKind.ABSENT) for name in self.absent}
+        self._spec = spec
 
+    def copy(self) -> Outages:
+        """The same, independent from now on."""
+        made = copy(self)
+        made.now = dict(self.now)
+        return made
 
-def note_found(outages: dict[str, Outage], name: str, t: int) -> None:
-    """Note that a signal has a value from `t` on."""
-    outage = outages.pop(name, None)
-    if outage is not None:
-        outage.until = t
+    def lost(self, name: str, t: int, why: str) -> None:
+        """Note that a signal is not known from `t` on; one that already was not stays as noted.
+
+        Args:
+            name: of the signal.
+            t: ticks.
+            why: the value of a `HealthKind`.
+        """
+        if name not in self.now:
+            bound = self._spec.signals[name].stale_after or 0
+            self.now[name] = Outage(name, HealthKind(why), t, None, bound)
+
+    def found(self, name: str, t: int) -> None:
+        """Note that a signal has a value from `t` on."""
+        outage = self.now.pop(name, None)
+        if outage is not None:
+            outage.until = t

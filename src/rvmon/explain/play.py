@@ -74,7 +74,7 @@ def play(
 
 def _cuts(lanes: Lanes, end: int) -> Iterator[int]:
     for lane in lanes.all:
-        yield lane.flow.next_change
+        yield lane.next_change()
     for judge in lanes.judges:
         for attempt in judge.attempts:
             if isinstance(judge, MachineJudge):
@@ -97,10 +97,9 @@ def _situation(lanes: Lanes, end: int, remembered: frozenset[str]) -> Iterator[o
             yield judge.situation(end)
         elif isinstance(judge, MachineJudge):
             yield _standings(judge, end)
-    slots = lanes.main.flow.inputs.slots
     for name in sorted(remembered):
-        slot = slots[name]
-        yield (slot.value, slot.updates and slot.at - end, slot.before, slot.before_at - slot.at)
+        value, seen = lanes.main.value_of(name), lanes.main.history_of(name)
+        yield (value, seen.updates and seen.at - end, seen.before, seen.before_at - seen.at)
 
 
 def _standings(judge: MachineJudge, end: int) -> object:
@@ -114,13 +113,12 @@ def _standings(judge: MachineJudge, end: int) -> object:
 
 
 def _lane(lane: Lane, end: int) -> Iterator[object]:
-    flow = lane.flow
-    yield tuple(flow.values)
-    yield flow.next_change - end
+    yield tuple(lane.v)
+    yield lane.next_change() - end
     yield tuple(
-        flow.since[operand] - end
-        for place in flow.graph.stateful
-        for operand in flow.graph.operands[place]
+        lane.since[operand] - end
+        for place in lane.graph.stateful
+        for operand in lane.graph.operands[place]
     )
     for rule in lane.starters:
         if rule.trigger >= 0:

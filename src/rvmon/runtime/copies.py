@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _FLAT = (
-    *("v", "since", "until", "s", "first", "o", "births", "w", "b", "u", "c"),
+    *("since", "until", "s", "first", "o", "births", "w", "b", "u", "c"),
     *("wakes", "queued", "stale_at", "timers", "expired"),
 )
 _SINGLE = ("origin", "before", "gathered", "wake", "position", "dirty", "fading", "last")
@@ -19,6 +19,7 @@ _SINGLE = ("origin", "before", "gathered", "wake", "position", "dirty", "fading"
 
 def take_all(made: Nodes, other: Nodes) -> None:
     """Have nodes be what others of the same class are, and independent of them from now on."""
+    made.v[:] = other.v  # which others read
     for name in _FLAT:
         setattr(made, name, getattr(other, name).copy())
     for name in _SINGLE:

@@ -355,7 +355,7 @@ class Nodes:
         """Note that a signal that was not known has a value."""
         if self.first[signal] is None:
             self.first[signal] = t
-        self.clerk.found(signal, t)
+        self.clerk.found(self.SIGNALS[signal], t)
 
     def ring(self, t: int) -> int:
         """The leaves and operators that time alone makes change at `t`."""
@@ -384,7 +384,7 @@ class Nodes:
             actual = self.stale_at[signal]
             if actual <= t:
                 if self.s[signal] is not None:
-                    self.clerk.lost(signal, actual, "stale")
+                    self.clerk.lost(self.SIGNALS[signal], actual, "stale")
                 self.s[signal] = None
                 setattr(self, f"last{signal}", MISSING)
                 self.stale_at[signal] = NEVER

@@ -78,10 +78,10 @@ class Monitor:
 
     # What the generated code calls.
 
-    def lost(self, signal: int, t: int, why: str) -> None:
+    def lost(self, name: str, t: int, why: str) -> None:
         """Records have no reasons: since when a signal is not known is not asked for."""
 
-    def found(self, signal: int, t: int) -> None:
+    def found(self, name: str, t: int) -> None:
         """Nor until when."""
 
     def of(self, rule: Rule) -> int:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
-from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.inputs import payloads_of
-from rvmon.dataflow.numbers import reader
+from rvmon.dataflow.numbers import events_of, reader
 from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open, doubt_in, leaves_in
 from rvmon.monitor.attempts.lane import Lane
@@ -43,58 +40,59 @@ class CapturedAttempt:
         self._lane = parent
         self._own = captured
         self._captures = compiled.requirement.captures
-        self._leaves = leaves_in(parent.flow.graph, compiled)
+        self._leaves = leaves_in(parent.graph, compiled)
         self._trigger = trigger
         self._doubt = doubt
 
     def follow(self, lane: Lane) -> None:
         """Take the lane that is its own."""
         self._lane = lane
-        self._parent.captured.append(self)
+        self._parent.watched.append(self)
 
     @property
     def may_begin_otherwise(self) -> bool:
         """Whether it may have begun at this position, with other values."""
-        flow, doubt = self._parent.flow, self._doubt
-        return (doubt is None or flow.values[doubt] == UNKNOWN) and not self._is_same(flow)
+        doubt = self._doubt
+        return (doubt is None or self._parent.v[doubt] == UNKNOWN) and not self._is_same
 
     def keeps(self, t: int) -> bool:
         """See `rvmon.monitor.attempts.lane.WatchedAttempt`."""
-        flow, lane = self._parent.flow, self._lane
-        trigger = flow.values[self._trigger]
+        lane = self._lane
+        trigger = self._parent.v[self._trigger]
         if lane.is_idle or trigger == FALSE:
             lane.blurs = False
-        elif lane.blurs and not lane.flow.is_cut and self.may_begin_otherwise:
-            lane.flow.cut_at(t)
-        if lane.flow.cut == t:
-            doubt = doubt_in(flow, self._leaves, t)
+        elif lane.blurs and not lane.is_cut and self.may_begin_otherwise:
+            lane.cut_at(t)
+        if lane.cut == t:
+            doubt = doubt_in(self._parent, self._leaves, t)
             for _, attempt in self._attempts:
                 attempt.doubt = attempt.doubt or doubt
-        for judge, attempt in self._attempts if lane.flow.is_cut else ():
+        for judge, attempt in self._attempts if lane.is_cut else ():
             attempt.void = True
             # Its own lane can no longer see whether it is over.
             clouded = attempt.clouded or judge.clouded or trigger == UNKNOWN
             attempt.clouded = trigger != FALSE and clouded
-        return lane.blurs or (lane.flow.is_cut and trigger != FALSE)
+        return lane.blurs or (lane.is_cut and trigger != FALSE)
 
     @property
     def _attempts(self) -> Iterator[tuple[AttemptJudge, Open]]:
         return ((judge, attempt) for judge in self._lane.judges for attempt in judge.attempts)
 
-    def _is_same(self, flow: Flow) -> bool:
+    @property
+    def _is_same(self) -> bool:
         own, known = self._own, dict(self._own)
         for capture in self._captures:
-            known[capture.name] = captured_value(capture.value, flow, known)
+            known[capture.name] = captured_value(capture.value, self._parent, known)
         return all(
             known[one.name] is not None and known[one.name] == own[one.name]
             for one in self._captures
         )
 
 
-def captured_value(value: Numeric, flow: Flow, captured: Captured) -> Scalar:
-    """The value of an expression at the position of a flow; of several payloads, of the last."""
+def captured_value(value: Numeric, lane: Lane, captured: Captured) -> Scalar:
+    """The value of an expression at the position of a lane; of several payloads, of the last."""
     payloads: dict[str, Payload] = {}
-    for event, reports in flow.inputs.occurrences.items():
-        found = [payload for report in reports for payload in payloads_of(report)]
+    for event in events_of(value):
+        found = lane.payloads_of(event)
         payloads[event] = (found[-1] if found else None) or {}
-    return reader(value, flow.inputs, captured)(defaultdict(dict, payloads))
+    return reader(value, lane, captured)(payloads)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.standing import Standing
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk
+from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -47,27 +47,27 @@ class CapturingRule(Rule):
 
     Args:
         compiled: the requirement, or what judges its attempts in doubt.
-        flow: gives the truth of its trigger.
+        lane: gives the truth of its trigger.
         start: makes the lane, and starts the attempt.
         hidden: whether these are the attempts in doubt.
     """
 
     def __init__(
-        self, compiled: CompiledRequirement, flow: Flow, start: Start, *, hidden: bool
+        self, compiled: CompiledRequirement, lane: Lane, start: Start, *, hidden: bool
     ) -> None:
         trigger = compiled.obligation.trigger
         super().__init__(
             0,
             None,
             None,
-            -1 if trigger is None else flow.graph.index[trigger],
+            -1 if trigger is None else lane.graph.index[trigger],
             compiled.requirement.pulse,
             hidden or compiled.requirement.mode is Mode.WHENEVER,
             hidden,
             -1,
             -1,
-            flow.gap,
-            flow.values,
+            lane.gap,
+            lane.values,
             None,
         )
         self._start = start

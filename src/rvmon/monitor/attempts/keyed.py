@@ -201,7 +201,7 @@ class Keyed:
             self.reach.begins
             and self.reach.is_fresh
             and lane.is_quiet
-            and lane.flow.stands_like(self.template.flow, self.reach.varying)
+            and lane.stands_like(self.template, self.reach.varying)
         )
 
     def close(self, value: Scalar) -> None:

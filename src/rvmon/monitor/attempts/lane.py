@@ -1,4 +1,4 @@
-"""A flow with the judges that read it, driven through time.
+"""State formulas with the judges that read them, driven through time.
 
 All requirements without captured values share one lane. Each instance of a `for each`, and each
 attempt of a requirement with `let`, has a lane of its own, because its propositions are its own.
@@ -6,18 +6,22 @@ attempt of a requirement with `let`, has a lane of its own, because its proposit
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from typing import Protocol
 
-from rvmon.dataflow.flow import Flow
+from rvmon.dataflow.graph import Graph
 from rvmon.dataflow.inputs import Reported
-from rvmon.formula.state import TRUE
+from rvmon.dataflow.outages import Outage, Outages
+from rvmon.formula.state import FALSE, TRUE, Lapsed
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.runtime.copies import remembered, take_all, take_inputs, take_nodes
+from rvmon.runtime.nodes import Nodes
+from rvmon.runtime.past import History
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.schedule import Schedule
 from rvmon.runtime.values import NEVER
-from rvmon.trace.sample import Scalar
+from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.time import TIME_LIMIT
 
 
@@ -28,84 +32,202 @@ class WatchedAttempt(Protocol):
         """Look at the position `t`: whether to look at the next as well."""
 
 
-class Lane(Schedule):
-    """One flow and the requirements that read it; a sample costs what it concerns.
+class Lane(Nodes, Schedule):
+    """Generated state formulas and the requirements that read them.
+
+    It stands as `rvmon.dataflow.standing.Standing` for its judges.
+
+    Args:
+        outages: what is not known at first.
+        captured: values of `let` and `for each`.
+        made_for: the requirement of an instance or of a captured attempt; `None`: all others.
 
     Attributes:
-        flow: evaluates the propositions of its judges.
         judges: of its rules, those that have attempts, in the order of the file.
         starters: of its rules, those of which attempts start in it; where attempts have lanes of
             their own, what makes them.
-        since: nothing starts in it before this instant; `NEVER`: nothing does.
+        opens_at: nothing starts in it before this instant; `NEVER`: nothing does.
         waiting: samples whose position has not come yet.
-        made_for: the requirement of an instance or of a captured attempt, with its values.
-        captured: the lanes of captured attempts that were triggered in this one.
-        blurs: of such a lane, whether its values may turn out not to be known.
+        watched: the captured attempts that were triggered in this one.
+        blurs: of a captured attempt, whether its values may turn out not to be known.
+        cut: the instant from which on that is so.
+        begun: of an instance, the position from which on it saw what is its own.
     """
 
-    STATE = ("flow", *Schedule.STATE, "since", "waiting", "blurs")
+    STATE = (
+        *Nodes.STATE,
+        *Schedule.STATE,
+        *("clerk", "opens_at", "waiting", "blurs", "cut", "begun"),
+    )
 
-    gathered = False
+    graph: Graph
+    """The formulas."""
+    TAKE: Mapping[str, Callable[[Lane, int, Reported], int]]
+    """By name, what takes a value; returns the nodes that may change with it."""
+    SPARSE: int
+    """The nodes that have to see every sample where samples are far apart."""
+    SPAN: int
+    """So far apart samples can be without leaving a hole in a stretch of time."""
 
     def __init__(
-        self, flow: Flow, made_for: tuple[CompiledRequirement, Mapping[str, Scalar]] | None = None
+        self,
+        outages: Outages,
+        captured: Mapping[str, Scalar],
+        made_for: CompiledRequirement | None = None,
     ) -> None:
-        self.flow = flow
-        self.GAP = flow.gap
-        self.position = flow.position
+        super().__init__(outages.absent)
+        self.clear()
+        self.captured = captured
         self.made_for = made_for
-        self.judges: list[AttemptJudge] = []
-        self.starters: list[Rule] = []
-        self.since = -TIME_LIMIT
-        self.captured: list[WatchedAttempt] = []
+        self.judges: Sequence[AttemptJudge] = ()
+        self.starters: Sequence[Rule] = ()
+        self.opens_at = -TIME_LIMIT
+        self.watched: list[WatchedAttempt] = []
+        self.clerk: Outages = outages
         self.blurs = True
+        self.cut = NEVER
+        self.begun: int | None = None
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
-        self._concern = [(0, 0, 0) for _ in flow.graph.nodes]
-        """Per node the rules whose letter it is part of, that it triggers, and that go on with it
-        after a failure."""
-        self._expected: list[CompiledRequirement] = []
         self.set_up(())
 
-    def add_judge(self, judge: AttemptJudge) -> None:
-        """Have a requirement's attempts driven."""
-        self.judges.append(judge)
-        self._add(judge)
-        bit = 1 << judge.index
-        for place in judge.places:
-            self._note_concern(place, bit, 0, 0)
-        if judge.again >= 0:
-            self._note_concern(judge.again, 0, 0, bit)
+    def seat(self, rules: Sequence[Rule], starters: Sequence[Rule]) -> None:
+        """Have rules driven.
 
-    def add_starter(self, rule: Rule) -> None:
-        """Have a requirement's attempts started."""
-        self.starters.append(rule)
-        if rule not in self.judges:
-            self._add(rule)
+        Args:
+            rules: in the order of the file.
+            starters: of these, those of which attempts start in it.
+        """
+        self.set_up(rules)
+        self.judges = [rule for rule in rules if isinstance(rule, AttemptJudge)]
+        self.starters = starters
+        # What no rule asks for has a bit, too: of all nodes it is kept since when they are so.
+        letters = [1 << len(rules)] * self.NODES
+        triggers = [0] * self.NODES
+        for index, rule in enumerate(rules):
+            rule.index = index
+            if rule.trigger >= 0:
+                triggers[rule.trigger] |= 1 << index
+            if rule.again >= 0:
+                triggers[rule.again] |= 1 << index + len(rules)
+        for judge in self.judges:
+            for place in judge.places:
+                letters[place] |= 1 << judge.index
+        self.LETTERS, self.TRIGGERS = tuple(letters), tuple(triggers)
+        for rule in rules:
+            self.note(rule)
 
-    def _add(self, rule: Rule) -> None:
-        rule.index = len(self.rules)
-        self.rules.append(rule)
-        self.due_at.append(NEVER)
-        if rule.trigger >= 0:
-            self._note_concern(rule.trigger, 0, 1 << rule.index, 0)
-        self.note(rule)
-
-    def _note_concern(self, place: int, letters: int, triggers: int, again: int) -> None:
-        old = self._concern[place]
-        self._concern[place] = (old[0] | letters, old[1] | triggers, old[2] | again)
-
-    def expect(self, compiled: CompiledRequirement) -> None:
-        """Have it seen whether the trigger of a requirement is ever true or false."""
-        self._expected.append(compiled)
+    # What judges are told.
 
     @property
-    def determined(self) -> Iterable[str]:
-        """The requirements of which it was."""
-        values, index = self.flow.values, self.flow.graph.index
-        for compiled in self._expected if self.flow.origin is not None else ():
-            determined = compiled.obligation.determined
-            if determined is None or values[index[determined]] == TRUE:
-                yield compiled.requirement.id
+    def values(self) -> list[int]:
+        """See `Standing`."""
+        return self.v
+
+    @property
+    def gap(self) -> int | None:
+        """See `Standing`."""
+        return self.GAP
+
+    @property
+    def outages(self) -> Mapping[str, Outage]:
+        """See `Standing`."""
+        return self.clerk.now
+
+    @property
+    def is_cut(self) -> bool:
+        """See `Standing`."""
+        return self.cut < NEVER
+
+    def last_with(self, place: int, value: int, t: int) -> int | None:
+        """See `Standing`."""
+        return t if self.v[place] == value else self.until[3 * place + value]
+
+    # What expressions read; see `rvmon.dataflow.numbers.Input`.
+
+    def value_of(self, signal: str) -> Scalar:
+        """The value of a signal as seen now; `None` if unknown."""
+        found: Scalar = self.s[self.SIGNALS.index(signal)]
+        return found
+
+    def history_of(self, signal: str) -> History:
+        """The last two updates of a signal."""
+        found = self.h[self.SIGNALS.index(signal)]
+        if found is None:
+            raise AssertionError("nobody asked for it when the lane was generated")
+        return found
+
+    def payloads_of(self, event: str) -> Sequence[Payload | None]:
+        """What occurs of an event at the position; `None` is unknown."""
+        return (None,) if event in self.absent else self.p[self.EVENTS.index(event)]
+
+    # Making further lanes.
+
+    def twin(self, made: Lane, varying: Iterable[int], own: Iterable[int]) -> None:
+        """Have a lane of the same class, with other captured values, go on as this one will.
+
+        Args:
+            made: has seen nothing.
+            varying: the nodes that depend on captured values; none of them remembers anything.
+            own: the nodes of which nothing is told that was before.
+        """
+        take_all(made, self)
+        made.begun = self.position
+        made.waiting, made.awaited = list(self.waiting), self.awaited
+        if self.origin is not None:
+            made.evaluate(self.position, _bits(varying))
+            for place in own:
+                made.since[place] = self.position
+
+    def fork(self, made: Lane) -> None:
+        """Have a lane of other formulas begin at this position, of which it sees what occurs.
+
+        It must not remember anything but by nodes that this one has, too.
+        """
+        take_inputs(made, self)
+        if self.origin is None:
+            return
+        index = self.graph.index
+        shared = [(n, index[one]) for n, one in enumerate(made.graph.nodes) if one in index]
+        take_nodes(made, self, shared)
+        # Momentary ones are seen to be over at the next position.
+        dirty = made.KEPT & (made.momentary | ~_bits(place for place, _ in shared))
+        _, _, made.fading = made.evaluate(self.position, dirty)
+
+    def stands_like(self, other: Lane, varying: Container[int]) -> bool:
+        """Whether a lane of the same class, at this instant too, goes on as this one will.
+
+        Args:
+            other: that lane.
+            varying: the nodes that depend on captured values.
+        """
+        pairs = zip(self.v, other.v, strict=True)
+        if any(one != its and place not in varying for place, (one, its) in enumerate(pairs)):
+            return False
+        stateful = self.graph.stateful
+        return all(remembered(self, place) == remembered(other, place) for place in stateful)
+
+    def lapsed_(self, place: int, t: int) -> int:
+        """Whether it is not known any more which values were captured."""
+        self.set_wake(place, self.cut if t < self.cut else NEVER)
+        return FALSE if t < self.cut else TRUE
+
+    def cut_at(self, t: int) -> None:
+        """Let it be unknown which values were captured, from the position `t` or one to come."""
+        self.cut = t
+        places = [n for n, one in enumerate(self.graph.nodes) if isinstance(one.leaf, Lapsed)]
+        for place in places:
+            self.set_wake(place, t)
+        if self.position == t:
+            self.evaluate(t, _bits(places))
+
+    # Time.
+
+    def is_determined(self, compiled: CompiledRequirement) -> bool:
+        """Whether the trigger of a requirement was ever true or false."""
+        determined = compiled.obligation.determined
+        return self.origin is not None and (
+            determined is None or self.v[self.graph.index[determined]] == TRUE
+        )
 
     @property
     def is_idle(self) -> bool:
@@ -118,7 +240,7 @@ class Lane(Schedule):
         """Whether nothing is open in it, waits, or starts before something changes."""
         return not (
             self.waiting
-            or self.captured
+            or self.watched
             or self.repeating
             or any(judge.attempts for judge in self.judges)
             or any(rule.running for rule in self.starters)
@@ -129,37 +251,33 @@ class Lane(Schedule):
         """An instant before which nothing happens in it, no sample being taken."""
         return min(self.next_position(), self.next_due())
 
-    def twin(self, flow: Flow, captured: Mapping[str, Scalar]) -> Lane:
-        """A lane for the same requirement that waits for what this one does.
-
-        Args:
-            flow: its own.
-            captured: its values.
-        """
-        made = Lane(flow, self.made_for and (self.made_for[0], captured))
-        made.waiting, made.awaited = list(self.waiting), self.awaited
-        return made
-
-    def next_change(self) -> int:
-        """See `Schedule`."""
-        return self.flow.next_change
-
     def next_position(self) -> int:
         """See `Schedule`; where events are captured, they are others behind this position."""
         gap = self.GAP
         if gap is None:
             return self.awaited
-        found = min(self.awaited, self.flow.next_change, self.resume_at)
-        if self.captured and self.flow.inputs.occurrences:
+        found = min(self.awaited, self.next_change(), self.resume_at)
+        if self.watched and any(self.p):
             found = min(found, self.position + gap)
         if self.repeating:
-            found = min(found, max(self.position + gap, -(-self.since // gap) * gap))
+            found = min(found, max(self.position + gap, -(-self.opens_at // gap) * gap))
         return found
+
+    @property
+    def next_decision(self) -> int:
+        """The next instant at which time alone can decide an attempt or start one."""
+        due = min((judge.next_due for judge in self.judges), default=NEVER)
+        # What changes at an instant is known when that instant has passed.
+        return min(due, self.next_position() + 1)
 
     def sample(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take a sample; time has come to `t − 1` before."""
         gap = self.GAP or 1
-        self.flow.inputs.hear(t, values)
+        for name in values:
+            if name in self.SIGNALS:
+                signal = self.SIGNALS.index(name)
+                if self.first[signal] is None:
+                    self.first[signal] = t
         self.waiting.append((t, values))
         self.awaited = -(-t // gap) * gap
         if self.awaited == t:
@@ -169,48 +287,59 @@ class Lane(Schedule):
 
     def visit(self, t: int) -> None:
         """See `Schedule`."""
-        every = 0 if self.flow.origin is not None else (1 << len(self.rules)) - 1
+        every = 0
+        if self.gathered:
+            super().leave()
         for taken, values in self.waiting:
-            self.flow.apply(taken, values)
+            for name, value in values.items():
+                take = self.TAKE.get(name)
+                if take is not None:
+                    self.dirty |= take(self, taken, value)
         self.waiting.clear()
-        changed = self.flow.evaluate(t)
+        if self.origin is None:
+            every = (1 << len(self.rules)) - 1
+            self.enter(t)
+        before = self.before = self.position if self.GAP is None else t - self.GAP
+        dirty = self.dirty | self.fading | self.ring(t)
+        if self.GAP is None and t - before > self.SPAN:
+            dirty |= self.SPARSE
+        letters, triggers, self.fading = self.evaluate(t, dirty)
+        if every:
+            self.until[:] = [None] * len(self.until)
+        self.dirty = 0
         self.position = t
-        letters = triggers = every
-        again = 0
-        for place in changed:
-            own = self._concern[place]
-            letters |= own[0]
-            triggers |= own[1]
-            again |= own[2]
-        if self.since == NEVER:
-            triggers = again = 0
-        self.conclude(t, letters, again << len(self.rules) | triggers)
-        self.captured = [one for one in self.captured if one.keeps(t)]
+        if self.opens_at == NEVER:
+            triggers = every = 0
+        self.conclude(t, letters | every, triggers | every)
+        self.watched = [one for one in self.watched if one.keeps(t)]
+
+    def leave(self) -> None:
+        """See `Schedule`; what occurred is seen until the next position by who captures."""
 
     def open(self, t: int) -> None:
         """Let attempts start from `t` on, as if none had run before."""
-        self.since = t
+        self.opens_at = t
         for rule in self.starters:
             if rule.trigger >= 0:
-                if self.flow.origin is not None:
-                    rule.before = self.flow.values[rule.trigger]
+                if self.origin is not None:
+                    rule.before = self.v[rule.trigger]
                 rule.running = False
                 if rule.repeats:
                     self.repeating |= 1 << rule.index
 
     def stand_at_last(self, end: int) -> int:
         """Go to the last position at or before `end`, up to which time has come; returns it."""
-        flow = self.flow
-        if flow.gap is not None:
-            last = flow.position + (end - flow.position) // flow.gap * flow.gap
-            if last > flow.position:
+        if self.GAP is not None:
+            last = self.position + (end - self.position) // self.GAP * self.GAP
+            if last > self.position:
                 # Nothing that anyone waited for changes, but what occurred before is over.
-                flow.evaluate(last)
-        return flow.position
+                if self.gathered:
+                    super().leave()
+                self.before = last - self.GAP
+                self.evaluate(last, self.fading)
+                self.position = last
+        return self.position
 
-    @property
-    def next_decision(self) -> int:
-        """The next instant at which time alone can decide an attempt or start one."""
-        due = min((judge.next_due for judge in self.judges), default=NEVER)
-        # What changes at an instant is known when that instant has passed.
-        return min(due, self.next_position() + 1)
+
+def _bits(places: Iterable[int]) -> int:
+    return sum(1 << place for place in places)

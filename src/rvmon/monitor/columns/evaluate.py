@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rvmon.dataflow.inputs import Inputs
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
@@ -18,7 +17,7 @@ from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.inputs.health import HealthLog, holds_nan
+from rvmon.monitor.inputs.health import Arrivals, HealthLog, holds_nan
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -75,7 +74,8 @@ class ColumnJudge:
         self._timeline = Timeline(plan, names, asked)
         self._ignoring = compiled.checked.ignoring
         self._health = HealthLog()
-        self._inputs = Inputs(compiled.checked, names)
+        self._absent = frozenset({*compiled.checked.signals, *compiled.checked.events} - names)
+        self._expired: dict[str, tuple[int, int]] = {}
         self._outages = ColumnOutages(compiled.checked, names)
         self._last: int | None = None
 
@@ -103,8 +103,6 @@ class ColumnJudge:
             self._last = int(own[-1])
         if self._health.began is None and len(times):
             self._health.began = int(times[0])
-            for slot in self._inputs.slots.values():
-                slot.first_at = self._health.began
 
     @property
     def _all_rules(self) -> Sequence[ColumnRule]:
@@ -120,8 +118,8 @@ class ColumnJudge:
         for name, bound in self._stale.items():
             found = times[:-1][np.diff(times) > bound + 1] + (bound + 1)
             if len(found):
-                count, first = self._inputs.expired.get(name, (0, int(found[0])))
-                self._inputs.expired[name] = (count + len(found), first)
+                count, first = self._expired.get(name, (0, int(found[0])))
+                self._expired[name] = (count + len(found), first)
 
     def report(self, until: int | None, others: Report | None) -> Report:
         """End the trace and judge it; there has been a row.
@@ -139,7 +137,7 @@ class ColumnJudge:
             rule.finish(self._timeline, end, stands_at, self._outages.at)
         kept = [*self._ledger.close(), *(() if others is None else others.attempts)]
         self._note_stale(np.array([last, end + 1]))
-        health = self._health.report(self._chosen, self._inputs, None)
+        health = self._health.report(self._chosen, Arrivals(self._absent, {}, self._expired), None)
         ids = [one.requirement.id for one in self._chosen]
         attempts, found = _assembled(ids, self._rules, kept)
         determined = {rule.id: rule.is_determined for rule in self._rules}

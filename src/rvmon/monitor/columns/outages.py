@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.dataflow.outages import Outage, note_found, note_lost, outages_at_first
+from rvmon.dataflow.outages import Outage, Outages
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import TIME_LIMIT
@@ -28,10 +28,9 @@ class ColumnOutages:
     """
 
     def __init__(self, spec: CheckedSpec, names: Set[str]) -> None:
-        self._spec = spec
         self._signals = sorted(names & spec.signals.keys())
-        self._now = outages_at_first(spec, {*spec.signals, *spec.events} - names)
-        self._seen: dict[str, list[Outage]] = {name: [one] for name, one in self._now.items()}
+        self._known = Outages(spec, names)
+        self._seen: dict[str, list[Outage]] = {name: [one] for name, one in self._known.now.items()}
 
     def take(self, times: NDArray[np.int64], columns: Mapping[str, NDArray[Any]]) -> None:
         """Look through rows.
@@ -60,10 +59,10 @@ class ColumnOutages:
 
     def _row(self, name: str, t: int, *, lost: bool) -> None:
         if not lost:
-            note_found(self._now, name, t)
-        elif name not in self._now:
-            note_lost(self._now, self._spec, name, HealthKind.NAN, t)
-            self._seen.setdefault(name, []).append(self._now[name])
+            self._known.found(name, t)
+        elif name not in self._known.now:
+            self._known.lost(name, t, HealthKind.NAN.value)
+            self._seen.setdefault(name, []).append(self._known.now[name])
 
 
 def _since(outage: Outage) -> int:

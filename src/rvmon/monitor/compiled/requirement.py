@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.bulk import moves_in_runs
@@ -28,7 +29,7 @@ from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.spec.checked.formula import Compare
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 
 RUN_BYTES = 20
 """Of an attempt in a run: the instant of its trigger, its number, what was seen."""
@@ -98,11 +99,13 @@ class CompiledRequirement:
         self.is_beside = is_beside
         self.rank = rank
         self.spec = spec
-        self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+        self.gap = spec.gap
         self.requirement = requirement
         self.obligation = obligation
         self.alphabet: Alphabet = alphabet_of(obligation.owed)
         self._owed = factory.next(obligation.owed)
+        self.lanes: dict[object, Any] = {}
+        """What was generated for its runs; see `rvmon.monitor.attempts.lane_classes`."""
 
     @cached_property
     def _built(self) -> Automaton | DoesNotCloseError:

@@ -3,19 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rvmon.dataflow.inputs import Inputs, payloads_of
+from rvmon.dataflow.inputs import payloads_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.intake import MOST_HELD, Intake
 from rvmon.readers.alternation import Alternations
+from rvmon.runtime.nodes import Nodes
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Arrivals:
+    """What was seen of signals and events in a run.
+
+    Attributes:
+        absent: the names without a source.
+        first: by signal, the instant of its first update; `None`: there was none.
+        expired: by signal how often it became stale, and the first instant of that.
+    """
+
+    absent: frozenset[str]
+    first: Mapping[str, int | None]
+    expired: Mapping[str, tuple[int, int]]
+
+
+def arrivals_of(nodes: Nodes) -> Arrivals:
+    """What was seen by generated code."""
+    names = nodes.SIGNALS
+    expired = {names[signal]: found for signal, found in nodes.expired.items()}
+    return Arrivals(nodes.absent, dict(zip(names, nodes.first, strict=True)), expired)
 
 
 class HealthLog:
@@ -74,22 +97,22 @@ class HealthLog:
     def report(
         self,
         requirements: Sequence[CompiledRequirement],
-        inputs: Inputs,
+        arrivals: Arrivals,
         intake: Intake | None,
     ) -> list[Health]:
         """All findings of the run.
 
         Args:
             requirements: that were judged.
-            inputs: of the run, at its end.
+            arrivals: of the run, at its end.
             intake: of the run, if samples were held back.
         """
         readers = _readers(requirements)
         found = self.seen(requirements)
-        found += self._unfed(readers, inputs)
+        found += self._unfed(readers, arrivals)
         found += [
             Health(HealthKind.STALE, name, count, first, readers.get(name, ()))
-            for name, (count, first) in inputs.expired.items()
+            for name, (count, first) in arrivals.expired.items()
         ]
         if intake is not None:
             found += [
@@ -113,19 +136,16 @@ class HealthLog:
             for (kind, shown, name), (count, first) in self._seen.items()
         ]
 
-    def _unfed(self, readers: Mapping[str, tuple[str, ...]], inputs: Inputs) -> list[Health]:
+    def _unfed(self, readers: Mapping[str, tuple[str, ...]], arrivals: Arrivals) -> list[Health]:
         """Names without a source, and signals that were unknown at first."""
         found = []
         for name, ids in readers.items():
-            slot = inputs.slots.get(name)
-            if name in inputs.absent:
+            if name in arrivals.absent:
                 found.append(Health(HealthKind.ABSENT, name, 1, None, ids))
-            elif slot is not None and self.began is not None and slot.first_at != self.began:
-                since = "no value" if slot.first_at is None else "first value at "
-                when = "" if slot.first_at is None else format_ticks(slot.first_at)
-                found.append(
-                    Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since + when)
-                )
+            elif name in arrivals.first and self.began not in (None, arrivals.first[name]):
+                first = arrivals.first[name]
+                since = "no value" if first is None else f"first value at {format_ticks(first)}"
+                found.append(Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since))
         return found
 
 

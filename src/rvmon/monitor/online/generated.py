@@ -8,12 +8,13 @@ from typing import Any
 
 from rvmon.automaton.machine import Machine
 from rvmon.codegen.python_unit import unit_class
-from rvmon.dataflow.outages import note_found, note_lost, outages_at_first
+from rvmon.dataflow.outages import Outages
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.judges import judge_of
 from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.inputs.health import Arrivals, arrivals_of
 from rvmon.monitor.online.generated_records import GeneratedRecords, Hearing, UnitStanding
 from rvmon.monitor.online.lanes import Lanes
 from rvmon.monitor.online.monitor import Monitor
@@ -23,7 +24,6 @@ from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.unit import Unit
 from rvmon.runtime.values import NEVER
-from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 
@@ -97,10 +97,8 @@ class GeneratedLanes(Lanes):
         self.flush: Flush = self._flush
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
-        self.alone = not forms.others
         self.unit = unit
-        absent = frozenset() if sources is None else {*spec.signals, *spec.events} - sources
-        self.outages = outages_at_first(spec, absent)
+        self.outages = Outages(spec, sources)
         self._counts = [0] * len(forms.requirements)
         clerks: list[Any] = [None] * (len(forms.requirements) + len(forms.plan.hidden_of))
         unit.restart(self, clerks)
@@ -124,9 +122,9 @@ class GeneratedLanes(Lanes):
 
     # What the unit calls.
 
-    def lost(self, signal: int, t: int, why: str) -> None:
+    def lost(self, name: str, t: int, why: str) -> None:
         """Hear that a signal is not known from `t` on."""
-        note_lost(self.outages, self.spec, self.unit.SIGNALS[signal], HealthKind(why), t)
+        self.outages.lost(name, t, why)
 
     def _flush(self, t: int) -> Sequence[Attempt]:
         """What a sample at `t` has decided; it is over."""
@@ -134,11 +132,16 @@ class GeneratedLanes(Lanes):
         self.unit.after = t
         return decided
 
-    def found(self, signal: int, t: int) -> None:
+    def found(self, name: str, t: int) -> None:
         """Hear that a signal has a value from `t` on."""
-        note_found(self.outages, self.unit.SIGNALS[signal], t)
+        self.outages.found(name, t)
 
     # What the monitor calls.
+
+    @property
+    def arrivals(self) -> Arrivals:
+        """See `Lanes`."""
+        return arrivals_of(self.unit)
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
@@ -197,8 +200,6 @@ class GeneratedLanes(Lanes):
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts, rule.runs = [], {}
         super().finish(end, reached)
-        if self.alone:
-            self._show_inputs()
 
     def undetermined(self) -> list[str]:
         """See `Lanes`."""
@@ -208,15 +209,6 @@ class GeneratedLanes(Lanes):
             if not self.unit.is_determined(index)
         ]
         return [*own, *super().undetermined()]
-
-    def _show_inputs(self) -> None:
-        """Note what the unit saw of the inputs where their health is reported from."""
-        inputs = self.main.flow.inputs
-        for name, first in zip(self.unit.SIGNALS, self.unit.first, strict=True):
-            inputs.slots[name].first_at = first
-        inputs.expired = {
-            self.unit.SIGNALS[signal]: found for signal, found in self.unit.expired.items()
-        }
 
 
 class GeneratedMonitor(Monitor):

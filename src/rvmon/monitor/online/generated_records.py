@@ -51,7 +51,7 @@ class UnitStanding:
     @property
     def outages(self) -> Mapping[str, Outage]:
         """See `Standing`."""
-        found: Mapping[str, Outage] = self._unit.clerk.outages
+        found: Mapping[str, Outage] = self._unit.clerk.outages.now
         return found
 
     def last_with(self, place: int, value: int, t: int) -> int | None:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from rvmon.dataflow.flow import Flow
-from rvmon.dataflow.graph import Graph, graph_of
-from rvmon.dataflow.inputs import Inputs
+from rvmon.dataflow.outages import Outages
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.captured import CapturedAttempt, captured_value
 from rvmon.monitor.attempts.instance import Instance, Shape, seen_by, values_in
@@ -14,11 +12,13 @@ from rvmon.monitor.attempts.instances import Instances
 from rvmon.monitor.attempts.judges import CapturingRule, judge_of
 from rvmon.monitor.attempts.keyed import Keyed
 from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.attempts.lane_classes import class_of, class_of_all
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.inputs.health import Arrivals, arrivals_of
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.values import NEVER
-from rvmon.spec.checked.specification import CheckedSpec, Mode, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, Mode
 from rvmon.trace.sample import Scalar, Value
 
 Captured = Mapping[str, Scalar]
@@ -56,15 +56,13 @@ class Lanes:
         self.engine = engine
         self.sources = sources
         self.ledger = ledger
-        self.gap = {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(spec.time, spec.period)
+        self.gap = spec.gap
         self._by_id = {compiled.requirement.id: compiled for compiled in requirements}
         self.instances = Instances(forgets=self.forgets, is_held=self._has_captured)
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
-        shared = [one for one in requirements if one.requirement.for_each is None]
-        roots = [node for compiled in shared for node in compiled.shared_graph.nodes]
-        self.main = Lane(self._flow(graph_of(roots), {}))
-        for compiled in shared:
-            self._seat(self.main, compiled, {}, None)
+        self._shared = [one for one in requirements if one.requirement.for_each is None]
+        self.main = class_of_all(spec, requirements)(Outages(spec, sources), {})
+        self._seat(self.main, self._shared, {}, None)
         self._captured: list[tuple[Lane, Instance | None]] = []
         for compiled in requirements:
             if compiled.requirement.for_each is not None:
@@ -86,6 +84,11 @@ class Lanes:
     def all(self) -> Sequence[Lane]:
         """The lanes there are now."""
         return [lane for lane, _ in self._entries]
+
+    @property
+    def arrivals(self) -> Arrivals:
+        """What was seen of signals and events."""
+        return arrivals_of(self.main)
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
@@ -146,8 +149,8 @@ class Lanes:
         for judge in self.judges:
             judge.pass_to(end)
         for lane, instance in tuple(self._entries):
-            for rule in lane.starters if lane.since < NEVER else ():
-                if rule.trigger < 0 and lane.flow.origin is not None:
+            for rule in lane.starters if lane.opens_at < NEVER else ():
+                if rule.trigger < 0 and lane.origin is not None:
                     position = lane.stand_at_last(end)
                     # A value that came after the last tick of a clock has not occurred at any.
                     if instance is None or instance.first <= position:
@@ -170,7 +173,7 @@ class Lanes:
         ]
         templates = {keyed.template for keyed in self.instances.keyed.values()}
         lanes = [
-            (*self._kind(lane.made_for[0]), dict(lane.made_for[1]), _value(instance), starts)
+            (*self._kind(lane.made_for), dict(lane.captured), _value(instance), starts)
             for lane, instance in self._entries
             for starts in (bool(lane.starters),)
             if lane.made_for is not None and lane not in templates
@@ -198,13 +201,12 @@ class Lanes:
             compiled = self._by_id[name].judges[kind]
             own = self.instances.keyed.get(name)
             instance = None if own is None else own.doubted if value is None else own.known[value]
-            graph = compiled.shared_graph if starts else compiled.consequent_graph
-            lane = Lane(self._flow(graph, captured), (compiled, captured))
+            lane = self._lane(compiled, captured, starts=starts)
             if starts and own is not None:
-                self._seat(lane, compiled, captured, instance)
+                self._seat(lane, [compiled], captured, instance)
                 self.instances.opened(own, value, lane)
             else:
-                self._judge(compiled, lane, captured, instance, started_elsewhere=True)
+                self._seat_attempt(lane, compiled, captured, instance)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
                 parent = next(parents, self.main)
                 if compared := self._compared(parent, compiled, captured, instance):
@@ -213,10 +215,11 @@ class Lanes:
 
     # Making lanes.
 
-    def _flow(self, graph: Graph, captured: Captured) -> Flow:
-        return Flow(graph, Inputs(self.spec, self.sources), self.gap, captured)
+    def _lane(self, compiled: CompiledRequirement, captured: Captured, *, starts: bool) -> Lane:
+        made = class_of(compiled, starts=starts)
+        return made(Outages(self.spec, self.sources), captured, compiled)
 
-    def _judge(
+    def _judges(
         self,
         compiled: CompiledRequirement,
         lane: Lane,
@@ -224,11 +227,12 @@ class Lanes:
         instance: Instance | None,
         *,
         started_elsewhere: bool = False,
-    ) -> AttemptJudge:
+    ) -> Sequence[AttemptJudge]:
+        """What judges the attempts of a requirement, and what judges beside it."""
         judge = judge_of(
             compiled,
             self.engine,
-            lane.flow,
+            lane,
             self.ledger,
             captured,
             rank=0 if instance is None else instance.rank,
@@ -236,46 +240,64 @@ class Lanes:
             doubted=_is_doubted(instance),
             started_elsewhere=started_elsewhere,
         )
-        lane.add_judge(judge)
-        return judge
+        return [judge]
 
     def _seat(
+        self,
+        lane: Lane,
+        requirements: Sequence[CompiledRequirement],
+        captured: Captured,
+        instance: Instance | None,
+    ) -> None:
+        """Give requirements triggers in a lane, and judges, unless attempts bring theirs."""
+        groups = [
+            self._rules(lane, kind, captured, instance)
+            for compiled in requirements
+            for kind in self._kinds(compiled, instance)
+        ]
+        lane.seat([rule for group in groups for rule in group], [group[0] for group in groups])
+
+    def _kinds(
+        self, compiled: CompiledRequirement, instance: Instance | None
+    ) -> Sequence[CompiledRequirement]:
+        """What starts attempts of a requirement: those that are triggered, and those in doubt."""
+        kinds = [compiled, compiled.hidden]
+        if compiled.obligation.trigger is None:
+            kinds = [compiled]
+        elif compiled.requirement.mode is Mode.UPON and _is_doubted(instance):
+            kinds = [compiled.doubted]
+        return [kind for kind in kinds if kind is not None]
+
+    def _seat_attempt(
         self,
         lane: Lane,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
     ) -> None:
-        """Give a requirement triggers in a lane, and judges, unless attempts bring theirs."""
-        lane.expect(compiled)
-        kinds = [compiled, compiled.hidden]
-        if compiled.obligation.trigger is None:
-            kinds = [compiled]
-        elif compiled.requirement.mode is Mode.UPON and _is_doubted(instance):
-            kinds = [compiled.doubted]
-        for kind in kinds:
-            if kind is not None:
-                lane.add_starter(self._starter(lane, kind, captured, instance))
+        """Give a captured attempt its judge; it was triggered in another lane."""
+        lane.seat(self._judges(compiled, lane, captured, instance, started_elsewhere=True), ())
 
-    def _starter(
+    def _rules(
         self,
         lane: Lane,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
-    ) -> Rule:
+    ) -> Sequence[Rule]:
+        """What starts attempts, first, and what judges."""
         if not compiled.requirement.captures:
-            return self._judge(compiled, lane, captured, instance)
+            return self._judges(compiled, lane, captured, instance)
 
         def start(t: int, triggered: int) -> None:
-            new, own, compared = self._captured_lane(lane, compiled, captured, instance, t)
-            new.begin(own, t, triggered)
+            new, compared = self._captured_lane(lane, compiled, captured, instance, t)
+            new.begin(new.judges[0], t, triggered)
             self._captured.append((new, instance))
             if compared is not None:
                 compared.keeps(t)
 
         hidden = compiled is not self._by_id[compiled.requirement.id]
-        return CapturingRule(compiled, lane.flow, start, hidden=hidden)
+        return [CapturingRule(compiled, lane, start, hidden=hidden)]
 
     def _compared(
         self,
@@ -290,16 +312,16 @@ class Lanes:
         main = self._by_id[compiled.requirement.id].obligation
         if main.trigger is None or doubt is None or doubt is main.trigger:
             return None  # what it owes, it owes at one position
-        index = parent.flow.graph.index
+        index = parent.graph.index
         # Of what has a key that is not known, another may have begun wherever the episode runs.
         place = None if _is_doubted(instance) and obligation.doubt is not None else index[doubt]
         return CapturedAttempt(parent, compiled, captured, index[main.trigger], place)
 
     def undetermined(self) -> list[str]:
         """The requirements whose trigger was never true or false."""
-        determined: set[str] = set()
-        for lane in self.all:
-            determined.update(lane.determined)
+        asked = [(self.main, one) for one in self._shared]
+        asked += [(lane, one) for lane, _ in self.instances.entries() if (one := lane.made_for)]
+        determined = {one.requirement.id for lane, one in asked if lane.is_determined(one)}
         return [name for name in self._by_id if name not in determined]
 
     def _captured_lane(
@@ -309,29 +331,26 @@ class Lanes:
         captured: Captured,
         instance: Instance | None,
         t: int,
-    ) -> tuple[Lane, AttemptJudge, CapturedAttempt | None]:
+    ) -> tuple[Lane, CapturedAttempt | None]:
         """A lane for one attempt, triggered at `t`, in which its captured values are constants."""
         own = dict(captured)
         for capture in compiled.requirement.captures:
-            own[capture.name] = captured_value(capture.value, parent.flow, own)
+            own[capture.name] = captured_value(capture.value, parent, own)
         compared = self._compared(parent, compiled, own, instance)
-        lapses = compared is not None and compared.may_begin_otherwise
-        graph = compiled.consequent_graph
-        if compiled.looks_back_beyond(parent.flow.graph):
-            lane = Lane(self._flow(graph, own), (compiled, own))
-            if lapses:
-                lane.flow.cut_at(t)
-            judge = self._judge(compiled, lane, own, instance, started_elsewhere=True)
+        lane = self._lane(compiled, own, starts=False)
+        self._seat_attempt(lane, compiled, own, instance)
+        replays = compiled.looks_back_beyond(parent.graph)
+        if not replays:
+            lane.clerk = parent.clerk.copy()
+            parent.fork(lane)
+        if compared is not None and compared.may_begin_otherwise:
+            lane.cut_at(t)
+        if replays:
             self._replay(lane, instance)
             lane.through(t)
-        else:
-            lane = Lane(parent.flow.fork(graph, own), (compiled, own))
-            if lapses:
-                lane.flow.cut_at(t)
-            judge = self._judge(compiled, lane, own, instance, started_elsewhere=True)
         if compared is not None:
             compared.follow(lane)
-        return lane, judge, compared
+        return lane, compared
 
     def _replay(self, lane: Lane, instance: Instance | None) -> None:
         """Let a new lane see the samples so far."""
@@ -344,7 +363,7 @@ class Lanes:
         for value in keyed.values_to_open(values):
             instance = keyed.instance(value, t)
             self.instances.opened(keyed, value, self._instance_lane(keyed, instance, t))
-        if keyed.template.since == NEVER and None in values_in(keyed.each.value, values):
+        if keyed.template.opens_at == NEVER and None in values_in(keyed.each.value, values):
             keyed.template.open(t)
 
     def _make_keyed(self, compiled: CompiledRequirement) -> Keyed:
@@ -354,25 +373,24 @@ class Lanes:
             raise AssertionError("it has no instances")
         captured = {each.name: None}
         instance = Instance(0, each.value, None, 0)
-        lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
-        self._seat(lane, compiled, captured, instance)
+        lane = self._lane(compiled, captured, starts=True)
+        self._seat(lane, [compiled], captured, instance)
         # Without a source, whatever occurs is unknown, from the first position on.
-        if self.sources is None or each.value.event in self.sources:
-            lane.since = NEVER
+        if each.value.event not in lane.absent:
+            lane.opens_at = NEVER
         return Keyed(compiled, each, lane, instance, is_timed=self.gap is not None)
 
     def _instance_lane(self, keyed: Keyed, instance: Instance, t: int) -> Lane:
         """A lane for an instance, as of just before the sample at `t`."""
         compiled, reach = keyed.compiled, keyed.reach
         captured = {keyed.each.name: instance.value}
+        lane = self._lane(compiled, captured, starts=True)
+        self._seat(lane, [compiled], captured, instance)
         if reach.is_fresh:
-            flow = keyed.template.flow.twin(captured, reach.varying, reach.own)
-            lane = keyed.template.twin(flow, captured)
-        else:
-            lane = Lane(self._flow(compiled.shared_graph, captured), (compiled, captured))
-        self._seat(lane, compiled, captured, instance)
+            lane.clerk = keyed.template.clerk.copy()
+            keyed.template.twin(lane, reach.varying, reach.own)
         # No attempt starts before the value has occurred.
-        lane.since = NEVER
+        lane.opens_at = NEVER
         if not reach.is_fresh:
             self._replay(lane, instance)
             lane.through(t - 1)

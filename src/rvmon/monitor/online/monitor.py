@@ -282,7 +282,7 @@ class Monitor:
             dropped=self._kept.dropped,
             incomplete=self._lanes.undetermined(),
             health=self._health.report(
-                self.options.requirements, self._lanes.main.flow.inputs, self._intake
+                self.options.requirements, self._lanes.arrivals, self._intake
             ),
             origin=self._health.began or 0,
             end=end,

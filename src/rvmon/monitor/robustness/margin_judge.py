@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from rvmon.dataflow.flow import Flow
 from rvmon.dataflow.leaves import reads
 from rvmon.dataflow.margin_nodes import Rest
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
@@ -16,6 +15,7 @@ from rvmon.dataflow.steps import INFINITE, Step, add
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
+from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.robustness.values import Robustness
 from rvmon.spec.checked.specification import CheckedSpec
@@ -64,7 +64,7 @@ class MarginJudge(AttemptJudge):
         self,
         compiled: CompiledRequirement,
         plan: Plan,
-        flow: Flow,
+        flow: Lane,
         clerk: Gauger,
         captured: Mapping[str, Scalar],
         spec: CheckedSpec,
@@ -74,7 +74,7 @@ class MarginJudge(AttemptJudge):
         super().__init__(compiled, None, flow, clerk, captured)
         self.trigger = self.again = -1  # the other judge starts them
         self.watches = True
-        self.inputs = flow.inputs
+        self._lane = flow
         self.restless = True
         self.gauger = clerk
         self.every = every
@@ -102,12 +102,11 @@ class MarginJudge(AttemptJudge):
         if isinstance(core, Constant):
             fixed = OF_TRUTH[TRUE if core.value else FALSE]
             return (lambda: fixed), None
-        flow, inputs, state = self.flow, self.inputs, core.proposition
-        place = flow.graph.index[state]
+        lane, state = self._lane, core.proposition
+        place = lane.graph.index[state]
 
         def truth() -> int:
-            found: int = flow.values[place]
-            return found
+            return lane.v[place]
 
         if core.sense is Sense.KNOWN_FALSE:
             return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
@@ -115,9 +114,9 @@ class MarginJudge(AttemptJudge):
         if state.leaf is None:
             read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
         else:
-            read = margin_reader(state.leaf, truth, inputs, self.captured, spec)
+            read = margin_reader(state.leaf, truth, lane, self.captured, spec)
             about = reads(state.leaf)
-            if about.momentary and not about.names & inputs.absent:
+            if about.momentary and not about.names & lane.absent:
                 later = OF_TRUTH[FALSE]
         if core.sense is Sense.TRUE:
             return read, later

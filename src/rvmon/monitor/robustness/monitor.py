@@ -171,7 +171,7 @@ class _MeasuringLanes(Lanes):
         self._plans: dict[CompiledRequirement, Plan] = {}
         super().__init__(spec, requirements, "auto", sources, gauged)
 
-    def _judge(
+    def _judges(
         self,
         compiled: CompiledRequirement,
         lane: Lane,
@@ -179,8 +179,8 @@ class _MeasuringLanes(Lanes):
         instance: Instance | None,
         *,
         started_elsewhere: bool = False,
-    ) -> AttemptJudge:
-        judge = super()._judge(
+    ) -> Sequence[AttemptJudge]:
+        judges = super()._judges(
             compiled, lane, captured, instance, started_elsewhere=started_elsewhere
         )
         requirement = compiled.requirement
@@ -191,15 +191,14 @@ class _MeasuringLanes(Lanes):
         beside = MarginJudge(
             compiled,
             self._plans[compiled],
-            lane.flow,
+            lane,
             self._gauged,
             captured,
             self.spec,
             every=self._streams and alone and told,
         )
-        lane.add_judge(beside)
-        self._gauged.beside[judge] = beside
-        return judge
+        self._gauged.beside[judges[0]] = beside
+        return [*judges, beside]
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """See `Lanes`."""

@@ -174,6 +174,11 @@ class CheckedSpec:
     crosses: Mapping[str, Cross] = field(default_factory=dict)
 
     @property
+    def gap(self) -> int | None:
+        """Ticks between two positions; `None` if only samples are positions."""
+        return {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(self.time, self.period)
+
+    @property
     def ignoring(self) -> frozenset[str]:
         """The signals of which NaN and null are no update."""
         return frozenset(name for name, signal in self.signals.items() if signal.ignores_nan)

@@ -1,0 +1,92 @@
+"""The classes of lanes, generated once for all runs of a specification."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeVar
+
+from rvmon.codegen.planning import plan_of_lane, uses_of
+from rvmon.codegen.python_nodes import keeps_stretches
+from rvmon.codegen.python_unit import lane_class
+from rvmon.codegen.unit_plan import Uses
+from rvmon.dataflow.graph import Graph, graph_of
+from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.runtime.values import NEVER
+from rvmon.spec.checked.specification import CheckedSpec
+
+Made = TypeVar("Made", bound=Lane)
+
+
+def class_of_all(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> type[Lane]:
+    """The class of the lane that requirements without `for each` share.
+
+    It sees when each signal that some requirement reads had its first value, and what is stale.
+
+    Args:
+        spec: of the requirements.
+        requirements: all that are judged.
+    """
+    key = tuple(one.rank for one in requirements)
+    cached = requirements[0].lanes if requirements else {}
+    if key not in cached:
+        shared = [one for one in requirements if one.requirement.for_each is None]
+        graph = graph_of(node for one in shared for node in one.shared_graph.nodes)
+        names = {name for one in requirements for name in one.reads}
+        names |= {name for name, signal in spec.signals.items() if signal.stale_after is not None}
+        uses = _uses_of([graph], shared)
+        cached[key] = generated(spec, graph, {*names, *uses}, uses, Lane)
+    made: type[Lane] = cached[key]
+    return made
+
+
+def class_of(compiled: CompiledRequirement, *, starts: bool) -> type[Lane]:
+    """The class of the lanes of a requirement's instances, or of its captured attempts.
+
+    Args:
+        compiled: the requirement, or what judges its attempts in doubt.
+        starts: whether attempts start in it.
+    """
+    key = "instances" if starts else "attempts"
+    if key not in compiled.lanes:
+        graph = compiled.shared_graph if starts else compiled.consequent_graph
+        uses = _uses_of([graph], [compiled] if starts else [])
+        compiled.lanes[key] = generated(compiled.spec, graph, uses, uses, Lane)
+    made: type[Lane] = compiled.lanes[key]
+    return made
+
+
+def generated(
+    spec: CheckedSpec,
+    graph: Graph,
+    names: Iterable[str],
+    uses: Mapping[str, Uses],
+    base: type[Made],
+) -> type[Made]:
+    """A class of lanes.
+
+    Args:
+        spec: declares the names.
+        graph: the formulas.
+        names: the signals and events to keep something of.
+        uses: what is asked of them.
+        base: what it derives from.
+    """
+    plan = plan_of_lane(spec, graph, names, uses)
+    made = lane_class(plan, base)
+    lasting = [(n, state) for n, state in enumerate(graph.nodes) if keeps_stretches(state)]
+    made.graph = graph
+    made.SPARSE = sum(1 << place for place, _ in lasting)
+    spans = ((state.high or 0) - state.low + 1 for _, state in lasting)
+    made.SPAN = min(spans, default=NEVER)
+    return made
+
+
+def _uses_of(graphs: list[Graph], capturing: Iterable[CompiledRequirement]) -> dict[str, Uses]:
+    """What is asked of signals and events, also by the captured attempts of requirements."""
+    captured = []
+    for compiled in capturing:
+        if compiled.requirement.captures:
+            graphs += [one.consequent_graph for one in compiled.judges.values()]
+            captured += [capture.value for capture in compiled.requirement.captures]
+    return uses_of(graphs, captured)
