@@ -79,8 +79,6 @@ class Lane(Nodes, Schedule):
         self.clear()
         self.captured = captured
         self.made_for = made_for
-        self.judges: Sequence[AttemptJudge] = ()
-        self.starters: Sequence[Rule] = ()
         self.opens_at = -TIME_LIMIT
         self.watched: list[WatchedAttempt] = []
         self.clerk: Outages = outages
@@ -88,7 +86,7 @@ class Lane(Nodes, Schedule):
         self.cut = NEVER
         self.begun: int | None = None
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
-        self.set_up(())
+        self.seat((), ())
 
     def seat(self, rules: Sequence[Rule], starters: Sequence[Rule]) -> None:
         """Have rules driven.
@@ -98,7 +96,8 @@ class Lane(Nodes, Schedule):
             starters: of these, those of which attempts start in it.
         """
         self.set_up(rules)
-        self.judges = [rule for rule in rules if isinstance(rule, AttemptJudge)]
+        judges = [rule for rule in rules if isinstance(rule, AttemptJudge)]
+        self.judges: Sequence[AttemptJudge] = judges
         self.starters = starters
         # What no rule asks for has a bit, too: of all nodes it is kept since when they are so.
         letters = [1 << len(rules)] * self.NODES

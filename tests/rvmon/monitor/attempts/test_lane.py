@@ -22,35 +22,39 @@ from tests.tools.build import (
     x,
 )
 
-from rvmon.dataflow.flow import Flow
+from rvmon.codegen.planning import uses_of
 from rvmon.dataflow.graph import graph_of
-from rvmon.dataflow.inputs import Inputs
+from rvmon.dataflow.outages import Outages
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.attempts.lane_classes import generated
 from rvmon.runtime.past import Since
 from rvmon.runtime.values import NEVER
 
 
-def flow_of(formula, gap=1, stale=None, names=None):
+def lane_of(formula, stale=None, names=None):
+    """A lane in which only the formula is evaluated, and the formula's place."""
     found = requirement(eventually(q), upon=formula)
     state = lower(found, Factory()).trigger
-    inputs = Inputs(spec_of(found, stale=stale), names)
-    flow = Flow(graph_of([state]), inputs, gap, {})
-    return flow, flow.graph.index[state]
+    spec, graph = spec_of(found, stale=stale), graph_of([state])
+    uses = uses_of([graph], ())
+    lane = generated(spec, graph, uses, uses, Lane)(Outages(spec, names), {})
+    return lane, graph.index[state]
 
 
 def word(formula, end, stale=None, names=None, **rows):
-    """The truth at each tick, evaluated only where the flow says that something changes."""
-    flow, place = flow_of(formula, stale=stale, names=names)
+    """The truth at each tick, evaluated only where the lane says that something changes."""
+    lane, place = lane_of(formula, stale=stale, names=names)
     samples = {sample.t: sample.values for sample in timeline(**rows)}
     letters = []
     for t in range(end):
         if t in samples:
-            flow.apply(t, samples[t])
-        if t in samples or t == flow.next_change:
-            flow.evaluate(t)
-        letters.append("f?t"[flow.values[place]])
+            lane.sample(t, samples[t])
+        elif t == lane.next_position():
+            lane.visit(t)
+        letters.append("f?t"[lane.v[place]])
     return "".join(letters)
 
 
@@ -84,26 +88,16 @@ def test_staleness_is_a_change_by_time_alone():
 def test_what_has_no_source_is_unknown_throughout():
     """An event that cannot arrive is not false but unknown, and nothing waits for it."""
     assert word(e, 3, names=frozenset("p"), p="1") == "???"
-    flow, _ = flow_of(e, names=frozenset("p"))
-    flow.evaluate(0)
-    assert flow.next_change == NEVER
+    lane, _ = lane_of(e, names=frozenset("p"))
+    lane.visit(0)
+    assert lane.next_position() == NEVER
 
 
 def test_nothing_is_due_when_nothing_changes():
     """Held values and settled windows leave nothing to wake up for."""
-    flow, _ = flow_of(two(p, "and", once(q, 0, 5)))
-    flow.apply(0, {"p": True, "q": False})
-    flow.evaluate(0)
-    assert flow.next_change == NEVER
-
-
-def test_an_update_without_effect_changes_no_node():
-    """A number that stays on its side of the threshold is evaluated once and goes no further."""
-    flow, _ = flow_of(two(compared(x, ">", 1), "and", p))
-    flow.apply(0, {"x": 5, "p": True})
-    flow.evaluate(0)
-    flow.apply(1, {"x": 6})
-    assert flow.evaluate(1) == []
+    lane, _ = lane_of(two(p, "and", once(q, 0, 5)))
+    lane.sample(0, {"p": True, "q": False})
+    assert lane.next_position() == NEVER
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 1_000), (700, 1_000), (999, 1_000), (5, None)])
