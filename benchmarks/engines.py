@@ -7,9 +7,10 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parent.parent / "src" / "rvmon"
 
 _FORMULAS = ("formula/*.py",)
-_INPUTS = tuple(
-    f"dataflow/{name}.py"
-    for name in ("flow", "graph", "inputs", "leaves", "numbers", "outages", "previous")
+_INPUTS = (
+    *(f"dataflow/{name}.py" for name in ("graph", "inputs", "leaves", "numbers", "outages")),
+    *(f"codegen/{name}.py" for name in ("planning", "python_class", "python_lane")),
+    *("runtime/copies.py", "runtime/nodes.py"),
 )
 _ATTEMPTS = tuple(
     f"monitor/{name}.py"
@@ -18,6 +19,7 @@ _ATTEMPTS = tuple(
         "attempts/captured",
         "attempts/instance",
         "attempts/lane",
+        "attempts/lane_classes",
         "attempts/machine_judge",
         "build",
         "compiled/requirement",

@@ -4,7 +4,7 @@ EQUIVALENT = {
     "table.py off by one: `position - 1` => `position`": (
         "time passes up to the position before its letter is read, here or in the step itself"
     ),
-    "python_source.py dropped operand: `name in uses and uses[name].history` => `name in uses`": (
+    "python_class.py dropped operand: `name in uses and uses[name].history` => `name in uses`": (
         "what was before is kept of more signals, and nobody asks for it"
     ),
     "rule.py constant: `self.restless = False` => `self.restless = (True)`": (
@@ -30,8 +30,6 @@ EQUIVALENT = {
     "=> `before is None or isinstance(before, str)`": (
         "both are values of one signal: if one is a label, so is the other"
     ),
-    "flow.py dropped operand: `reads.momentary and (not self._is_never(place))` => "
-    "`not self._is_never(place)`": "what stays as it is is worked out again at the next position",
     "factory.py dropped statement: `flat.pop(unit, None)` => `pass`": (
         "`true and x` is only not made smaller; it still means x"
     ),
@@ -51,10 +49,6 @@ EQUIVALENT = {
     "`self.updates = (2) if first else 2`": "after one update there is no value before it anyway",
     "construct.py off by one: `entered[clock] + 1` => `entered[clock]`": (
         "another age of the same region, or a row for one in which no step can happen"
-    ),
-    "flow.py and/or: `reads.momentary and (not self._is_never(place))` => "
-    "`reads.momentary or not self._is_never(place)`": (
-        "what stays as it is is worked out again at the next position"
     ),
     "ledger.py off by one: `2 * end + 1` => `2 * end`": (
         "a network has come further than that by itself, and automata look at whole instants"
@@ -132,8 +126,8 @@ EQUIVALENT = {
     "len(piece.truths[self._determined].must) > (1)`": (
         "each stretch has two entries: there is never one alone"
     ),
-    "outages.py dropped operand: `spec.signals[name].stale_after or 0` => "
-    "`spec.signals[name].stale_after`": "the bound is only told of what has one",
+    "outages.py dropped operand: `self._spec.signals[name].stale_after or 0` => "
+    "`self._spec.signals[name].stale_after`": "the bound is only told of what has one",
     "starts.py constant: `self.eyed = False` => `self.eyed = (True)`": (
         "it is asked for when an attempt has begun, which sets it"
     ),

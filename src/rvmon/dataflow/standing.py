@@ -10,7 +10,7 @@ from rvmon.dataflow.outages import Outage
 
 
 class Standing(Protocol):
-    """The truth of state formulas at a position, and since when; see `rvmon.dataflow.flow.Flow`."""
+    """The truth of state formulas at a position, and since when, from whoever evaluates them."""
 
     @property
     def graph(self) -> Graph:

@@ -272,17 +272,16 @@ class Lane(Nodes, Schedule):
     def sample(self, t: int, values: Mapping[str, Reported]) -> None:
         """Take a sample; time has come to `t − 1` before."""
         gap = self.GAP or 1
-        for name in values:
-            if name in self.SIGNALS:
-                signal = self.SIGNALS.index(name)
-                if self.first[signal] is None:
-                    self.first[signal] = t
         self.waiting.append((t, values))
         self.awaited = -(-t // gap) * gap
         if self.awaited == t:
             self.visit(t)
-        else:
-            self.reach(t)
+            return
+        # It is taken at a position to come, of which there may be none.
+        for signal, name in enumerate(self.SIGNALS):
+            if name in values and self.first[signal] is None:
+                self.first[signal] = t
+        self.reach(t)
 
     def visit(self, t: int) -> None:
         """See `Schedule`."""

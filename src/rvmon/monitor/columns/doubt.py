@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Doubt:
-    """Follows a trigger from piece to piece; `rvmon.dataflow.previous.Hidden` for whole stretches.
+    """Follows a trigger from piece to piece; `rvmon.runtime.past.doubt` for whole stretches.
 
     Args:
         pulse: whether it starts an attempt wherever it is true.
