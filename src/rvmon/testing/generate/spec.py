@@ -60,8 +60,8 @@ class Profile:
         time: the time model; `None`: any.
         depth: of the deepest consequent.
         requirements: at most so many.
-        many: the per cent of specifications that hold 8 to 14, half of them laws on truth values and
-            their past alone: engines share what such requirements have in common.
+        many: the per cent of specifications that hold 8 to 14, half of them laws on truth values
+            and their past alone: engines share what such requirements have in common.
         numbers: whether comparisons and probes may occur.
         past: whether past operators may occur.
         future: whether future operators may occur.
