@@ -70,10 +70,6 @@ EQUIVALENT = {
     "ranges.py dropped operand: `not pieces or pieces[-1][0] < fresh[0][0]` => `not pieces`": (
         "only a short cut to the same place at the end"
     ),
-    "python_visit.py and/or: `name not in given and re.search(f'(?<![\\\\w.]){name}\\\\b', text)` "
-    "=> `name not in given or re.search(f'(?<![\\\\w.]){name}\\\\b', text)`": (
-        "arrays are fetched that are at hand, or that nobody reads"
-    ),
     "python_values.py and/or: `state.leaf is not None and self._is_instant(state.leaf)` => "
     "`state.leaf is not None or self._is_instant(state.leaf)`": (
         "leaves are looked at when a value comes that would be worked out with the others anyway"
@@ -86,9 +82,6 @@ EQUIVALENT = {
     ),
     "python_visit.py dropped operand: `state.high or 0` => `0`": (
         "samples are looked at that could have been passed over"
-    ),
-    "c_nodes.py constant: `if len(body) > 1:` => `if len(body) > (2):`": (
-        "what is written for a node is one line, or three and more"
     ),
     "c_nodes.py off by one: `mask >> place % GROUP & 1` => `mask >> place % GROUP`": (
         "more changes are noted than anybody hears of"
@@ -139,10 +132,6 @@ EQUIVALENT = {
     ),
     "schedule.py off by one: `t + 1` => `t`": (
         "where only samples are positions the next one is asked, after one that was asked in vain"
-    ),
-    "python_leaves.py and/or: `isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN` "
-    "=> `isinstance(leaf, SignalAtom | Compare) or unborn != UNKNOWN`": (
-        "what is unknown before its birth is unknown either way"
     ),
     "python_nodes.py dropped operand: `is_part and (not wanted[place]) and (depth < "
     "_DEEPEST)` => `is_part and (not wanted[place])`": (

@@ -46,20 +46,24 @@ TRUTHS = {FALSE: "(uint8_t)IS_FALSE", UNKNOWN: "(uint8_t)IS_UNKNOWN", TRUE: "(ui
 """Truth values in C."""
 
 
-def uses_library(plan: Plan, names: Names) -> bool:
+def uses_library(plan: Plan) -> bool:
     """Whether some expression needs `<math.h>`."""
-    roots = [op.entry.c.partition("{")[0] for op in NumericOp if op.entry.of_mathematics]
-    return any(
-        root in line
-        for place in range(len(plan.graph.nodes))
-        for line in node_body(plan, names, place)
-        for root in roots
+    leaves = (state.leaf for state in plan.graph.nodes)
+    compared = (leaf for leaf in leaves if isinstance(leaf, Compare))
+    return any(_of_mathematics(side) for leaf in compared for side in (leaf.left, leaf.right))
+
+
+def _of_mathematics(expression: Numeric) -> bool:
+    return isinstance(expression, Arithmetic) and (
+        expression.op.entry.of_mathematics or any(map(_of_mathematics, expression.args))
     )
 
 
-def node_body(plan: Plan, names: Names, place: int) -> list[str]:
-    """Statements of a function of `m` and `t` that returns the value of a node."""
-    state = plan.graph.nodes[place]
+def node_statements(names: Names, place: int, state: State) -> list[str]:
+    """Statements of a function of `m` and `t` that returns the value of a node.
+
+    There are none where `node_value` gives it.
+    """
     if isinstance(state.leaf, Compare) and (events := events_of(state.leaf.left, state.leaf.right)):
         return list(_over_occurrences(names, state.leaf, events, state.unborn))
     if isinstance(state.leaf, Elapsed):
@@ -68,11 +72,18 @@ def node_body(plan: Plan, names: Names, place: int) -> list[str]:
             f"m->wake[{names.timers[place]}] = (t < due) ? due : NEVER;",
             "return truth_of(true, t >= due);",
         ]
-    return [f"return {_value(plan, names, place, state)};"]
+    return []
 
 
-def _value(plan: Plan, names: Names, place: int, state: State) -> str:
-    operands = [f"m->truth[{operand}]" for operand in plan.graph.operands[place]]
+def node_value(names: Names, place: int, state: State, operands: Sequence[str]) -> str:
+    """The value of a node as an expression.
+
+    Args:
+        names: of the plan.
+        place: of the node.
+        state: the same as a formula; it takes no statements.
+        operands: the truths of its operands.
+    """
     if state.leaf is not None:
         return leaf_value(names, state.leaf, state.unborn)
     match state.op:
@@ -128,7 +139,7 @@ def leaf_value(names: Names, leaf: Leaf, unborn: int = UNKNOWN) -> str:
         case BoundAtom():
             return "truth_of(true, t == m->origin)"
         case SignalAtom(name=name):
-            held = f"m->value[{names.signal(name)}]"
+            held = names.value(name)
             return f"truth_of({held} == {held}, {held} != 0.0)"
         case EventAtom(name=name):
             return f"m->occurs[{names.event(name)}]"
@@ -151,7 +162,7 @@ def _probe(names: Names, probe: Probe, name: str) -> str:
     match probe:
         case Probe.KNOWN:
             if name in names.plan.signals:
-                held = f"m->value[{names.signal(name)}]"
+                held = names.value(name)
                 return f"truth_of(true, {held} == {held})"
             return f"truth_of(true, m->occurs[{names.event(name)}] != IS_UNKNOWN)"
         case Probe.UPDATED:
@@ -208,7 +219,7 @@ def _number(names: Names, expression: Numeric) -> str:
         case Literal(value=value):
             return real(names.label(value) if isinstance(value, str) else value)
         case SignalValue(name=name):
-            return f"m->value[{names.signal(name)}]"
+            return names.value(name)
         case FieldValue(event=event, field=field):
             return f"m->payload[p{names.event(event)}][{names.field(event, field)}]"
         case UpdateValue(function=function, name=name):
@@ -222,8 +233,7 @@ def _number(names: Names, expression: Numeric) -> str:
 
 
 def _update(names: Names, function: UpdateFunction, name: str) -> str:
-    signal = names.signal(name)
-    return f"{function.value}_of(&m->history[{signal}], m->value[{signal}])"
+    return f"{function.value}_of(&m->history[{names.signal(name)}], {names.value(name)})"
 
 
 def _arithmetic(op: NumericOp, args: list[str]) -> str:
@@ -233,7 +243,7 @@ def _arithmetic(op: NumericOp, args: list[str]) -> str:
     return f"finite_only({whole})"
 
 
-def _nested(function: str, args: list[str]) -> str:
+def _nested(function: str, args: Sequence[str]) -> str:
     whole = args[0]
     for arg in args[1:]:
         whole = f"{function}({whole}, {arg})"

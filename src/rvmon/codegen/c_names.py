@@ -48,10 +48,12 @@ class Names:
 
     Args:
         plan: what is generated.
+        value: how the value of a signal is written, by its number.
     """
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, value: str = "m->value[{}]") -> None:
         self.plan = plan
+        self._value = value
         self._signals = {name: number for number, name in enumerate(plan.signals)}
         self._events = {name: number for number, name in enumerate(plan.events)}
         self.fields = {
@@ -73,6 +75,10 @@ class Names:
     def signal(self, name: str) -> int:
         """The number of a signal."""
         return self._signals[name]
+
+    def value(self, name: str) -> str:
+        """The value of a signal, as an expression."""
+        return self._value.format(self._signals[name])
 
     def event(self, name: str) -> int:
         """The number of an event."""

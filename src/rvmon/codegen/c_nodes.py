@@ -6,13 +6,12 @@ than finding out which of them have to be.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import chain
 
-from rvmon.codegen.c_leaves import node_body
+from rvmon.codegen.c_leaves import node_statements, node_value
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State, StateOp
@@ -56,8 +55,8 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
     momentary = momentary_counts(plan)
     guards = guards_of(plan)
     stored = _stored(plan) | set(guards)
-    for place in range(len(plan.graph.nodes)):
-        yield from _node_function(place, node_body(plan, names, place))
+    for place, state in enumerate(plan.graph.nodes):
+        yield from _node_function(place, node_statements(names, place, state))
     for group in range(group_count(plan)):
         yield ""
         yield f"static void look{group}(monitor *m, int64_t t, uint32_t *letters, uint32_t *asked)"
@@ -127,7 +126,7 @@ def _heard(plan: Plan) -> list[_Heard]:
 
 
 def _node_function(place: int, body: list[str]) -> Iterator[str]:
-    if len(body) > 1:
+    if body:
         yield ""
         yield f"static uint8_t node{place}(monitor *m, int64_t t)"
         yield "{"
@@ -202,13 +201,11 @@ def _operand(place: int, operand: int, guards: dict[int, int]) -> str:
 def _node(
     plan: Plan, names: Names, place: int, momentary: int, guards: dict[int, int]
 ) -> Iterator[str]:
-    body = node_body(plan, names, place)
-    text = body[0].removeprefix("return ").removesuffix(";")
-    if len(body) > 1:
-        text = f"node{place}(m, t)"
-    for operand in plan.graph.operands[place]:
-        local = _operand(place, operand, guards)
-        text = re.sub(rf"m->truth\[{operand}\]", local, text)
+    state = plan.graph.nodes[place]
+    text = f"node{place}(m, t)"
+    if not node_statements(names, place, state):
+        operands = [_operand(place, operand, guards) for operand in plan.graph.operands[place]]
+        text = node_value(names, place, state, operands)
     yield f"const uint8_t n{place} = {text};"
     if momentary:
         yield f"if ((n{place} != IS_FALSE) && (m->momentary[{place}] != 0U)) {{"

@@ -87,7 +87,7 @@ class _Writer:
             "REPEATING": str(int(any(map(repeats, self.plan.rules)))),
             "EPISODES": str(int(any(rule.again is not None for rule in self.plan.rules))),
             "NAMES": "\n".join(self._constants()),
-            "INCLUDES": "#include <math.h>\n" if uses_library(self.plan, self.names) else "",
+            "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }
         source = "".join(template(part) for part in _PARTS)
         return CFiles(

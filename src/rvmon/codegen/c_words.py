@@ -6,7 +6,6 @@ timed operators read of them is watched: rows at which none of it changes are pa
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from rvmon.codegen.c_leaves import TRUTHS, leaf_value
@@ -30,10 +29,11 @@ def words_source(plan: Plan, names: Names) -> Iterator[str]:
     """The functions `is_plain`, `begin_words` and `changes` of the batch source."""
     words = [place for place in range(len(plan.graph.nodes)) if _in_words(plan, place)]
     watched = {place: number for number, place in enumerate(_watched(plan, words))}
+    in_row = Names(plan, value="v{}")
     for place in words:
         leaf = plan.graph.nodes[place].leaf
         if leaf is not None and not isinstance(leaf, Constant | Lost):
-            yield from _leaf(plan, names, place, leaf)
+            yield from _leaf(plan, in_row, place, leaf)
     yield from _birth(plan, names)
     yield ""
     yield f"#define WATCHED_COUNT {len(watched)}"
@@ -86,7 +86,7 @@ def _watched(plan: Plan, words: list[int]) -> list[int]:
 
 
 def _leaf(plan: Plan, names: Names, place: int, leaf: Leaf) -> Iterator[str]:
-    """A leaf over the columns that it reads."""
+    """A leaf over the columns that it reads; `names` write the value of a column's row."""
     columns = sorted(map(names.signal, plan.graph.reads[place].names))
     absent = {ProbeAtom: FALSE, Unborn: TRUE}
     without = absent.get(type(leaf), plan.graph.nodes[place].unborn)
@@ -130,8 +130,6 @@ def _birth(plan: Plan, names: Names) -> Iterator[str]:
 
 
 def _rows(columns: list[int], text: str) -> Iterator[str]:
-    for number in columns:
-        text = re.sub(rf"m->value\[{number}\]", f"v{number}", text)
     yield "uint8_t is[WORD] = {0};"
     yield "uint8_t may[WORD] = {0};"
     yield "int64_t i;"

@@ -14,7 +14,7 @@ from rvmon.codegen.python_nodes import (
     value_before,
 )
 from rvmon.codegen.python_values import ValueWriter
-from rvmon.codegen.python_visit import at_hand, indented
+from rvmon.codegen.python_visit import indented
 from rvmon.codegen.unit_plan import Plan
 from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.spec.print.printer import format_formula
@@ -32,9 +32,8 @@ def node_functions(nodes: NodeWriter) -> Iterator[str]:
             yield f"# {place}: {comment(format_formula(state.leaf))}"
     yield ""
     for place in nodes.kept:
-        lines = list(nodes.statements(place))
         yield f"def n{place}(self, t):"
-        yield from indented([*at_hand(lines), *lines, "return n"])
+        yield from indented([*nodes.statements(place), "return n"])
         yield ""
         yield ""
 
@@ -74,7 +73,7 @@ def takes(values: ValueWriter) -> Iterator[str]:
         lines = ["dirty = 0", *values.taken("x", name), "return dirty"]
         yield f"def take{number}(self, t, x):"
         yield f"    # {name!a}"
-        yield from indented([*at_hand(lines), *lines])
+        yield from indented(lines)
         yield ""
     yield f"TAKE = {{{', '.join(f'{name!r}: take{n}' for n, name in enumerate(names))}}}"
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_values import ValueWriter
-from rvmon.codegen.python_visit import VisitWriter, alone, at_hand, indented
+from rvmon.codegen.python_visit import VisitWriter, alone, indented
 from rvmon.codegen.unit_plan import Plan
 
 _WHOLE = 64
@@ -38,8 +38,8 @@ class IntakeWriter:
         self.cones = cones
         self.values = ValueWriter(plan)
         self.arriving = arriving
-        self.sparse = visit.sparse()
-        self.span = visit.span()
+        self.near = f"t - self.position <= {visit.span()}" if visit.sparse() else ""
+        """Whether no stretch of time has a hole before a sample; empty: none ever has."""
         self.whole = 0 < len(arriving) <= _WHOLE
         self.every = [
             line for n, name in enumerate(arriving) for line in self.values.every(f"x{n}", name)
@@ -143,11 +143,8 @@ class IntakeWriter:
 
     def _whole(self) -> Iterator[str]:
         yield "changed = 0"
-        lines: list[str] = []
         for number, name in enumerate(self.arriving):
-            lines += self._noticed(number, name)
-        yield from at_hand(lines)
-        yield from lines
+            yield from self._noticed(number, name)
         yield from alone(self._updated())
         yield from self.visit.flush()
 
@@ -156,12 +153,10 @@ class IntakeWriter:
         yield from self._time()
         yield from indented(self._expired())
         yield "dirty = 0"
-        lines = list(self.every)
+        yield from self.every
         for number, name in enumerate(self.arriving):
-            lines.append(f"if changed & {1 << number}:")
-            lines += indented(self.values.new(f"x{number}", name))
-        yield from at_hand(lines)
-        yield from lines
+            yield f"if changed & {1 << number}:"
+            yield from indented(self.values.new(f"x{number}", name))
         yield from self._after()
 
     def _expired(self) -> Iterator[str]:
@@ -198,12 +193,11 @@ class IntakeWriter:
         if name in self.plan.signals and self.cones.can_follow(name, self.values.instant):
             kept = self.values.replaced("x", name, "x")
             followed = [*alone(self.cones.followed(name, kept)), *self.visit.flush()]
-            lines = [f"elif {self.cones.apart(name, self._quiet())}:", *indented(followed)]
+            lines = [f"elif {self.cones.apart(name, self.near)}:", *indented(followed)]
         general = [*self._time(), "dirty = 0", f"if x is not {self.values.before(name)}:"]
         general += indented(self.values.new("x", name))
         general += self._after()
-        general = [*at_hand(general), *general]
-        yield from indented([*at_hand(head), *head, *lines, *alone(general), *self.visit.flush()])
+        yield from indented([*head, *lines, *alone(general), *self.visit.flush()])
 
     # A sample of any names.
 
@@ -235,9 +229,7 @@ class IntakeWriter:
 
     def _quiet(self) -> str:
         """Whether nothing happens at a sample at which nothing changes."""
-        if self.sparse:
-            return f"t < self.wake and t - self.position <= {self.span}"
-        return "t < self.wake"
+        return " and ".join(filter(None, ["t < self.wake", self.near]))
 
     def _time(self) -> Iterator[str]:
         """Let time come to just before the sample."""
@@ -249,10 +241,7 @@ class IntakeWriter:
 
     def _after(self) -> Iterator[str]:
         """Go on with what changed."""
-        busy = "t >= self.wake"
-        if self.sparse:
-            busy += f" or t - self.position > {self.span}"
-        yield f"if dirty or {busy}:"
+        yield f"if dirty or not ({self._quiet()}):"
         yield "    self.dirty |= dirty"
         yield f"    self.{self._go_on}(t)"
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from rvmon.codegen.python_leaves import known_test
 from rvmon.codegen.python_nodes import BEFORE, NodeWriter, bits, is_timed
-from rvmon.codegen.python_visit import VisitWriter, at_hand, indented
+from rvmon.codegen.python_visit import VisitWriter, indented
 from rvmon.codegen.unit_plan import Plan, asks_knowledge
 from rvmon.spec.checked.formula import Constant, SignalAtom
 
@@ -64,12 +64,12 @@ class ConeWriter:
             leaf = places[0]
             yield f"def cone{leaf}(self, t):"
             lines = [*self.nodes.statements(leaf), *self.visit.momentary_lines(leaf)]
-            lines += [f"if n == v[{leaf}]:", "    return 0, 0, fading"]
+            lines += [f"if n == self.v[{leaf}]:", "    return 0, 0, fading"]
             lines += ["if n == 2:", *indented(self._cone([leaf], places, "2"))]
             lines += ["elif n == 0:", *indented(self._cone([leaf], places, "0"))]
             lines += ["else:", *indented(self._cone([leaf], places, "1"))]
             yield "    letters = triggers = fading = 0"
-            yield from indented([*at_hand(lines), *lines])
+            yield from indented(lines)
             yield "    return letters, triggers, fading"
             yield ""
         listed = ", ".join(f"{1 << places[0]}: cone{places[0]}" for places in found)
@@ -104,7 +104,6 @@ class ConeWriter:
             yield "    self.dirty = 0"
         else:
             yield f"letters = {'triggers = ' if triggers else ''}0"
-        yield from at_hand(lines, "dues")
         yield from lines
 
     def _values(self, leaf: int) -> Iterator[tuple[str, str]]:
@@ -121,11 +120,11 @@ class ConeWriter:
     def _moved(self, leaves: Sequence[int], places: list[int], value: str) -> Iterator[str]:
         """What a sample does that may bring leaves another value, the same to all."""
         if self.joins:
-            yield f"if v[{leaves[0]}] != {value}:"
+            yield f"if self.v[{leaves[0]}] != {value}:"
             yield from indented(self._cone(leaves, places, value))
             return
         if not isinstance(self.plan.graph.nodes[leaves[0]].leaf, SignalAtom):
-            yield f"if v[{leaves[0]}] == {value}:"
+            yield f"if self.v[{leaves[0]}] == {value}:"
             yield from indented(self.visit.done())
             yield "    return ()"
         yield from self._cone(leaves, places, value)
@@ -143,21 +142,20 @@ class ConeWriter:
         atoms = {self.plan.graph.nodes[place].leaf for place in readers}
         return self.each and self.small and len(atoms) == 1 and instant.issuperset(readers)
 
-    def apart(self, name: str, quiet: str) -> str:
+    def apart(self, name: str, near: str) -> str:
         """The condition under which a sample that brings another value of a signal is `followed`.
 
         Args:
             name: of the signal.
-            quiet: the condition under which nothing but a new value can change anything.
+            near: the condition under which no stretch of time has a hole before it; may be empty.
         """
         known = f"self.last{self.plan.signals.index(name)} is not MISSING"
-        quiet = " and ".join(filter(None, [quiet, known, self._is_grown(name)]))
+        given = " and ".join(filter(None, [near, known, self._is_grown(name)]))
         if not self.joins:
-            return quiet
+            return f"t < self.wake and {given}"
         cone = bits(tuple(self._cone_of(name)))
-        rest = quiet.removeprefix("t < self.wake")
-        late = f"t == self.wake < LIMIT{rest} and not self.meets(t, {cone})"
-        return f"(t < self.wake or {late}){rest}"
+        late = f"t == self.wake < LIMIT and {given} and not self.meets(t, {cone})"
+        return f"(t < self.wake or {late}) and {given}"
 
     def growing(self) -> tuple[tuple[int, Awaited], ...]:
         """What is awaited, as `rvmon.runtime.nodes.Nodes.GROWING` has it."""
@@ -231,10 +229,10 @@ class ConeWriter:
 
     def _value_of(self, place: int) -> tuple[list[str], str]:
         """The statements that give a node its value, if it needs any, and then what has it."""
-        lines = list(self.nodes.statements(place))
-        if len(lines) == 1 and self.nodes.settling(place, lines[0].removeprefix("n = ")):
-            return [], self.nodes.settled[place]
-        return lines, "n"
+        value = self.nodes.expression(place)
+        if value is not None and self.nodes.settling(place, value):
+            return [], value
+        return list(self.nodes.statements(place)), "n"
 
     def _then(
         self, node: _Node, written: Mapping[int, tuple[list[str], str]], asked: set[int]
@@ -243,7 +241,7 @@ class ConeWriter:
         place = node.place
         lines, value = written[place]
         onward = (f"moved{place} = True",) if place in asked else ()
-        lines = [*lines, f"if v[{place}] != {value}:"]
+        lines = [*lines, f"if self.v[{place}] != {value}:"]
         lines += indented(self.visit.changed(place, value, onward))
         for other in node.behind:
             lines += indented(self._then(other, written, asked))

@@ -29,10 +29,7 @@ from rvmon.spec.checked.formula import (
 
 
 def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
-    """The value of a leaf at `t`, in a method of the monitor with `s` at hand."""
-    unborn = plan.graph.nodes[place].unborn
-    if isinstance(leaf, SignalAtom | Compare) and unborn != UNKNOWN:
-        return _before_birth(plan, leaf, str(unborn))
+    """The value of a leaf at `t`, in a method of the monitor."""
     match leaf:
         case Lapsed():
             return f"self.lapsed_({place}, t)"
@@ -47,7 +44,7 @@ def leaf_expression(plan: Plan, place: int, leaf: Leaf) -> str:
         case BoundAtom():
             return "2 if t == self.origin else 0"
         case SignalAtom() | Compare():
-            return _atom(plan, leaf)
+            return _atom(plan, leaf, plan.graph.nodes[place].unborn)
         case EventAtom(name=name):
             return f"self.o[{plan.events.index(name)}]"
         case ProbeAtom(probe=probe, name=name):
@@ -62,31 +59,29 @@ def _unborn(plan: Plan, signals: Iterable[tuple[str, bool]]) -> str:
     return " or ".join(f"self.births[{place}] < {2 if moved else 1}" for place, moved in places)
 
 
-def _before_birth(plan: Plan, atom: SignalAtom | Compare, unborn: str) -> str:
-    """The value of an atom over signals, which is something else before their birth."""
+def _atom(plan: Plan, atom: SignalAtom | Compare, unborn: int) -> str:
+    """The value of an atom over signals, which is `unborn` before their birth."""
+    unknown = _unknown(plan, atom, unborn)
+    match atom:
+        case SignalAtom(name=name) | Compare(left=SignalValue(name=name), right=Literal()):
+            held = f"self.s[{plan.signals.index(name)}]"
+            return f"{unknown} if {held} is None else 2 if {known_test(atom, held)} else 0"
+        case _:
+            found = _comparison(plan, atom)
+            return found if unknown == "1" else f"{unknown} if (got := {found}) == 1 else got"
+
+
+def _unknown(plan: Plan, atom: SignalAtom | Compare, unborn: int) -> str:
+    """The value of an atom over signals where it is not known what it reads."""
     signals = signals_of(atom).items()
-    if not signals:
-        return _atom(plan, atom)
+    if unborn == UNKNOWN or not signals:
+        return "1"
     early = f"{unborn} if {_unborn(plan, signals)} else 1"
     if isinstance(atom, Compare):
         events = [plan.events.index(event) for event in events_of(atom.left, atom.right)]
         if events:
             early = f"1 if self.uncertain_({events!r}) else {early}"
-            return f"({early}) if (got := {_atom(plan, atom)}) == 1 else got"
-        if not _is_plain(atom):
-            return f"({early}) if (got := {_atom(plan, atom)}) == 1 else got"
-    return _atom(plan, atom).replace("1 if", f"({early}) if", 1)
-
-
-def _is_plain(atom: Compare) -> bool:
-    return isinstance(atom.left, SignalValue) and isinstance(atom.right, Literal)
-
-
-def _atom(plan: Plan, atom: SignalAtom | Compare) -> str:
-    if isinstance(atom, Compare):
-        return comparison(plan, atom)
-    held = f"s[{plan.signals.index(atom.name)}]"
-    return f"1 if {held} is None else 2 if {held} else 0"
+    return f"({early})"
 
 
 def known_test(leaf: Leaf | None, variable: str) -> str | None:
@@ -109,7 +104,7 @@ def _probe(plan: Plan, probe: Probe, name: str) -> str:
     match probe:
         case Probe.KNOWN:
             if name in plan.signals:
-                return f"0 if s[{plan.signals.index(name)}] is None else 2"
+                return f"0 if self.s[{plan.signals.index(name)}] is None else 2"
             return f"0 if self.o[{plan.events.index(name)}] == 1 else 2"
         case Probe.UPDATED:
             return f"1 if {name!r} in self.absent else 2 if {name!r} in self.u else 0"
@@ -119,14 +114,9 @@ def _probe(plan: Plan, probe: Probe, name: str) -> str:
             assert_never(probe)
 
 
-def comparison(plan: Plan, leaf: Compare) -> str:
-    """The truth of a comparison."""
+def _comparison(plan: Plan, leaf: Compare) -> str:
+    """The truth of a comparison of numbers that are worked out."""
     left, right = leaf.left, leaf.right
-    if isinstance(left, SignalValue) and isinstance(right, Literal):
-        held = f"s[{plan.signals.index(left.name)}]"
-        return (
-            f"1 if {held} is None else 2 if {held} {leaf.op.value} {_literal(right.value)} else 0"
-        )
     both = f"compared({leaf.op.python}, {_number(plan, left)}, {_number(plan, right)})"
     events = events_of(left, right)
     if not events:
@@ -140,12 +130,12 @@ def _number(plan: Plan, expression: Numeric) -> str:
         case Literal(value=value):
             return _literal(value)
         case SignalValue(name=name):
-            return f"s[{plan.signals.index(name)}]"
+            return f"self.s[{plan.signals.index(name)}]"
         case FieldValue(event=event, field=field):
             return f"number(q[{plan.events.index(event)}].get({field!r}))"
         case UpdateValue(function=function, name=name):
             signal = plan.signals.index(name)
-            return f"self.h[{signal}].{function.value}(s[{signal}])"
+            return f"self.h[{signal}].{function.value}(self.s[{signal}])"
         case Arithmetic(op=op, args=args):
             listed = ", ".join(_number(plan, arg) for arg in args)
             return f"finite({op.entry.python}, {listed})"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import assert_never
 
 from rvmon.codegen.python_leaves import leaf_expression
 from rvmon.codegen.unit_plan import Plan
@@ -12,7 +11,7 @@ from rvmon.formula.state import COMBINING, Elapsed, State, StateOp
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.formula import Constant
 
-BEFORE = "before"
+BEFORE = "self.before"
 """What statements call the position before."""
 
 _WATCHED = 4
@@ -191,11 +190,13 @@ class NodeWriter:
         """The position before, as an expression."""
 
     def statements(self, place: int) -> Iterator[str]:
-        """Put the value of a node at `t` into `n`; the other names are those of `ARRAYS`."""
+        """Put the value of a node at `t` into `n`, in a method of the monitor."""
         state = self.plan.graph.nodes[place]
+        made = self.expression(place)
+        if made is not None:
+            yield f"n = {made}"
+            return
         match state.op:
-            case StateOp.LEAF | StateOp.NOT | StateOp.AND | StateOp.OR | StateOp.SURE:
-                yield f"n = {self.formula(place)}"
             case StateOp.DOUBT:
                 (operand,) = self.plan.graph.operands[place]
                 yield f"m = {self.value(operand)}"
@@ -203,29 +204,27 @@ class NodeWriter:
                 if state.every:
                     yield f"n = {found}"
                 else:
-                    yield f"if m != 1 and w[{place}] != 1 and not v[{place}]:"
+                    yield f"if m != 1 and self.w[{place}] != 1 and not self.v[{place}]:"
                     yield "    n = 0"
                     yield "else:"
                     yield f"    n = {found}"
-                yield f"w[{place}] = m"
+                yield f"self.w[{place}] = m"
             case StateOp.PREVIOUS:
                 (operand,) = self.plan.graph.operands[place]
-                yield f"n = w[{place}]"
-                yield f"m = w[{place}] = {self.value(operand)}"
+                yield f"n = self.w[{place}]"
+                yield f"m = self.w[{place}] = {self.value(operand)}"
                 yield "if m != n:"
                 yield from self._wake(place, f"t + {self.plan.gap or 1}", "    ")
                 yield "else:"
-                yield f"    wakes[{place}] = {NEVER}"
-            case StateOp.SINCE:
-                yield from self._since(place, state)
+                yield f"    self.wakes[{place}] = {NEVER}"
             case _:
-                assert_never(state.op)
+                yield from self._since(place, state)
 
     def pending(self, place: int) -> str:
         """The condition under which a node may change at all; empty if there is none."""
         lasts = _is_latch(self.plan.graph.nodes[place])
         lasts = lasts and self.value(self.plan.graph.operands[place][0]) == "2"
-        return f"v[{place}] != 2" if lasts else ""
+        return f"self.v[{place}] != 2" if lasts else ""
 
     def value(self, place: int) -> str:
         """A node as an operand."""
@@ -238,7 +237,7 @@ class NodeWriter:
         if isinstance(state.leaf, Constant):
             return leaf_expression(self.plan, place, state.leaf)
         if self.roles.kept >> place & 1:
-            return f"v[{place}]"
+            return f"self.v[{place}]"
         made = self.formula(place)
         return made if made in _TRUTHS else f"({made})"
 
@@ -247,6 +246,15 @@ class NodeWriter:
         if value in _TRUTHS:
             self.settled[place] = value
         return value in _TRUTHS
+
+    def expression(self, place: int) -> str | None:
+        """The value of a node as an expression; `None` if it takes statements."""
+        state = self.plan.graph.nodes[place]
+        if _is_latch(state):
+            left, right = (self.value(operand) for operand in self.plan.graph.operands[place])
+            return right if right == "2" or left == "0" else None
+        is_plain = state.leaf is not None or state.op in COMBINING
+        return self.formula(place) if is_plain else None
 
     def formula(self, place: int) -> str:
         """The value of a node that combines others, or reads the input, as an expression."""
@@ -282,13 +290,13 @@ class NodeWriter:
                 yield f"{name} = {own}"
         operands_now = ", ".join(given)
         if keeps_stretches(state):
-            yield f"n, e = marked[{place}].step(t, {self.before}, {operands_now})"
+            yield f"n, e = self.marked[{place}].step(t, {self.before}, {operands_now})"
             yield from self._wake(place, "e", "")
             return
-        yield f"e = w[{place}]"
+        yield f"e = self.w[{place}]"
         unknown = [f"{name} == 1" for name in given if name not in _TRUTHS]
         # Both readings are the same object while they are equal: that is the cheaper question.
-        yield f"if {' or '.join([*unknown, f'b[{place}] is not e'])}:"
+        yield f"if {' or '.join([*unknown, f'self.b[{place}] is not e'])}:"
         slow = "beyond_" if high is None else "within_"
         bound = low if high is None else high
         yield f"    n = self.{slow}({place}, t, {self.before}, {operands_now}, {bound})"
@@ -299,10 +307,7 @@ class NodeWriter:
 
     def _latched(self, place: int, left: str, right: str) -> Iterator[str]:
         """The greater of the right operand, and the lesser of the left one and the value before."""
-        if right == "2" or left == "0":
-            yield f"n = {right}"
-            return
-        yield f"n = v[{place}]"
+        yield f"n = self.v[{place}]"
         for operand, sign, idle in ((left, "<", "2"), (right, ">", "0")):
             if operand != idle:
                 yield f"m = {operand}"
@@ -313,21 +318,21 @@ class NodeWriter:
         """As `rvmon.runtime.past.within`, both readings at once."""
         if right != "0":
             yield "elif r:" if right != "2" else "else:"
-            yield f"    w[{place}] = b[{place}] = None"
-            yield f"    wakes[{place}] = {NEVER}"
+            yield f"    self.w[{place}] = self.b[{place}] = None"
+            yield f"    self.wakes[{place}] = {NEVER}"
             yield "    n = 2"
         if right == "2":
             return
         if left != "2":
             yield "elif not l:" if left != "0" else "else:"
-            yield f"    w[{place}] = b[{place}] = -{NEVER}"
-            yield f"    wakes[{place}] = {NEVER}"
+            yield f"    self.w[{place}] = self.b[{place}] = -{NEVER}"
+            yield f"    self.wakes[{place}] = {NEVER}"
             yield "    n = 0"
         if left == "0":
             return
         yield "else:"
         yield "    if e is None:"
-        yield f"        e = w[{place}] = b[{place}] = {self.before} + {high}"
+        yield f"        e = self.w[{place}] = self.b[{place}] = {self.before} + {high}"
         yield "    n = 0"
         yield "    if e >= t:"
         yield "        n = 2"
@@ -338,15 +343,15 @@ class NodeWriter:
         if left != "2":
             yield "elif not l:" if left != "0" else "else:"
             ended = {"0": "None", "2": "True"}.get(right, "True if r else None")
-            yield f"    w[{place}] = b[{place}] = {ended}"
-            yield f"    wakes[{place}] = {NEVER}"
+            yield f"    self.w[{place}] = self.b[{place}] = {ended}"
+            yield f"    self.wakes[{place}] = {NEVER}"
             yield "    n = 0"
         if left == "0":
             return
         yield "else:"
         yield "    n = 0"
         yield "    if e is True:"
-        yield f"        e = w[{place}] = b[{place}] = {self.before} + {low}"
+        yield f"        e = self.w[{place}] = self.b[{place}] = {self.before} + {low}"
         yield "        if e <= t:"
         yield "            n = 2"
         yield "        else:"
@@ -357,7 +362,7 @@ class NodeWriter:
             if right != "2":
                 yield "        if r:"
                 inner += "    "
-            yield f"{inner}e = w[{place}] = b[{place}] = t + {low}"
+            yield f"{inner}e = self.w[{place}] = self.b[{place}] = t + {low}"
             yield from self._wake(place, "e", inner)
         # Else time wakes it at `e` already.
         yield f"    elif {'' if right != '0' else 'e is not None and '}e <= t:"
@@ -365,10 +370,10 @@ class NodeWriter:
 
     def _wake(self, place: int, instant: str, indent: str) -> Iterator[str]:
         if self.watched is not None:
-            yield f"{indent}wakes[{place}] = {instant}"
+            yield f"{indent}self.wakes[{place}] = {instant}"
             return
         yield f"{indent}m = {instant}"
-        yield f"{indent}wakes[{place}] = m"
-        yield f"{indent}if m < queued[{place}]:"
-        yield f"{indent}    queued[{place}] = m"
-        yield f"{indent}    heappush(timers, (m, {place}))"
+        yield f"{indent}self.wakes[{place}] = m"
+        yield f"{indent}if m < self.queued[{place}]:"
+        yield f"{indent}    self.queued[{place}] = m"
+        yield f"{indent}    heappush(self.timers, (m, {place}))"

@@ -89,12 +89,12 @@ class ValueWriter:
         else:
             yield f"if {variable} != {variable}:"
             yield f"    {variable} = None"
-            yield f"    if s[{signal}] is not None:"
+            yield f"    if self.s[{signal}] is not None:"
             yield f"        self.clerk.lost({name!r}, t, 'nan')"
         yield from self._on_every_update(variable, name)
         yield f"if self.first[{signal}] is None:"
         yield f"    self.first[{signal}] = t"
-        yield f"if {variable} is not s[{signal}]:"
+        yield f"if {variable} is not self.s[{signal}]:"
         yield from indented(self._changed(variable, name, given=False))
 
     def _changed(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
@@ -107,7 +107,7 @@ class ValueWriter:
                 others &= ~(1 << place)
                 test = known_test(leaf, variable) if given else None
                 truth = f"2 if {test} else 0" if test else leaf_expression(self.plan, place, leaf)
-                yield f"if ({truth}) != v[{place}]:"
+                yield f"if ({truth}) != self.v[{place}]:"
                 yield f"    dirty |= {1 << place}"
         if others:
             yield f"dirty |= {others}"
@@ -115,7 +115,7 @@ class ValueWriter:
     def kept(self, variable: str, name: str, *, given: bool) -> Iterator[str]:
         """Keep another value of a signal."""
         signal = self.plan.signals.index(name)
-        yield f"if s[{signal}] is None:"
+        yield f"if self.s[{signal}] is None:"
         yield f"    self.found({signal}, t)"
         if self.tells_birth(name):
             known = "" if given else f" and {variable} is not None"
@@ -133,7 +133,7 @@ class ValueWriter:
         """Keep another value of a signal; if it was known before and is, nothing else is done."""
         signal = self.plan.signals.index(name)
         yield f"self.last{signal} = {last}"
-        yield f"s[{signal}] = {variable}"
+        yield f"self.s[{signal}] = {variable}"
 
     def tells_birth(self, name: str) -> bool:
         """Whether something depends on when a signal had its first value."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.codegen.python_nodes import NodeWriter, Roles, bits, keeps_stretches
@@ -10,22 +9,8 @@ from rvmon.codegen.unit_plan import Plan
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import Mode
 
-_ARRAYS = (
-    *("v", "s", "w", "b", "wakes", "queued", "timers", "before"),
-    "marked",
-)
-"""Attributes of the monitor that statements have at hand under their own name."""
-
 _STRAIGHT = 40
 """Up to so many nodes stand one after the other; more are looked up by what changed."""
-
-
-def at_hand(lines: list[str], *given: str) -> Iterator[str]:
-    """Statements that fetch the arrays which these lines use, but for those given."""
-    text = "\n".join(lines)
-    for name in _ARRAYS:
-        if name not in given and re.search(rf"(?<![\w.]){name}\b", text):
-            yield f"{name} = self.{name}"
 
 
 def alone(lines: Iterator[str] | list[str]) -> Iterator[str]:
@@ -104,7 +89,6 @@ class VisitWriter:
 
     def lines(self) -> Iterator[str]:
         """The method `visit`."""
-        nodes = list(self._grown() if self.straight else self._many())
         given = "self.dirty | self.fading" if self.momentary else "self.dirty"
         yield "def visit(self, t):"
         yield '    """Move to the position at `t`."""'
@@ -112,16 +96,14 @@ class VisitWriter:
         yield "    if first:"
         yield "        self.enter(t)"
         yield f"    dirty = {given}"
-        yield f"    before = self.before = {self.preceding()}"
+        yield f"    self.before = {self.preceding()}"
         if self.sparse():
-            yield f"    if t - before > {self.span()}:"
+            yield f"    if t - self.before > {self.span()}:"
             yield f"        dirty |= {self.sparse()}"
         yield from indented(self._rung())
         yield "    fading = letters = triggers = 0"
         yield "    if dirty:"
-        held = "timers" if self.nodes.watched is None else "wakes"
-        yield from indented(at_hand(nodes, "before", held), 2)
-        yield from indented(nodes, 2)
+        yield from indented(self._grown() if self.straight else self._many(), 2)
         yield "        self.dirty = 0"
         yield "    if first:"
         yield f"        letters, triggers = 0, {(1 << len(self.plan.judged)) - 1}"
@@ -141,8 +123,6 @@ class VisitWriter:
         if self.plan.gap is not None and self.plan.gap > 1:
             yield "self.conclude(t, letters, triggers)"
             return
-        if not self.calm:
-            yield "dues = self.dues"
         yield from self._concluded([*self._concerns(), *self._timely()])
         yield from self._alarm(self.nodes.watched)
 
@@ -154,8 +134,6 @@ class VisitWriter:
             triggers: whether one may have been triggered.
         """
         yield "self.position = t"
-        if not self.calm:
-            yield "dues = self.dues"
         yield from self._concluded([*self._concerns(triggers=triggers)], triggers=triggers)
         alarm = list(self._alarm(self.grown.watched))
         if timed or not self.calm:
@@ -212,21 +190,19 @@ class VisitWriter:
         if self.gathers:
             yield "self.gathered"
         if not self.calm:
-            yield "(dues and dues[0][0] <= t)"
+            yield "(self.dues and self.dues[0][0] <= t)"
         if self.goes_on:
             yield "self.resume_at <= t"
 
     def _rung(self) -> Iterator[str]:
         """See what time alone has changed."""
         if self.nodes.watched is None:
-            yield "timers = self.timers"
-            yield "if timers and timers[0][0] <= t:"
+            yield "if self.timers and self.timers[0][0] <= t:"
             yield "    dirty |= self.ring(t)"
             return
-        yield "wakes = self.wakes"
         for place in self.nodes.watched:
-            yield f"if wakes[{place}] <= t:"
-            yield f"    wakes[{place}] = {NEVER}"
+            yield f"if self.wakes[{place}] <= t:"
+            yield f"    self.wakes[{place}] = {NEVER}"
             yield f"    dirty |= {1 << place}"
 
     def _alarm(self, watched: Sequence[int] | None) -> Iterator[str]:
@@ -252,19 +228,19 @@ class VisitWriter:
 
     def _next_wake(self, watched: Sequence[int] | None) -> Iterator[str]:
         if self.calm and watched is not None and len(watched) == 1:
-            yield f"wake = wakes[{watched[0]}]"
+            yield f"wake = self.wakes[{watched[0]}]"
             yield "self.wake = wake if wake < LIMIT else LIMIT"
             return
         yield "wake = LIMIT"
         if watched is None:
-            yield "if timers and timers[0][0] < wake:"
-            yield "    wake = timers[0][0]"
+            yield "if self.timers and self.timers[0][0] < wake:"
+            yield "    wake = self.timers[0][0]"
         for place in watched or ():
-            yield f"if wakes[{place}] < wake:"
-            yield f"    wake = wakes[{place}]"
+            yield f"if self.wakes[{place}] < wake:"
+            yield f"    wake = self.wakes[{place}]"
         if not self.calm:
-            yield "if dues and dues[0][0] < wake:"
-            yield "    wake = dues[0][0]"
+            yield "if self.dues and self.dues[0][0] < wake:"
+            yield "    wake = self.dues[0][0]"
         yield "self.wake = wake"
 
     def watch(self) -> Iterator[str]:
@@ -300,7 +276,7 @@ class VisitWriter:
             yield f"if {' and '.join(filter(None, tests))}:"
             yield from indented(self.grown.statements(place))
             yield from indented(self.momentary_lines(place))
-            yield f"    if n != v[{place}]:"
+            yield f"    if n != self.v[{place}]:"
             yield from indented(self.changed(place, "n", onward), 2)
 
     def momentary_lines(self, place: int) -> Iterator[str]:
@@ -320,14 +296,14 @@ class VisitWriter:
         alone = len(self.plan.judged) == 1
         sign = "=" if alone else "|="
         if self.nodes.roles.letters[place]:
-            yield f"self.until[{3 * place} + v[{place}]] = {self.grown.before}"
+            yield f"self.until[{3 * place} + self.v[{place}]] = {self.grown.before}"
             yield f"self.since[{place}] = t"
             yield f"letters {sign} {self.nodes.roles.letters[place]}"
         if self.nodes.roles.triggers[place]:
             sign = "=" if alone and not self.goes_on else "|="
             yield f"triggers {sign} {self.nodes.roles.triggers[place]}"
         yield from onward
-        yield f"v[{place}] = {value}"
+        yield f"self.v[{place}] = {value}"
 
     def _many(self) -> Iterator[str]:
         if self.plan.gap in (None, 1):  # a lone value has taken another way

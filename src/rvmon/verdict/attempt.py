@@ -61,15 +61,16 @@ class _Later:
             raise AttributeError(f"an attempt has no `{name}`")
         details: Any = self._details
         for field_name, value in details(self, self._noted).items():
-            object.__setattr__(self, field_name, value)
-        object.__delattr__(self, "_details")
-        object.__delattr__(self, "_noted")
+            setattr(self, field_name, value)
+        del self._details, self._noted
         return getattr(self, name)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Attempt(_Later):
-    """One obligation that a trigger started.
+    """One obligation that a trigger started; a record, which is not to be changed.
+
+    It is not frozen: to make one would take three times as long.
 
     Attributes:
         requirement: its id.
@@ -111,6 +112,10 @@ class Attempt(_Later):
     robustness: float | None = None
     in_doubt: bool = False
 
+    def __reduce__(self) -> tuple[type[Attempt], tuple[Any, ...]]:
+        """What copies and other processes get: all fields, worked out."""
+        return Attempt, tuple(getattr(self, one.name) for one in fields(self))
+
     @property
     def name(self) -> str:
         """How people name it.
@@ -139,14 +144,7 @@ class Attempt(_Later):
         return f"{told}: {self.reason}" if self.reason else told
 
 
-class _Draft(_Later):
-    """An attempt in the making: without the price of a frozen class."""
-
-    __slots__ = tuple(one.name for one in fields(Attempt))
-
-
 _PREFIX = Decision.PREFIX
-_bare = object.__new__
 
 
 def decided_attempt(
@@ -173,7 +171,7 @@ def decided_attempt(
     >>> made.verdict.value, made.reason
     ('P', 'at 5')
     """
-    made: Any = _bare(_Draft)
+    made = Attempt.__new__(Attempt)
     made.requirement = requirement
     made.number = number
     made.triggered = triggered
@@ -183,6 +181,4 @@ def decided_attempt(
     made.in_doubt = False
     made._details = details
     made._noted = noted
-    made.__class__ = Attempt
-    attempt: Attempt = made
-    return attempt
+    return made
