@@ -23,6 +23,7 @@ _RUNTIME = (
     "rule",
     "solo",
     "bulk",
+    "timers",
     "nodes",
     "schedule",
     "unit",

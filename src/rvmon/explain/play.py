@@ -41,7 +41,6 @@ def play(
     requirements: Sequence[CompiledRequirement],
     samples: Sequence[Sample],
     end: int,
-    remembered: frozenset[str],
 ) -> Played:
     """MachineJudge a short run.
 
@@ -50,7 +49,6 @@ def play(
         requirements: of it, those that are looked at.
         samples: at least one.
         end: the instant at which the run ends, ticks, at or after the last sample.
-        remembered: signals of which the instants of the last updates matter.
     """
     ledger = Ledger()
     lanes = Lanes(compiled.checked, requirements, "auto", None, ledger)
@@ -62,7 +60,7 @@ def play(
         judge.pass_to(end)
     ledger.flush()
     decided = tuple(sorted({(a.requirement, a.verdict) for a in ledger.attempts}))
-    situation = (decided, *_situation(lanes, end, remembered))
+    situation = (decided, *_situation(lanes, end))
     cut = min((*_cuts(lanes, end), NEVER))
     lanes.finish(end, end)
     ledger.flush()
@@ -88,7 +86,7 @@ def _tokens(*tokens: Token | None) -> Iterator[Token]:
     return (token for token in tokens if token is not None and token[0] > PASSED)
 
 
-def _situation(lanes: Lanes, end: int, remembered: frozenset[str]) -> Iterator[object]:
+def _situation(lanes: Lanes, end: int) -> Iterator[object]:
     for lane in lanes.all:
         yield from _lane(lane, end)
     for judge in lanes.judges:
@@ -97,9 +95,6 @@ def _situation(lanes: Lanes, end: int, remembered: frozenset[str]) -> Iterator[o
             yield judge.situation(end)
         elif isinstance(judge, MachineJudge):
             yield _standings(judge, end)
-    for name in sorted(remembered):
-        value, seen = lanes.main.value_of(name), lanes.main.history_of(name)
-        yield (value, seen.updates and seen.at - end, seen.before, seen.before_at - seen.at)
 
 
 def _standings(judge: MachineJudge, end: int) -> object:
@@ -120,6 +115,11 @@ def _lane(lane: Lane, end: int) -> Iterator[object]:
         for place in lane.graph.stateful
         for operand in lane.graph.operands[place]
     )
+    for value, seen, stale_at in zip(lane.s, lane.h, lane.stale_at, strict=True):
+        if stale_at < NEVER:
+            yield value, stale_at - end
+        if seen is not None:
+            yield value, seen.updates and seen.at - end, seen.before, seen.before_at - seen.at
     for rule in lane.starters:
         if rule.trigger >= 0:
             yield (rule.before, rule.running)

@@ -101,7 +101,7 @@ def shortest_examples(
         add(node)
     while heap and missing and runs < budget.runs:
         node = heappop(heap)[-1]
-        played = play(compiled, requirements, node.samples, node.end, search.choices.remembered)
+        played = play(compiled, requirements, node.samples, node.end)
         runs += 1
         kind = goal(played.example)
         if kind in missing:

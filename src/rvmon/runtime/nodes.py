@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from heapq import heappop, heappush, heapreplace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.past import History, Since, beyond, doubt, within
+from rvmon.runtime.timers import Timers
 from rvmon.runtime.values import FALSE, NEVER, TRUE, UNKNOWN
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ BUSY = LIMIT + 1
 MISSING = object()
 
 
-class Nodes:
+class Nodes(Timers):
     """Values of state formulas; the generated part fills in the constants below.
 
     Formulas that are only part of one other have no value of their own.
@@ -45,9 +45,6 @@ class Nodes:
         position: that the values are of.
         dirty: the nodes that may have changed since.
         fading: the nodes that speak of that position only.
-        wakes: per node, when it changes by itself.
-        wake: before this instant, no sample coming, nothing happens; `LIMIT` at most.
-        queued: per node, the instant at which `timers` has it next.
     """
 
     __slots__ = (
@@ -71,18 +68,13 @@ class Nodes:
         "origin",
         "p",
         "position",
-        "queued",
         "s",
         "silent",
         "since",
-        "stale_at",
-        "timers",
         "u",
         "until",
         "v",
         "w",
-        "wake",
-        "wakes",
     )
 
     STATE: tuple[str, ...] = (
@@ -95,7 +87,6 @@ class Nodes:
     SIGNALS: tuple[str, ...] = ()
     EVENTS: tuple[str, ...] = ()
     GAP: int | None = 1
-    NODES = 0
     KEPT = 0
     """A bit for each node that has a value."""
     EVALUATE: tuple[Callable[[Any, int], int] | None, ...] = ()
@@ -335,88 +326,19 @@ class Nodes:
         self.u.clear()
         self.c.clear()
 
-    # Timers.
-
-    def set_stale(self, signal: int, t: int) -> None:
-        """Note when a signal that is not awaited to be so will be stale."""
-        heappush(self.timers, (t, self.NODES + signal))
-        self.stale_at[signal] = t
-        # The update may have changed no value: then nothing else has the timer seen to.
-        self.wake = min(self.wake, t)
-
-    def set_wake(self, place: int, t: int) -> None:
-        """Note when a node changes by itself."""
-        self.wakes[place] = t
-        if t < self.queued[place]:
-            self.queued[place] = t
-            heappush(self.timers, (t, place))
-
     def found(self, signal: int, t: int) -> None:
         """Note that a signal that was not known has a value."""
         if self.first[signal] is None:
             self.first[signal] = t
         self.clerk.found(self.SIGNALS[signal], t)
 
-    def ring(self, t: int) -> int:
-        """The leaves and operators that time alone makes change at `t`."""
-        dirty = 0
-        timers, wakes, queued = self.timers, self.wakes, self.queued
-        nodes = self.NODES
-        while timers and timers[0][0] <= t:
-            at, code = timers[0]
-            if code < nodes:
-                due = wakes[code]
-                if due <= t:
-                    heappop(timers)
-                    wakes[code] = queued[code] = NEVER
-                    dirty |= 1 << code
-                elif queued[code] != at:
-                    heappop(timers)
-                elif due < NEVER:
-                    heapreplace(timers, (due, code))
-                    queued[code] = due
-                else:
-                    heappop(timers)
-                    queued[code] = NEVER
-                continue
-            heappop(timers)
-            signal = code - self.NODES
-            actual = self.stale_at[signal]
-            if actual <= t:
-                if self.s[signal] is not None:
-                    self.clerk.lost(self.SIGNALS[signal], actual, "stale")
-                self.s[signal] = None
-                setattr(self, f"last{signal}", MISSING)
-                self.stale_at[signal] = NEVER
-                count, first = self.expired.get(signal, (0, actual))
-                self.expired[signal] = (count + 1, first)
-                dirty |= self.READERS[self.SIGNALS[signal]]
-            elif actual < NEVER:
-                heappush(timers, (actual, code))
-        return dirty
-
-    def requeue(self, at: int, place: int) -> None:
-        """Put the timer of a node, taken from the queue, where it belongs by now."""
-        if self.queued[place] == at:
-            actual = self.queued[place] = self.wakes[place]
-            if actual < NEVER:
-                heappush(self.timers, (actual, place))
-
-    def next_timer(self) -> int:
-        """The next instant at which a node or signal changes by itself."""
-        timers = self.timers
-        while timers:
-            at, code = timers[0]
-            if code < self.NODES:
-                if self.wakes[code] == at:
-                    return at
-                heappop(timers)
-                self.requeue(at, code)
-            else:
-                actual = self.stale_at[code - self.NODES]
-                if actual == at:
-                    return at
-                heappop(timers)
-                if actual < NEVER:
-                    heappush(timers, (actual, code))
-        return NEVER
+    def expire(self, signal: int, t: int) -> int:
+        """See `Timers`."""
+        name = self.SIGNALS[signal]
+        if self.s[signal] is not None:
+            self.clerk.lost(name, t, "stale")
+        self.s[signal] = None
+        setattr(self, f"last{signal}", MISSING)
+        count, first = self.expired.get(signal, (0, t))
+        self.expired[signal] = (count + 1, first)
+        return self.READERS[name]

@@ -6,25 +6,23 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rvmon.dataflow.outages import Outages
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
-from rvmon.monitor.attempts.captured import CapturedAttempt, captured_value
+from rvmon.monitor.attempts.captured import captured_value
 from rvmon.monitor.attempts.instance import Instance, Shape, seen_by, values_in
 from rvmon.monitor.attempts.instances import Instances
-from rvmon.monitor.attempts.judges import CapturingRule, judge_of
 from rvmon.monitor.attempts.keyed import Keyed
 from rvmon.monitor.attempts.lane import Lane
-from rvmon.monitor.attempts.lane_classes import class_of, class_of_all
+from rvmon.monitor.attempts.lane_classes import class_of_all
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
+from rvmon.monitor.online.lane_maker import Captured, LaneMaker
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.values import NEVER
-from rvmon.spec.checked.specification import CheckedSpec, Mode
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar, Value
 
-Captured = Mapping[str, Scalar]
 
-
-class Lanes:
+class Lanes(LaneMaker):
     """All lanes of one run.
 
     Args:
@@ -52,12 +50,8 @@ class Lanes:
         sources: frozenset[str] | None,
         ledger: Ledger,
     ) -> None:
-        self.spec = spec
-        self.engine = engine
-        self.sources = sources
-        self.ledger = ledger
+        super().__init__(spec, requirements, engine, sources, ledger)
         self.gap = spec.gap
-        self._by_id = {compiled.requirement.id: compiled for compiled in requirements}
         self.instances = Instances(forgets=self.forgets, is_held=self._has_captured)
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
         self._shared = [one for one in requirements if one.requirement.for_each is None]
@@ -215,108 +209,6 @@ class Lanes:
 
     # Making lanes.
 
-    def _lane(self, compiled: CompiledRequirement, captured: Captured, *, starts: bool) -> Lane:
-        made = class_of(compiled, starts=starts)
-        return made(Outages(self.spec, self.sources), captured, compiled)
-
-    def _judges(
-        self,
-        compiled: CompiledRequirement,
-        lane: Lane,
-        captured: Captured,
-        instance: Instance | None,
-        *,
-        started_elsewhere: bool = False,
-    ) -> Sequence[AttemptJudge]:
-        """What judges the attempts of a requirement, and what judges beside it."""
-        judge = judge_of(
-            compiled,
-            self.engine,
-            lane,
-            self.ledger,
-            captured,
-            rank=0 if instance is None else instance.rank,
-            hidden=compiled is not self._by_id[compiled.requirement.id],
-            doubted=_is_doubted(instance),
-            started_elsewhere=started_elsewhere,
-        )
-        return [judge]
-
-    def _seat(
-        self,
-        lane: Lane,
-        requirements: Sequence[CompiledRequirement],
-        captured: Captured,
-        instance: Instance | None,
-    ) -> None:
-        """Give requirements triggers in a lane, and judges, unless attempts bring theirs."""
-        groups = [
-            self._rules(lane, kind, captured, instance)
-            for compiled in requirements
-            for kind in self._kinds(compiled, instance)
-        ]
-        lane.seat([rule for group in groups for rule in group], [group[0] for group in groups])
-
-    def _kinds(
-        self, compiled: CompiledRequirement, instance: Instance | None
-    ) -> Sequence[CompiledRequirement]:
-        """What starts attempts of a requirement: those that are triggered, and those in doubt."""
-        kinds = [compiled, compiled.hidden]
-        if compiled.obligation.trigger is None:
-            kinds = [compiled]
-        elif compiled.requirement.mode is Mode.UPON and _is_doubted(instance):
-            kinds = [compiled.doubted]
-        return [kind for kind in kinds if kind is not None]
-
-    def _seat_attempt(
-        self,
-        lane: Lane,
-        compiled: CompiledRequirement,
-        captured: Captured,
-        instance: Instance | None,
-    ) -> None:
-        """Give a captured attempt its judge; it was triggered in another lane."""
-        lane.seat(self._judges(compiled, lane, captured, instance, started_elsewhere=True), ())
-
-    def _rules(
-        self,
-        lane: Lane,
-        compiled: CompiledRequirement,
-        captured: Captured,
-        instance: Instance | None,
-    ) -> Sequence[Rule]:
-        """What starts attempts, first, and what judges."""
-        if not compiled.requirement.captures:
-            return self._judges(compiled, lane, captured, instance)
-
-        def start(t: int, triggered: int) -> None:
-            new, compared = self._captured_lane(lane, compiled, captured, instance, t)
-            new.begin(new.judges[0], t, triggered)
-            self._captured.append((new, instance))
-            if compared is not None:
-                compared.keeps(t)
-
-        hidden = compiled is not self._by_id[compiled.requirement.id]
-        return [CapturingRule(compiled, lane, start, hidden=hidden)]
-
-    def _compared(
-        self,
-        parent: Lane,
-        compiled: CompiledRequirement,
-        captured: Captured,
-        instance: Instance | None,
-    ) -> CapturedAttempt | None:
-        """What sees whether the values of an attempt stay known, where that can end."""
-        obligation = compiled.obligation
-        doubt = obligation.doubt or obligation.trigger
-        main = self._by_id[compiled.requirement.id].obligation
-        if main.trigger is None or doubt is None or doubt is main.trigger:
-            return None  # what it owes, it owes at one position
-        index = parent.graph.index
-        # Of what has a key that is not known, another may have begun wherever the episode runs.
-        place = None if _is_doubted(instance) and obligation.doubt is not None else index[doubt]
-        return CapturedAttempt(parent, compiled, captured, index[main.trigger], place)
-
     def undetermined(self) -> list[str]:
         """The requirements whose trigger was never true or false."""
         asked = [(self.main, one) for one in self._shared]
@@ -324,15 +216,16 @@ class Lanes:
         determined = {one.requirement.id for lane, one in asked if lane.is_determined(one)}
         return [name for name in self._by_id if name not in determined]
 
-    def _captured_lane(
+    def _start_captured(
         self,
         parent: Lane,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
         t: int,
-    ) -> tuple[Lane, CapturedAttempt | None]:
-        """A lane for one attempt, triggered at `t`, in which its captured values are constants."""
+        triggered: int,
+    ) -> None:
+        """See `LaneMaker`; its captured values are constants in it."""
         own = dict(captured)
         for capture in compiled.requirement.captures:
             own[capture.name] = captured_value(capture.value, parent, own)
@@ -350,7 +243,10 @@ class Lanes:
             lane.through(t)
         if compared is not None:
             compared.follow(lane)
-        return lane, compared
+        lane.begin(lane.judges[0], t, triggered)
+        self._captured.append((lane, instance))
+        if compared is not None:
+            compared.keeps(t)
 
     def _replay(self, lane: Lane, instance: Instance | None) -> None:
         """Let a new lane see the samples so far."""
@@ -410,8 +306,3 @@ class Lanes:
 
 def _value(instance: Instance | None) -> Scalar:
     return None if instance is None else instance.value
-
-
-def _is_doubted(instance: Instance | None) -> bool:
-    """Whether it is not known that there is such an instance."""
-    return instance is not None and instance.value is None

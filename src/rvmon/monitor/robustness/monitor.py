@@ -21,7 +21,8 @@ from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
-from rvmon.monitor.online.lanes import Captured, Lanes
+from rvmon.monitor.online.lane_maker import Captured
+from rvmon.monitor.online.lanes import Lanes
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.records.ledger import Ledger, verdict_at_end
 from rvmon.monitor.robustness.margin_judge import MarginJudge
