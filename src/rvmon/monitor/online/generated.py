@@ -16,7 +16,7 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.generated_records import GeneratedRecords, Hearing, UnitStanding
 from rvmon.monitor.online.lanes import Lanes
-from rvmon.monitor.online.monitor import Monitor
+from rvmon.monitor.online.monitor import Monitor, Step
 from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.nodes import BUSY, LIMIT
@@ -27,7 +27,6 @@ from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 
-Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 Flush = Callable[[int], Sequence[Attempt]]
 
 _HELD = BUSY + 1
@@ -256,7 +255,7 @@ class GeneratedMonitor(Monitor):
         """Whether the unit alone takes samples as they come."""
         # Generated code looks and closes in one go only where one thread has a turn at a time.
         if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
-            self.__dict__["step_ns"] = self._unit.step
+            self.step_ns = self._unit.step
 
     def _make_lanes(self) -> Lanes:
         self._unit_lanes = GeneratedLanes(
@@ -266,7 +265,7 @@ class GeneratedMonitor(Monitor):
             self.options.engine,
             self.options.sources,
             self._ledger,
-            super().step_ns,
+            self._take,
         )
         return self._unit_lanes
 
