@@ -14,10 +14,10 @@ from rvmon.monitor.attempts.judges import judge_of
 from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.generated_records import GeneratedRecords, Hearing, UnitStanding
 from rvmon.monitor.online.lanes import Lanes
 from rvmon.monitor.online.monitor import Monitor, Step
 from rvmon.monitor.online.one_call import overlap
+from rvmon.monitor.online.unit_clerks import JudgeClerk, UnitClerk, UnitStanding
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
@@ -104,19 +104,19 @@ class GeneratedLanes(Lanes):
         clerks: list[Any] = [None] * (len(forms.requirements) + len(forms.plan.hidden_of))
         unit.restart(self, clerks)
         standing = UnitStanding(forms.plan, unit)
-        self._seats = [
-            GeneratedRecords(one, forms.plan, unit, standing, ledger, self._counts, noted)
+        self._clerks = [
+            UnitClerk(one, forms.plan, unit, standing, ledger, self._counts, noted)
             for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
         judged: list[CompiledRequirement | None] = [*forms.requirements]
         judged += [forms.requirements[index].hidden for index in forms.plan.hidden_of]
-        hearing = Hearing(unit, ledger)
+        judge_clerk = JudgeClerk(unit, ledger)
         for index, one in enumerate(judged):
             if forms.machines[index] is not None:
-                unit.rules[index].clerk = self._seats[index]
+                unit.rules[index].clerk = self._clerks[index]
             elif one is not None:
                 hidden = index >= len(forms.requirements)
-                judge = judge_of(one, "auto", standing, hearing, {}, index=index, hidden=hidden)
+                judge = judge_of(one, "auto", standing, judge_clerk, {}, index=index, hidden=hidden)
                 unit.rules[index] = judge
                 judge.restless = judge.watches
                 unit.note(judge)
@@ -149,7 +149,7 @@ class GeneratedLanes(Lanes):
         own = [
             (rule.compiled.requirement.id, rule, rule.running_attempt)
             if isinstance(rule, AttemptJudge)
-            else (self._seats[rule.index].id, rule, rule.running_attempt)
+            else (self._clerks[rule.index].id, rule, rule.running_attempt)
             for rule in self.unit.rules
         ]
         return [*own, *super().holders()]
@@ -158,7 +158,7 @@ class GeneratedLanes(Lanes):
         """A rule that knows its requirement, or how one would stand in its place."""
         if isinstance(rule, AttemptJudge):
             return rule
-        return self._seats[rule.index].judge_now(rule)
+        return self._clerks[rule.index].judge_now(rule)
 
     def take_along(self, t: int) -> None:
         """See `Lanes`."""
@@ -202,8 +202,8 @@ class GeneratedLanes(Lanes):
     def undetermined(self) -> list[str]:
         """See `Lanes`."""
         own = [
-            seat.compiled.requirement.id
-            for index, seat in enumerate(self._seats)
+            one.compiled.requirement.id
+            for index, one in enumerate(self._clerks)
             if not self.unit.is_determined(index)
         ]
         return [*own, *super().undetermined()]
