@@ -52,7 +52,7 @@ _RUNTIME = tuple(
         "values",
     )
 )
-_GENERATED = tuple(f"monitor/online/{name}.py" for name in ("generated", "generated_records"))
+_GENERATED = tuple(f"monitor/online/{name}.py" for name in ("generated", "unit_clerks"))
 
 COLUMNS = "columns"
 """Has a test of its own, of recordings."""

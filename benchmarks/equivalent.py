@@ -130,6 +130,14 @@ EQUIVALENT = {
         "asked of an episode, one that is sure is looked at though there is nothing to see; asked "
         "of a run, its attempts are moved one by one"
     ),
+    "starts.py dropped operand: `not self.episodic or (not self.hidden and values[self.trigger] == "
+    "TRUE and (self.unborn < 0 or values[self.unborn] != TRUE))` => `not self.episodic`": (
+        "the attempts of episodes are moved one by one, and look at triggers that are sure"
+    ),
+    "python_leaf_cases.py operator: `self.nodes.roles.parents[other] >> place & 1` => "
+    "`self.nodes.roles.parents[other] >> place | 1`": (
+        "what stands above a leaf is worked out whether or not its own operands have changed"
+    ),
     "schedule.py off by one: `t + 1` => `t`": (
         "where only samples are positions the next one is asked, after one that was asked in vain"
     ),

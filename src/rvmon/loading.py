@@ -25,8 +25,8 @@ def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
         from rvmon.readers.recording import FORMATS
 
         if path.suffix.lower() in FORMATS:
-            told = f"error: {path}: a recording by its name; a specification (.rv) is expected here"
-            raise SpecError((), told)
+            expected = "a recording by its name; a specification (.rv) is expected here"
+            raise SpecError((), f"error: {path}: {expected}")
     try:
         text = text_of_file(path)
     except OSError as error:

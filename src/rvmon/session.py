@@ -90,10 +90,10 @@ class Spec:
         >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
         20000000
         """
-        from rvmon.readers.naming import told_as
+        from rvmon.readers.naming import read_as
 
         other = copy(self)
-        other.__dict__["schema"] = told_as(
+        other.schema = read_as(
             self.schema, time=time, columns=columns, nan=nan, no_update=no_update
         )
         return other

@@ -11,7 +11,7 @@ from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import differences
-from rvmon.testing.drive import Monitored, drive, is_online
+from rvmon.testing.drive import Monitored, drive
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.law.walk import intervals
@@ -22,7 +22,7 @@ from tests.tools.frame import frame_differences
 from tests.tools.health import health_differences
 from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
-from tests.tools.online import differences_after_end, online_differences
+from tests.tools.online import differences_after_end, is_online, online_differences
 from tests.tools.shrink import shrink
 
 MakeMonitor = Callable[[Case], Monitored | None]

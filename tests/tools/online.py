@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, Outcome, key_of
-from rvmon.testing.drive import Monitored, feed, is_online
+from rvmon.testing.drive import Monitored, OnlineMonitor, feed
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
@@ -17,6 +17,11 @@ from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.moments import moments
 from tests.tools.waiting import Waiting
+
+
+def is_online(monitor: Monitored) -> TypeGuard[OnlineMonitor]:
+    """Whether a monitor can be asked; without asking it."""
+    return hasattr(type(monitor), "open")
 
 
 def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:

@@ -112,8 +112,8 @@ class _Draft:
             return index
         place = self.places[index]
         values = tuple(row[1:] for row in place.rows.values())
-        told = None if label is None else label(place.residual)
-        return place.cuts, values, end_clauses(place.residual), told
+        labelled = None if label is None else label(place.residual)
+        return place.cuts, values, end_clauses(place.residual), labelled
 
     def _moves(self, index: int, blocks: list[int]) -> Hashable:
         """Where a location leads, up to what is known to be equivalent."""

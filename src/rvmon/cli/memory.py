@@ -31,8 +31,8 @@ def _megabytes(text: str) -> int:
     import argparse
 
     if (number := positive(text)) < _LEAST:
-        told = f"expected at least {_LEAST} MB, which Python and its libraries take, not {text}"
-        raise argparse.ArgumentTypeError(told)
+        message = f"expected at least {_LEAST} MB, which Python and its libraries take, not {text}"
+        raise argparse.ArgumentTypeError(message)
     return number
 
 
@@ -47,8 +47,8 @@ def at_most(megabytes: int | None) -> Iterator[None]:
         with _limited(megabytes):
             yield
     except MemoryError:
-        told = "" if megabytes is None else f", of {megabytes:,} MB: raise --max-memory"
-        raise RvmonError(f"the memory is not enough{told}") from None
+        limit = "" if megabytes is None else f", of {megabytes:,} MB: raise --max-memory"
+        raise RvmonError(f"the memory is not enough{limit}") from None
 
 
 @contextmanager

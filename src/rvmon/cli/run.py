@@ -162,8 +162,8 @@ def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
                 warn(f"  judged before that: {line}")
         if one.missing:
             names = ", ".join(f"`{name}`" for name in one.missing)
-            told = f"{one.trace} has no column for {names}: what reads that is inconclusive"
-            warn(f"warning: {told}")
+            message = f"{one.trace} has no column for {names}: what reads that is inconclusive"
+            warn(f"warning: {message}")
     if form == "json":
         _show_doubts(judged)
         texts = [_json(one) for one in judged]

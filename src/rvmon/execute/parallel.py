@@ -165,8 +165,8 @@ class _Pool:
             with _without_interrupts():
                 process.start()
         except OSError as error:
-            told = f"no process can be begun ({error.strerror}): use fewer (jobs)"
-            raise RvmonError(told) from None
+            message = f"no process can be begun ({error.strerror}): use fewer (jobs)"
+            raise RvmonError(message) from None
         there.close()
         self._workers.append(_Worker(process, here))
         return self._workers[-1]
@@ -198,11 +198,11 @@ class _Pool:
         try:
             failed, is_last, result = worker.connection.recv()
         except (EOFError, OSError):
-            told = (
+            message = (
                 f"the process that had {self._what} {number + 1} was ended from outside, as "
                 "systems do when memory runs out: use fewer processes (jobs)"
             )
-            self._fail(number, WorkerLostError(told))
+            self._fail(number, WorkerLostError(message))
             self._workers.remove(worker)
             worker.process.join()
             return

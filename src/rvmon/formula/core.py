@@ -108,5 +108,4 @@ class Previous:
 
 
 Temporal = Next | Until | Release
-Backward = Since | Previous
 Core = Constant | Literal | And | Or | Next | Until | Release | Since | Previous

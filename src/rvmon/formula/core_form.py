@@ -88,15 +88,15 @@ class Lowering:
                 ends = (self.core(left, positive), self.core(right, positive))
                 return self._since(*ends, interval, not positive)
             case Unary() | Binary():
-                return self._core_future(self._told(formula), positive)
+                return self._core_future(self._rewritten(formula), positive)
             case _:
                 raise AssertionError("only operators have something of the future below them")
 
-    def _told(self, formula: Unary | Binary) -> Formula:
+    def _rewritten(self, formula: Unary | Binary) -> Formula:
         """The formula in other operators; what is made up for that stands nowhere in the spec."""
-        told = rewritten(formula)
+        made = rewritten(formula)
         own = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
-        waiting = [told]
+        waiting = [made]
         while waiting:
             node = waiting.pop()
             if all(node is not operand for operand in own):
@@ -105,7 +105,7 @@ class Lowering:
                     waiting.append(node.operand)
                 elif isinstance(node, Binary):
                     waiting += (node.left, node.right)
-        return told
+        return made
 
     def _since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)

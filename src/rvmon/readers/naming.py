@@ -17,7 +17,7 @@ DEFAULT_COLUMNS = ("t", "t_ns")
 """The columns of stamps where none was named."""
 
 
-def told_as(
+def read_as(
     schema: Schema,
     *,
     time: str | None,
@@ -75,7 +75,7 @@ def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> St
     if stamps is not None:
         if stamps.column in names:
             return stamps
-        units = "" if stamps.is_said else _units_told(stamps.column)
+        units = "" if stamps.is_said else _units_listed(stamps.column)
         meant = did_you_mean(stamps.column, names, f"there are {listed}")
         raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}{remark}")
     times = [name for name in DEFAULT_COLUMNS if name in names]
@@ -89,7 +89,7 @@ def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> St
     return stamps_of(times[0])
 
 
-def _units_told(column: str) -> str:
+def _units_listed(column: str) -> str:
     return f" (the units are {', '.join(UNITS)})" if ":" in column else ""
 
 

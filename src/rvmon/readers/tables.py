@@ -61,8 +61,8 @@ def _imported(table: Any) -> Any:
             pyarrow.table(table) if hasattr(table, "__arrow_c_stream__") else from_dataframe(table)
         )
     except (pyarrow.ArrowException, TypeError, ValueError, RuntimeError) as error:
-        told = str(error).partition("\n")[0]
-        raise TraceError(f"{kind} cannot be read as a table of columns ({told})") from None
+        cause = str(error).partition("\n")[0]
+        raise TraceError(f"{kind} cannot be read as a table of columns ({cause})") from None
 
 
 def _distinct(names: Sequence[str], columns: Sequence[Any]) -> dict[str, Any]:

@@ -21,8 +21,8 @@ def without_attempts(verdict: Verdict, miss: str) -> str:
     >>> without_attempts(Verdict.INCONCLUSIVE, "")
     'not known ever to be triggered'
     """
-    told = verdict is Verdict.NOT_TRIGGERED
-    why = "never triggered" if told else "not known ever to be triggered"
+    is_sure = verdict is Verdict.NOT_TRIGGERED
+    why = "never triggered" if is_sure else "not known ever to be triggered"
     return f"{why}: {miss}" if miss else why
 
 

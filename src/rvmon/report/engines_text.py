@@ -31,8 +31,8 @@ def _why(choice: EngineChoice) -> str:
     by_reason: dict[str, list[str]] = {}
     for name, refusal in choice.refused.items():
         by_reason.setdefault(refusal.reason, []).append(name)
-    told = [f"{', '.join(names)}: {reason}" for reason, names in by_reason.items()]
-    return shown_line("; ".join(told))
+    reasons = [f"{', '.join(names)}: {reason}" for reason, names in by_reason.items()]
+    return shown_line("; ".join(reasons))
 
 
 def engines_data(choices: Mapping[str, EngineChoice]) -> dict[str, Any]:

@@ -30,6 +30,6 @@ def headline(run: str, panel: Panel, origin: int) -> str:
         why = without_attempts(panel.verdict, with_moments(panel.miss, panel.view))
         return f"{panel.requirement} {MARKS[panel.verdict].word}, {run}: {why}"
     when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
-    told = with_afterword(attempt, panel.late)
-    reason = f": {with_moments(told, panel.view)}" if told else ""
+    why = with_afterword(attempt, panel.late)
+    reason = f": {with_moments(why, panel.view)}" if why else ""
     return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

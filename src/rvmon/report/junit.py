@@ -75,8 +75,8 @@ def _add_case(
         for attempt in report.of(name, verdict)
     ] or ["a step was interrupted: what followed was not judged in full"]
     kind = "failure" if verdict is Verdict.FAIL else "skipped"
-    told = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
-    told.text = "\n".join(reasons)
+    element = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
+    element.text = "\n".join(reasons)
 
 
 def _when(decided: int | None) -> str:

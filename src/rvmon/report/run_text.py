@@ -120,8 +120,8 @@ def _silence_text(name: str, verdict: Verdict, why: str, width: int) -> Text:
 
     from rvmon.report.style import verdict_text
 
-    told = f"\n{wrapped(why, width)}\n"
-    return Text.assemble((f"{name} ", "bold"), verdict_text(verdict), told)
+    sentence = f"\n{wrapped(why, width)}\n"
+    return Text.assemble((f"{name} ", "bold"), verdict_text(verdict), sentence)
 
 
 def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, width: int) -> Text:

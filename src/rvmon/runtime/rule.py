@@ -142,7 +142,7 @@ class Rule(Starts):
             self.due = NEVER
             return
         if self.moves is None or self.letter != self.other:
-            self._step_all(t)
+            self._move_all(lambda attempt: self.stepped(attempt, t))
             return
         machine = self.machine
         moves = self.moves[machine.class_of[self.letter]]
@@ -169,18 +169,6 @@ class Rule(Starts):
                     due = own
         if len(kept) < len(attempts):
             self.attempts = kept
-        self.due = due
-
-    def _step_all(self, t: int) -> None:
-        kept = []
-        due = NEVER
-        for attempt in self.attempts:
-            own = self.stepped(attempt, t)
-            if own is not None:
-                kept.append(attempt)
-                if own < due:
-                    due = own
-        self.attempts = kept
         self.due = due
 
     def stepped(self, attempt: Any, t: int) -> int | None:
@@ -288,10 +276,14 @@ class Rule(Starts):
             self.due = t
 
     def _drive_all(self, drive: Drive) -> None:
+        self._move_all(lambda attempt: self._both(attempt, drive))
+
+    def _move_all(self, move: Callable[[Any], int | None]) -> None:
+        """Move all attempts; `move` returns when one is due, `None` if it was decided."""
         due = NEVER
         kept = []
         for attempt in self.attempts:
-            own = self._both(attempt, drive)
+            own = move(attempt)
             if own is not None:
                 kept.append(attempt)
                 if own < due:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol, TypeGuard
+from typing import Protocol
 
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Value
@@ -34,11 +34,6 @@ class OnlineMonitor(Monitored, Protocol):
     @property
     def next_due(self) -> int | None:
         """The next instant at which time alone can decide something."""
-
-
-def is_online(monitor: Monitored) -> TypeGuard[OnlineMonitor]:
-    """Whether a monitor can be asked; without asking it."""
-    return hasattr(type(monitor), "open")
 
 
 def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:

@@ -16,8 +16,6 @@ class HealthKind(StrEnum):
     STALE = "stale"
     LATE = "late"
     CONFLICT = "conflict"
-    BACKWARDS = "backwards"
-    DROPPED = "dropped"
     IGNORED = "ignored"
     UNIT = "unit"
     INTERRUPTED = "interrupted"

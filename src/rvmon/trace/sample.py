@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -59,12 +59,3 @@ class Trace:
 
     def __iter__(self) -> Iterator[Sample]:
         return iter(self.samples)
-
-
-def trace_of(pairs: Iterable[tuple[int, Mapping[str, Value]]], end: int | None = None) -> Trace:
-    """Make a trace of `(ticks, values)` pairs.
-
-    >>> trace_of([(0, {"a": True}), (5, {"a": False})]).samples[1].t
-    5
-    """
-    return Trace(tuple(Sample(t, values) for t, values in pairs), end=end)

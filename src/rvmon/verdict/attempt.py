@@ -140,8 +140,8 @@ class Attempt(_Later):
         if self.decided is not None:
             when = f"at {format_ticks(self.decided)}"
         mark = "?" if self.in_doubt else "#"
-        told = f"{self.requirement} {mark}{self.number} {self.verdict.name} {when}"
-        return f"{told}: {self.reason}" if self.reason else told
+        headline = f"{self.requirement} {mark}{self.number} {self.verdict.name} {when}"
+        return f"{headline}: {self.reason}" if self.reason else headline
 
 
 _PREFIX = Decision.PREFIX

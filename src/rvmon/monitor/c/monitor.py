@@ -47,17 +47,15 @@ class CompiledMonitor(Monitor):
         self._library = library
         self._ids = [one.requirement.id for one in requirements]
         self._core = library.core(
-            absent, look_closer=super().step, look_closer_ns=self._look_closer
+            absent, look_closer=self._take_at, look_closer_ns=self._look_closer
         )
         super().__init__(compiled, requirements, "c", settle, sources, None)
 
     def _attend(self) -> None:
         if self._intake is None and not self._listeners:
-            self.__dict__["step"] = self._core.step
-            self.__dict__["step_ns"] = self._core.step_ns
+            self.step, self.step_ns = self._core.step, self._core.step_ns
         else:
-            self.__dict__.pop("step", None)
-            self.__dict__.pop("step_ns", None)
+            self.step, self.step_ns = self._take_at, self._take
 
     def _make_lanes(self) -> Lanes:
         return Lanes(self.options.compiled.checked, (), "auto", self.options.sources, self._ledger)
@@ -80,10 +78,10 @@ class CompiledMonitor(Monitor):
         self._last = None if last == NOT_YET else last
         self._reached = None if reached == NOT_YET else reached
 
-    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """See `Monitor.step_ns`."""
+    def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """See `Monitor`."""
         if self._intake is not None:
-            return super().step_ns(t_ns, values)
+            return super()._take(t_ns, values)
         decided = self._core.step_ns(t_ns, values)
         self._listeners.tell(decided)
         return decided

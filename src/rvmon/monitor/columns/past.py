@@ -11,6 +11,7 @@ from rvmon.monitor.columns.axis import FAR, Axis
 from rvmon.monitor.columns.stretches import (
     between,
     clipped,
+    counted,
     holds_at_last,
     in_at_least,
     joined,
@@ -167,9 +168,7 @@ class Since:
         firsts, stops, run = _leading(left, right)
         if not axis.closes_ranks(self.low, self.high):
             counts = stops - firsts
-            behind = np.cumsum(counts)
-            total = int(behind[-1]) if len(behind) else 0
-            firsts = np.arange(total) + np.repeat(firsts - (behind - counts), counts)
+            firsts = counted(firsts, counts)
             stops, run = firsts + 1, np.repeat(run, counts)
         starts = axis.instants(firsts) + self.low
         if self.high is None:
@@ -186,6 +185,6 @@ def _leading(left: Toggles, right: Toggles) -> tuple[Toggles, Toggles, Toggles]:
     behind = np.searchsorted(right[0::2], ends, "left")
     counts = np.maximum(behind - first, 0)
     run = np.repeat(np.arange(len(begins)), counts)
-    number = np.arange(len(run)) - np.repeat(np.cumsum(counts) - counts, counts) + first[run]
+    number = counted(first, counts)
     starts = np.maximum(right[0::2][number], begins[run])
     return starts, np.minimum(right[1::2][number], ends[run]), run

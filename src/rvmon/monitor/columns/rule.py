@@ -172,12 +172,12 @@ class ColumnRule:
     ) -> None:
         """Note what was decided, and keep the rest."""
         is_open = outcome.decided == FAR
-        told = ~is_open & (attempts.number > 0) & ~(attempts.void & outcome.passed)
+        recorded = ~is_open & (attempts.number > 0) & ~(attempts.void & outcome.passed)
         void = ~is_open & attempts.void & outcome.passed
         if void.any():
             self._void.append(attempts.pick(void))
-        if told.any():
-            done = attempts.pick(told), outcome.pick(told)
+        if recorded.any():
+            done = attempts.pick(recorded), outcome.pick(recorded)
             self._decided.append(self._decisions(piece, *done, starts, letters))
         if not is_open.all():
             attempts = attempts.pick(is_open)

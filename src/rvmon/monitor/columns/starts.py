@@ -8,7 +8,7 @@ import numpy as np
 
 from rvmon.monitor.columns.axis import Axis
 from rvmon.monitor.columns.leaves import Truth
-from rvmon.monitor.columns.stretches import holds_at, holds_at_last
+from rvmon.monitor.columns.stretches import counted, holds_at, holds_at_last
 
 if TYPE_CHECKING:
     from rvmon.monitor.columns.stretches import Toggles
@@ -34,18 +34,11 @@ class Starts:
             return np.empty(0, np.int64)
         before, self._may = self._may, holds_at_last(trigger.may, axis.stop)
         if self._pulse and not self._episodic:
-            return _all_places(trigger.must)
+            firsts = trigger.must[0::2]
+            return counted(firsts, trigger.must[1::2] - firsts)
         begins: Toggles = trigger.may[0::2]
         if before and len(begins) and begins[0] == axis.start:
             begins = begins[1:]
         if self._episodic or trigger.known:
             return begins
         return begins[holds_at(trigger.must, begins) > 0]
-
-
-def _all_places(toggles: Toggles) -> Toggles:
-    counts = toggles[1::2] - toggles[0::2]
-    behind = np.cumsum(counts)
-    total = int(behind[-1]) if len(behind) else 0
-    made: Toggles = np.arange(total) + np.repeat(toggles[0::2] - (behind - counts), counts)
-    return made

@@ -88,6 +88,16 @@ def joined(starts: Toggles, stops: Toggles) -> Toggles:
     return made.ravel()
 
 
+def counted(firsts: Toggles, counts: Toggles) -> Toggles:
+    """Each first number with those that follow it, so many as its count says in all.
+
+    >>> counted(np.array([3, 9]), np.array([2, 3])).tolist()
+    [3, 4, 9, 10, 11]
+    """
+    made: Toggles = np.arange(counts.sum()) + np.repeat(firsts + counts - np.cumsum(counts), counts)
+    return made
+
+
 def clipped(toggles: Toggles, start: int, stop: int) -> Toggles:
     """The places of a set from `start` to before `stop`.
 

@@ -16,7 +16,7 @@ from rvmon.monitor.columns.doubt import Doubt
 from rvmon.monitor.columns.leaves import Columns, Truth, combined, known_truth, negated
 from rvmon.monitor.columns.past import Previous, Since
 from rvmon.monitor.columns.reading import Flat, Reading, steady
-from rvmon.monitor.columns.stretches import complement, in_at_least, nowhere
+from rvmon.monitor.columns.stretches import between, complement, in_at_least, nowhere
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -148,9 +148,10 @@ class Timeline:
             self._here = self._now
         flats = {}
         truths = {}
+        everywhere = between(axis.start, axis.stop)
         for place, now in self._now.items():
             flats[place] = steady(known_truth(np.zeros(1, bool)))
-            whole = [_all(axis) if held else nowhere() for held in (now.must, now.may)]
+            whole = [everywhere if held else nowhere() for held in (now.must, now.may)]
             truths[place] = known_truth(whole[0]) if now.known else Truth(*whole)
         return self._piece(axis, none, flats, self._now, truths)
 
@@ -213,8 +214,7 @@ class Timeline:
         operands = [truths[operand] for operand in self._plan.graph.operands[place]]
         if isinstance(state.leaf, Elapsed):
             due = (self._origin or 0) + state.leaf.duration
-            start = int(axis.first_from(np.array([due]))[0])
-            return known_truth(np.array([start, axis.stop][: 2 * (start < axis.stop)], np.int64))
+            return known_truth(between(axis.place_from(due), axis.stop))
         match state.op:
             case StateOp.NOT:
                 over = partial(complement, start=axis.start, stop=axis.stop)
@@ -270,10 +270,6 @@ def _flat_value(op: StateOp, operands: list[Truth]) -> Truth:
         return known_truth(operands[0].must)
     sign = np.logical_and if op is StateOp.AND else np.logical_or
     return combined(operands, partial(reduce, sign))
-
-
-def _all(axis: Axis) -> Toggles:
-    return np.array([axis.start, axis.stop][: 2 * (axis.start < axis.stop)], np.int64)
 
 
 def _toggles(at: Any, between: Any, before: bool, axis: Axis, places: NDArray[np.int64]) -> Toggles:

@@ -74,8 +74,8 @@ def too_many(count: int) -> Refusal:
     Args:
         count: how many there are.
     """
-    told = f"is one of {count} requirements, more than the {MOST_GENERATED} of generated code"
-    return Refusal(told, "use the engine `auto`, or several monitors (`only`)", "automaton")
+    reason = f"is one of {count} requirements, more than the {MOST_GENERATED} of generated code"
+    return Refusal(reason, "use the engine `auto`, or several monitors (`only`)", "automaton")
 
 
 def no_stream(engine: str) -> RvmonError:
@@ -122,8 +122,8 @@ def of_generated(one: CompiledRequirement) -> Refusal | None:
     if one.automaton is None:
         return Refusal(f"has no automaton ({one.refusal})", _LEAVE_OUT, "network")
     if isinstance(one.automaton.class_of, LetterDiagram):
-        told = f"tells {one.alphabet.size:,} combinations of its propositions apart"
-        return Refusal(told, _LEAVE_OUT, "automaton")
+        reason = f"tells {one.alphabet.size:,} combinations of its propositions apart"
+        return Refusal(reason, _LEAVE_OUT, "automaton")
     return None
 
 

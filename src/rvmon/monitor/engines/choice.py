@@ -40,11 +40,11 @@ def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineC
 def _choice(one: CompiledRequirement, count: int) -> EngineChoice:
     online, refused = _online(one, count)
     of_columns, of_c = refusal.of_columns(one), refusal.of_c(one)
-    told = {"columns": of_columns, **refused, "c": of_c}
+    refusals = {"columns": of_columns, **refused, "c": of_c}
     return EngineChoice(
         online,
         "columns" if of_columns is None else online,
-        {name: reason for name, reason in told.items() if reason is not None},
+        {name: reason for name, reason in refusals.items() if reason is not None},
     )
 
 

@@ -83,8 +83,8 @@ def judge_columns(
     if not arrays.began:
         raise NotByColumnsError("there is no row")
     others = None if rows is None else rows.report(end)
-    told = "columns" if others is None else f"columns, {others.engine}"
-    return replace(arrays.report(end, others), engine=told)
+    engine = "columns" if others is None else f"columns, {others.engine}"
+    return replace(arrays.report(end, others), engine=engine)
 
 
 ENGINES = {"columns": ByColumns()}

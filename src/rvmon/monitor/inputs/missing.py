@@ -75,11 +75,11 @@ def expect_names(
         paths = [column for column in free if "/" in column or "." in column]
         if len(refused) == len(paths) == 1 and not close[refused[0]]:
             close[refused[0]] = paths[0]  # the one topic for the one name
-        raise MissingNameError(place + "\n".join(_told(lacking, close, free, mapped)))
+        raise MissingNameError(place + "\n".join(_listed(lacking, close, free, mapped)))
     return tuple(lacking)
 
 
-def _told(
+def _listed(
     lacking: Mapping[str, tuple[str, ...]],
     close: Mapping[str, str],
     others: Sequence[str],

@@ -15,10 +15,10 @@ from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
-from rvmon.monitor.online.generated_records import GeneratedRecords, Hearing, UnitStanding
 from rvmon.monitor.online.lanes import Lanes
-from rvmon.monitor.online.monitor import Monitor
+from rvmon.monitor.online.monitor import Monitor, Step
 from rvmon.monitor.online.one_call import overlap
+from rvmon.monitor.online.unit_clerks import JudgeClerk, UnitClerk, UnitStanding
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
@@ -27,7 +27,6 @@ from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 
-Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 Flush = Callable[[int], Sequence[Attempt]]
 
 _HELD = BUSY + 1
@@ -103,19 +102,19 @@ class GeneratedLanes(Lanes):
         clerks: list[Any] = [None] * (len(forms.requirements) + len(forms.plan.hidden_of))
         unit.restart(self, clerks)
         standing = UnitStanding(forms.plan, unit)
-        self._seats = [
-            GeneratedRecords(one, forms.plan, unit, standing, ledger, self._counts, noted)
+        self._clerks = [
+            UnitClerk(one, forms.plan, unit, standing, ledger, self._counts, noted)
             for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
         judged: list[CompiledRequirement | None] = [*forms.requirements]
         judged += [forms.requirements[index].hidden for index in forms.plan.hidden_of]
-        hearing = Hearing(unit, ledger)
+        judge_clerk = JudgeClerk(unit, ledger)
         for index, one in enumerate(judged):
             if forms.machines[index] is not None:
-                unit.rules[index].clerk = self._seats[index]
+                unit.rules[index].clerk = self._clerks[index]
             elif one is not None:
                 hidden = index >= len(forms.requirements)
-                judge = judge_of(one, "auto", standing, hearing, {}, index=index, hidden=hidden)
+                judge = judge_of(one, "auto", standing, judge_clerk, {}, index=index, hidden=hidden)
                 unit.rules[index] = judge
                 judge.restless = judge.watches
                 unit.note(judge)
@@ -153,7 +152,7 @@ class GeneratedLanes(Lanes):
         own = [
             (rule.compiled.requirement.id, rule, rule.running_attempt)
             if isinstance(rule, AttemptJudge)
-            else (self._seats[rule.index].id, rule, rule.running_attempt)
+            else (self._clerks[rule.index].id, rule, rule.running_attempt)
             for rule in self.unit.rules
         ]
         return [*own, *super().holders()]
@@ -162,7 +161,7 @@ class GeneratedLanes(Lanes):
         """A rule that knows its requirement, or how one would stand in its place."""
         if isinstance(rule, AttemptJudge):
             return rule
-        return self._seats[rule.index].judge_now(rule)
+        return self._clerks[rule.index].judge_now(rule)
 
     def take_along(self, t: int) -> None:
         """See `Lanes`."""
@@ -204,8 +203,8 @@ class GeneratedLanes(Lanes):
     def undetermined(self) -> list[str]:
         """See `Lanes`."""
         own = [
-            seat.compiled.requirement.id
-            for index, seat in enumerate(self._seats)
+            one.compiled.requirement.id
+            for index, one in enumerate(self._clerks)
             if not self.unit.is_determined(index)
         ]
         return [*own, *super().undetermined()]
@@ -248,7 +247,7 @@ class GeneratedMonitor(Monitor):
         """Whether the unit alone takes samples as they come."""
         # Generated code looks and closes in one go only where one thread has a turn at a time.
         if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
-            self.__dict__["step_ns"] = self._unit.step
+            self.step_ns = self._unit.step
 
     def _make_lanes(self) -> Lanes:
         self._unit_lanes = GeneratedLanes(
@@ -258,7 +257,7 @@ class GeneratedMonitor(Monitor):
             self.options.engine,
             self.options.sources,
             self._ledger,
-            super().step_ns,
+            self._take,
         )
         return self._unit_lanes
 

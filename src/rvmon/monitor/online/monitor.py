@@ -28,6 +28,8 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
+Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
+
 
 class Monitor:
     """Judges a stream of samples; made by `rvmon.monitor.build`.
@@ -37,7 +39,19 @@ class Monitor:
 
     Attributes:
         judged_by: the engines that judge its requirements, as its report says them.
+        step: a function that takes one sample: its time in seconds, and values by name; otherwise
+            as `step_ns`.
+        step_ns: the same at ticks, later than all samples before; it returns the attempts that the
+            sample decided. The values are what was updated or occurred: signals by value, `None` or
+            NaN if it became unknown; events `True`, or their payload. It raises `TimeOrderError` if
+            the time is not later, or an `advance` said that nothing would come; `TraceError` for a
+            name or a value that the specification does not know, or a time that is no whole number;
+            `OverlapError` if another call is under way. In all cases the monitor is as it was.
+            Where a monitor runs generated code, this is a function of it.
     """
+
+    step: Callable[[float, Mapping[str, Any]], Sequence[Attempt]]
+    step_ns: Step
 
     STATE: tuple[str, ...] = (
         *("_ledger", "_kept", "_lanes"),
@@ -60,6 +74,7 @@ class Monitor:
         self._validator = Validator(compiled.checked, sources, single)
         self._listeners = Listeners()
         self.one_call = OneCall(self)
+        self.step, self.step_ns = self._take_at, self._take
         self._begin()
 
     def _enter(self) -> None:
@@ -98,31 +113,14 @@ class Monitor:
             self._ledger,
         )
 
-    def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take one sample; see `step_ns`.
-
-        Args:
-            t: seconds.
-            values: what was updated or occurred.
-        """
+    def _take_at(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample at seconds."""
         if type(values) is not dict and not isinstance(values, Mapping):
             raise TraceError(f"sample at {t} s: expected values by name, found {values!r}")
         return self.step_ns(ticks_of_seconds(t), values)
 
-    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take one sample and return the attempts that it decided.
-
-        Args:
-            t_ns: ticks, later than all samples before.
-            values: what was updated or occurred: signals by value, `None` or NaN if it became
-                unknown; events `True`, or their payload.
-
-        Raises:
-            TimeOrderError: the time is not later, or an `advance` said that nothing would come.
-            TraceError: a name or a value that the specification does not know, or a time that is
-                no whole number.
-            OverlapError: another call is under way. In all cases the monitor is as it was.
-        """
+    def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample by the way of every monitor."""
         decided = self.one_call(self._step, t_ns, values)
         self._listeners.tell(decided)
         return decided

@@ -32,10 +32,10 @@ class Doubt:
         >>> print(Doubt(2 * second, (stale,), ()))
         `far` was not known from 1 s to 4 s: no update for 500 ms (stale)
         """
-        told = [outage_in_words(outage) for outage in self.outages]
+        causes = [outage_in_words(outage) for outage in self.outages]
         at = format_ticks(self.position)
-        told += [f"`{text}` was not known at {at}" for text in self.texts]
-        return "; ".join(told) or f"what was not known before still mattered at {at}"
+        causes += [f"`{text}` was not known at {at}" for text in self.texts]
+        return "; ".join(causes) or f"what was not known before still mattered at {at}"
 
 
 def outage_in_words(outage: Outage) -> str:

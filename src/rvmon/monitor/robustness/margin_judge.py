@@ -221,9 +221,9 @@ class MarginJudge(AttemptJudge):
         found: dict[Rest, dict[int, float]] = {}
         for rest, side in _SIDES.items():
             gauge = self._least if self._greatest is None or not side else self._greatest
-            told = self._highs if side else self._lows
+            bounds = self._highs if side else self._lows
             values = gauge.copy().finish(self._steps(FAR, side), end, reached, rest)
-            found[rest] = {**told, **dict(values)}
+            found[rest] = {**bounds, **dict(values)}
         return {
             position * self._gap: self._figure(low, found[Rest.GREATEST][position], kept)
             for (position, low), kept in zip(

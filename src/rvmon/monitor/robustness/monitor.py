@@ -188,7 +188,7 @@ class _MeasuringLanes(Lanes):
         if compiled not in self._plans:
             self._plans[compiled] = plan_of(expanded(compiled.obligation.owed), self.gap)
         alone = not requirement.captures and requirement.for_each is None
-        told = compiled is self._by_id[requirement.id]
+        is_main = compiled is self._by_id[requirement.id]
         beside = MarginJudge(
             compiled,
             self._plans[compiled],
@@ -196,7 +196,7 @@ class _MeasuringLanes(Lanes):
             self._gauged,
             captured,
             self.spec,
-            every=self._streams and alone and told,
+            every=self._streams and alone and is_main,
         )
         self._gauged.beside[judges[0]] = beside
         return [*judges, beside]
@@ -283,16 +283,16 @@ class _Gauged(Ledger):
             over: whether the run is; before, those in doubt may still vanish or become sure.
         """
         found, self._found = self._found, []
-        told = []
+        settled = []
         for one in sorted(found, key=lambda one: (one[2], one[0].compiled.rank, one[1] is None)):
             attempt = one[1]
             if attempt in self.vanished:
                 self.vanished.discard(attempt)
             elif attempt is None or attempt.sure or over:
-                told.append(_measured(one[0], attempt, one[3], one[2]))
+                settled.append(_measured(one[0], attempt, one[3], one[2]))
             else:
                 self._found.append(one)
-        return told
+        return settled
 
 
 def _measured(judge: MarginJudge, attempt: Open | None, found: Robustness, t: int) -> Measured:

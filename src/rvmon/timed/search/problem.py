@@ -14,7 +14,7 @@ class Site(Protocol):
     """The discrete part of a symbolic state: one object for each.
 
     Attributes:
-        uppers, lowers: the clock bounds that matter there, as `zones.is_simulated` takes them.
+        uppers, lowers: the clock bounds that matter there, as `zones.cover_test` takes them.
     """
 
     @property

@@ -143,28 +143,6 @@ def is_within(zone: Zone, other: Zone) -> bool:
     return all(mine <= theirs for mine, theirs in zip(zone, other, strict=True))
 
 
-def is_simulated(
-    zone: Zone,
-    other: Zone,
-    dim: int,
-    uppers: Sequence[tuple[int, float]],
-    lowers: Sequence[tuple[int, float]],
-) -> bool:
-    """Whether each valuation of a zone is simulated by one of another: `zone ⊆ aLU(other)`.
-
-    Args:
-        zone: normalised.
-        other: normalised.
-        dim: of both.
-        uppers: `(clock, −U)` for each clock with an upper bound U in some guard, `(0, 0)` first.
-        lowers: `(clock, L)` for each clock with a lower bound L in some guard, `(0, 0)` first.
-
-    Source: Herbreteau, Srivathsan, Walukiewicz, Better Abstractions for Timed Automata, LICS 2012,
-    theorem on inclusion.
-    """
-    return passes(other, cover_test(zone, dim, uppers, lowers))
-
-
 CoverTest = tuple[tuple[int, float], ...]
 """`(entry, least)`: a zone that simulates another has at least these numbers there."""
 
@@ -175,7 +153,17 @@ def cover_test(
     uppers: Sequence[tuple[int, float]],
     lowers: Sequence[tuple[int, float]],
 ) -> CoverTest:
-    """What a zone must pass to simulate this one; the arguments are those of `is_simulated`."""
+    """What a zone must pass for each valuation of this one to be simulated: `this ⊆ aLU(other)`.
+
+    Args:
+        zone: normalised, as the other is.
+        dim: of both.
+        uppers: `(clock, −U)` for each clock with an upper bound U in some guard, `(0, 0)` first.
+        lowers: `(clock, L)` for each clock with a lower bound L in some guard, `(0, 0)` first.
+
+    Source: Herbreteau, Srivathsan, Walukiewicz, Better Abstractions for Timed Automata, LICS 2012,
+    theorem on inclusion.
+    """
     test: list[tuple[int, float]] = []
     for x, minus_upper in uppers:
         base = x * dim

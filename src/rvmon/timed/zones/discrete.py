@@ -48,7 +48,7 @@ class Vector:
         urgent: the candidates, and the senders of broadcasts, whose channel is urgent.
         invariant_data, invariant_atoms: of all locations.
         bounds: the numbers that clocks may still be compared with.
-        uppers, lowers: the same in the form that `zones.is_simulated` takes.
+        uppers, lowers: the same in the form that `zones.cover_test` takes.
     """
 
     locations: tuple[int, ...]

@@ -27,7 +27,7 @@ class Space:
         network: whose states they are.
         extra: what a query compares clocks with, at any location.
         observers: number of clocks of queries, counted behind those of the network.
-        uppers: upper bounds of those, as `zones.is_simulated` takes them.
+        uppers: upper bounds of those, as `zones.cover_test` takes them.
         lowers: their lower bounds, likewise.
         bisimilar: whether a state may stand for another only if both can do the same, not if it
             can do more.

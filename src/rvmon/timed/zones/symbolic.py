@@ -19,7 +19,7 @@ class Steps:
         network: where they run.
         formula: normalised; what it compares clocks with counts everywhere.
         observers: number of further clocks.
-        uppers: upper bounds of those, as `zones.is_simulated` takes them.
+        uppers: upper bounds of those, as `zones.cover_test` takes them.
         lowers: their lower bounds, likewise.
         bisimilar: as `Space` takes it.
     """

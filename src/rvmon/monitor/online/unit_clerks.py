@@ -1,4 +1,4 @@
-"""The records of the decisions that generated code makes for one requirement."""
+"""Clerks of generated code: they hear of its attempts and decisions, and write the records."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class UnitStanding:
         return t if self.values[place] == value else self._unit.until[3 * place + value]
 
 
-class Hearing:
+class JudgeClerk:
     """Tells generated code of all that a ledger hears from a rule that is no part of it.
 
     Args:
@@ -93,7 +93,7 @@ class Hearing:
         self._ledger.decided(judge, attempt, verdict, t, before)
 
 
-class GeneratedRecords(DeferredReasons):
+class UnitClerk(DeferredReasons):
     """Stands where the judge of a requirement would, and writes the records of its decisions.
 
     Args:
