@@ -18,8 +18,9 @@ from rvmon.trace.sample import Sample, Trace
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
+    from rvmon.dataflow.graph import Graph
     from rvmon.explain.late import Known
-    from rvmon.readers.changes import Changes
+    from rvmon.formula.state import State
     from rvmon.spec.checked.formula import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -73,12 +74,11 @@ def post_analysis(
 
     late = _missed(spec, report)
     silent = _silent(spec, report)
-    asked = [names for names, _ in late.values()] + list(silent.values())
-    looked_at = frozenset[str]().union(*(names for names in asked if names is not None))
-    changes = _changes(spec, trace, looked_at, end, samples) if looked_at else None
+    asked = [graph for graph, _ in late.values()] + list(silent.values())
+    changes = _changes(spec, trace, [one for one in asked if one is not None], end, samples)
 
     def read(names: frozenset[str] | None) -> Sequence[Sample]:
-        return samples() if names is None or changes is None else changes.samples(names)
+        return samples() if names is None else changes[names]
 
     return replace(
         report,
@@ -87,10 +87,8 @@ def post_analysis(
     )
 
 
-def _missed(
-    spec: Spec, report: Report
-) -> Mapping[str, tuple[frozenset[str] | None, Sequence[Attempt]]]:
-    """By requirement, of the first failures, those that awaited something, and what that reads."""
+def _missed(spec: Spec, report: Report) -> Mapping[str, tuple[Graph | None, Sequence[Attempt]]]:
+    """By requirement what its first failures awaited, if values are all that counts, and these."""
     failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
     if not failed:
         return {}
@@ -113,8 +111,8 @@ def _missed(
     return found
 
 
-def _silent(spec: Spec, report: Report) -> dict[str, frozenset[str] | None]:
-    """The requirements without attempts, and what their triggers read."""
+def _silent(spec: Spec, report: Report) -> dict[str, Graph | None]:
+    """The requirements without attempts, and their triggers, if values are all that counts."""
     names = [name for name in report.verdicts if report.is_silent(name)]
     if not names:
         return {}
@@ -125,7 +123,7 @@ def _silent(spec: Spec, report: Report) -> dict[str, frozenset[str] | None]:
 
 def _late(
     spec: Spec,
-    missed: Mapping[str, tuple[frozenset[str] | None, Sequence[Attempt]]],
+    missed: Mapping[str, tuple[Graph | None, Sequence[Attempt]]],
     read: Callable[[frozenset[str] | None], Sequence[Sample]],
     end: int,
     sources: frozenset[str] | None,
@@ -136,8 +134,8 @@ def _late(
     from rvmon.explain.late import late_arrivals
 
     alike: dict[frozenset[str] | None, list[str]] = {}
-    for name, (names, _) in missed.items():
-        alike.setdefault(names, []).append(name)
+    for name, (graph, _) in missed.items():
+        alike.setdefault(_names(graph), []).append(name)
     found = {}
     for names, own in alike.items():
         known: Known = {}
@@ -154,7 +152,7 @@ def _late(
 
 def _misses(
     spec: Spec,
-    silent: Mapping[str, frozenset[str] | None],
+    silent: Mapping[str, Graph | None],
     read: Callable[[frozenset[str] | None], Sequence[Sample]],
     end: int,
     sources: frozenset[str] | None,
@@ -167,32 +165,45 @@ def _misses(
 
     known: dict[str, str] = {}
     found = {}
-    for name, names in silent.items():
+    for name, graph in silent.items():
         requirement = spec.requirements[name]
         trigger = format_formula(requirement.trigger)
         if trigger not in known or requirement.for_each is not None:
-            known[trigger] = why_not_triggered(spec.checked, requirement, read(names), end, sources)
+            samples = read(_names(graph))
+            known[trigger] = why_not_triggered(spec.checked, requirement, samples, end, sources)
         found[name] = known[trigger]
     return {name: miss for name, miss in found.items() if miss}
+
+
+def _names(graph: Graph | None) -> frozenset[str] | None:
+    return None if graph is None else frozenset(graph.by_name)
 
 
 def _changes(
     spec: Spec,
     trace: str,
-    names: frozenset[str],
+    graphs: Iterable[Graph],
     end: int,
     samples: Callable[[], Sequence[Sample]],
-) -> Changes:
-    """What changes of these names, read by columns if the file is plain."""
-    from rvmon.readers.changes import Changes
+) -> Mapping[frozenset[str], Sequence[Sample]]:
+    """What changes, by the names that graphs read; read by columns if the file is plain."""
+    alike: dict[frozenset[str], set[State]] = {}
+    for graph in graphs:
+        alike.setdefault(frozenset(graph.by_name), set()).update(graph.nodes)
+    if not alike:
+        return {}
+    from rvmon.dataflow.graph import graph_of
+    from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 
-    schema = spec.schema
     if spec.checked.max_delay is None:
+        looked_at = frozenset[str]().union(*alike)
+        recording = opened(spec, trace, only=looked_at)
         with suppress(NotPlainError):
-            source = opened(spec, trace)
-            blocks = source.blocks(lambda: frozenset((*schema.signals, *schema.events)))
-            return Changes(blocks, names, schema.events.keys(), end)
-    return Changes.in_samples(samples(), names, schema.events.keys())
+            blocks = recording.blocks(lambda: looked_at)
+            together = [graph_of(states) for states in alike.values()]
+            found = changes_in_blocks(blocks, together, spec.checked, end)
+            return dict(zip(alike, found, strict=True))
+    return {names: changes_in_samples(samples(), names, spec.checked.events) for names in alike}
 
 
 def _goals(

@@ -92,9 +92,9 @@ def test_most_rows_are_passed_over(monkeypatch):
     columns |= {"stop": np.zeros(3000, bool), "go": columns["t"] < 0, "count": np.zeros(3000, int)}
     columns["speed"] = np.linspace(0.3, 0.4, 3000)
     taken = []
-    real = row_judge._rows_that_matter
+    real = row_judge.rows_that_matter
     monkeypatch.setattr(
-        row_judge, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
+        row_judge, "rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
     )
     report = spec.evaluate(columns, engine="automaton")
     assert report == one_by_one(spec, columns)
