@@ -20,7 +20,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.dataflow.graph import Graph
     from rvmon.explain.late import Known
-    from rvmon.formula.state import State
+    from rvmon.formula.state import Leaf
     from rvmon.spec.checked.formula import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -75,10 +75,10 @@ def post_analysis(
     late = _missed(spec, report)
     silent = _silent(spec, report)
     asked = [graph for graph, _ in late.values()] + list(silent.values())
-    changes = _changes(spec, trace, [one for one in asked if one is not None], end, samples)
+    changes = _changes(spec, trace, asked, end, samples)
 
-    def read(names: frozenset[str] | None) -> Sequence[Sample]:
-        return samples() if names is None else changes[names]
+    def read(leaves: frozenset[Leaf] | None) -> Sequence[Sample]:
+        return samples() if leaves is None else changes[leaves]
 
     return replace(
         report,
@@ -124,7 +124,7 @@ def _silent(spec: Spec, report: Report) -> dict[str, Graph | None]:
 def _late(
     spec: Spec,
     missed: Mapping[str, tuple[Graph | None, Sequence[Attempt]]],
-    read: Callable[[frozenset[str] | None], Sequence[Sample]],
+    read: Callable[[frozenset[Leaf] | None], Sequence[Sample]],
     end: int,
     sources: frozenset[str] | None,
 ) -> Mapping[str, Mapping[int, int]]:
@@ -133,13 +133,13 @@ def _late(
         return {}
     from rvmon.explain.late import late_arrivals
 
-    alike: dict[frozenset[str] | None, list[str]] = {}
+    alike: dict[frozenset[Leaf] | None, list[str]] = {}
     for name, (graph, _) in missed.items():
-        alike.setdefault(_names(graph), []).append(name)
+        alike.setdefault(_leaves(graph), []).append(name)
     found = {}
-    for names, own in alike.items():
+    for leaves, own in alike.items():
         known: Known = {}
-        samples = read(names)
+        samples = read(leaves)
         for name in own:
             requirement, attempts = spec.requirements[name], missed[name][1]
             late = late_arrivals(
@@ -153,7 +153,7 @@ def _late(
 def _misses(
     spec: Spec,
     silent: Mapping[str, Graph | None],
-    read: Callable[[frozenset[str] | None], Sequence[Sample]],
+    read: Callable[[frozenset[Leaf] | None], Sequence[Sample]],
     end: int,
     sources: frozenset[str] | None,
 ) -> dict[str, str]:
@@ -169,41 +169,43 @@ def _misses(
         requirement = spec.requirements[name]
         trigger = format_formula(requirement.trigger)
         if trigger not in known or requirement.for_each is not None:
-            samples = read(_names(graph))
+            samples = read(_leaves(graph))
             known[trigger] = why_not_triggered(spec.checked, requirement, samples, end, sources)
         found[name] = known[trigger]
     return {name: miss for name, miss in found.items() if miss}
 
 
-def _names(graph: Graph | None) -> frozenset[str] | None:
-    return None if graph is None else frozenset(graph.by_name)
+def _leaves(graph: Graph | None) -> frozenset[Leaf] | None:
+    """What a graph reads: those that read the same can become another at the same samples."""
+    if graph is None:
+        return None
+    return frozenset(node.leaf for node in graph.nodes if node.leaf is not None)
 
 
 def _changes(
     spec: Spec,
     trace: str,
-    graphs: Iterable[Graph],
+    graphs: Iterable[Graph | None],
     end: int,
     samples: Callable[[], Sequence[Sample]],
-) -> Mapping[frozenset[str], Sequence[Sample]]:
-    """What changes, by the names that graphs read; read by columns if the file is plain."""
-    alike: dict[frozenset[str], set[State]] = {}
-    for graph in graphs:
-        alike.setdefault(frozenset(graph.by_name), set()).update(graph.nodes)
+) -> Mapping[frozenset[Leaf] | None, Sequence[Sample]]:
+    """What changes, by the leaves of graphs; read by columns if the file is plain."""
+    alike = {_leaves(graph): graph for graph in graphs if graph is not None}
     if not alike:
         return {}
-    from rvmon.dataflow.graph import graph_of
     from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 
     if spec.checked.max_delay is None:
-        looked_at = frozenset[str]().union(*alike)
+        looked_at = frozenset(name for graph in alike.values() for name in graph.by_name)
         recording = opened(spec, trace, only=looked_at)
         with suppress(NotPlainError):
             blocks = recording.blocks(lambda: looked_at)
-            together = [graph_of(states) for states in alike.values()]
-            found = changes_in_blocks(blocks, together, spec.checked, end)
+            found = changes_in_blocks(blocks, tuple(alike.values()), spec.checked, end)
             return dict(zip(alike, found, strict=True))
-    return {names: changes_in_samples(samples(), names, spec.checked.events) for names in alike}
+    return {
+        leaves: changes_in_samples(samples(), graph.by_name, spec.checked.events)
+        for leaves, graph in alike.items()
+    }
 
 
 def _goals(

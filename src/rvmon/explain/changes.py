@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Container, Iterable, Sequence
 
 from rvmon.dataflow.graph import Graph
 from rvmon.monitor.columns.row_changes import rows_that_matter
@@ -43,7 +43,7 @@ def changes_in_blocks(
 
 
 def changes_in_samples(
-    samples: Sequence[Sample], names: Collection[str], events: Collection[str]
+    samples: Sequence[Sample], names: Container[str], events: Collection[str]
 ) -> list[Sample]:
     """The first sample, and those that tell another value than the one before, or of an event.
 
@@ -60,8 +60,9 @@ def changes_in_samples(
     made: list[Sample] = []
     for sample in samples:
         own = {}
-        for name in sample.values.keys() & names:
-            value = sample.values[name]
+        for name, value in sample.values.items():
+            if name not in names:
+                continue
             differs = value is not False
             if name not in events:
                 differs = name not in held or bool(value != held[name])
