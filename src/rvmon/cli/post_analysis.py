@@ -199,6 +199,8 @@ def _changes(
         looked_at = frozenset(name for graph in alike.values() for name in graph.by_name)
         recording = opened(spec, trace, only=looked_at)
         with suppress(NotPlainError):
+            if recording.is_short:
+                raise NotPlainError("its samples are sooner looked at")
             blocks = recording.blocks(lambda: looked_at)
             found = changes_in_blocks(blocks, tuple(alike.values()), spec.checked, end)
             return dict(zip(alike, found, strict=True))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Container, Iterable, Sequence
 
 from rvmon.dataflow.graph import Graph
-from rvmon.monitor.columns.row_changes import rows_that_matter
 from rvmon.readers.blocks import Block, up_to
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
@@ -24,6 +23,8 @@ def changes_in_blocks(
 
     Cost: memory grows with what is given, not with the recording.
     """
+    from rvmon.monitor.columns.row_changes import rows_that_matter  # which imports NumPy
+
     found: list[list[Sample]] = [[] for _ in graphs]
     for block in blocks:
         own = up_to(end, block)

@@ -11,6 +11,7 @@ from rvmon.cli.post_analysis import in_order
 from rvmon.dataflow.graph import graph_of
 from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 from rvmon.explain.not_triggered import read_as_values, why_not_triggered
+from rvmon.readers import recording
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.recording import FileRecording
 from rvmon.trace.sample import Sample
@@ -33,6 +34,12 @@ SILENT = {
     "changes": "changed(x) and x > 50",
     "age": "age(x) > 20 s and p",
 }
+
+
+@pytest.fixture(autouse=True)
+def none_is_short(monkeypatch):
+    """Little text is read by columns, too."""
+    monkeypatch.setattr(recording, "SHORT", 0)
 
 
 def rows(seed: int) -> list[dict]:

@@ -10,6 +10,7 @@ import pytest
 import rvmon
 from rvmon.readers import csv_blocks as module
 from rvmon.readers import parquet as parquet_module
+from rvmon.readers import recording
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.decimals import Cells, decimals, instants, whole_numbers
@@ -35,6 +36,12 @@ requirement R3 "c"
 """
 
 
+@pytest.fixture(autouse=True)
+def none_is_short(monkeypatch):
+    """Little text is read by columns, too."""
+    monkeypatch.setattr(recording, "SHORT", 0)
+
+
 def csv_text(seed: int, rows: int = 2000) -> str:
     """A plain file: every cell is filled."""
     rng = random.Random(seed)
@@ -52,9 +59,9 @@ def csv_text(seed: int, rows: int = 2000) -> str:
 
 def by_rows(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Report:
     """The report of the slow way, on the samples up to an instant."""
-    recording = spec.recording(path)
-    monitor = spec.monitor(sources=recording.names)
-    for sample in recording:
+    opened = spec.recording(path)
+    monitor = spec.monitor(sources=opened.names)
+    for sample in opened:
         if end is None or sample.t <= end:
             monitor.step_ns(sample.t, sample.values)
     return monitor.finish_ns(end)
@@ -64,8 +71,8 @@ def by_columns(
     spec: rvmon.Spec, path: Path, engine: str = "auto", end: int | None = None
 ) -> rvmon.Report:
     """The report of the quick way; what is not plain fails."""
-    recording = spec.recording(path)
-    source = Source(recording, end, is_cut=True, read=lambda _: pytest.fail("rows are read"))
+    opened = spec.recording(path)
+    source = Source(opened, end, is_cut=True, read=lambda _: pytest.fail("rows are read"))
     return spec.judge(source, engine=engine)
 
 
