@@ -11,7 +11,7 @@ from tests.tools.filled import filled, judge_columns
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.codegen.c_build import built
+from rvmon.codegen.c_build import Build, built
 from rvmon.monitor import compile_spec
 from rvmon.monitor.columns import evaluate as arrays
 from rvmon.monitor.engines import row_judge
@@ -183,7 +183,7 @@ def test_builds_at_the_same_time_do_not_disturb_each_other(tmp_path, monkeypatch
     texts = {"one.c": "int one(void);\nint one(void) { return 1; }\n"}
 
     def build(_: int) -> object:
-        return built(texts, ["one.c"], ".so", ["-shared", "-fPIC"])
+        return built(Build(texts, ["one.c"], ".so", ["-shared", "-fPIC"]))
 
     with ThreadPoolExecutor(4) as pool:
         paths = set(pool.map(build, range(8)))
