@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.engines.python import generated_or_tables
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import columns_of, judge_columns_by_rows, judge_samples
-from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.monitor.online.monitor import Monitor
 
 FEW_ROWS = 1000
 """So many rows are judged sooner one by one than by arrays."""
@@ -30,6 +29,8 @@ class Auto:
 
     def online(self, compiled: CompiledSpec, asked: Asked) -> Monitor:
         """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
+        from rvmon.monitor.engines.python import generated_or_tables  # recordings seldom ask
+
         return generated_or_tables(compiled, compiled.chosen(asked.only), self.name, asked)
 
     def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
