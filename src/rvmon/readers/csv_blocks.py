@@ -68,11 +68,20 @@ def csv_blocks(
 def _arrow_reader(path: str | Path) -> Callable[..., Block | None] | None:
     """What reads large files on all cores, if it is installed."""
     with suppress(OSError, ImportError):
-        if os.path.getsize(path) >= LARGE:
+        if os.path.getsize(path) >= LARGE and not _is_short_of_memory():
             from rvmon.readers.csv_arrow import arrow_block
 
             return arrow_block
     return None
+
+
+def _is_short_of_memory() -> bool:
+    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses."""
+    try:
+        import resource
+    except ImportError:
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
 
 
 def _plain_layout(header: bytes, schema: Schema) -> Layout:

@@ -291,6 +291,17 @@ def test_without_arrow_a_large_file_is_read_too(tmp_path, monkeypatch):
     assert by_columns(spec, tmp_path / "a.csv") == expected
 
 
+def test_where_memory_is_limited_arrow_is_not_asked(tmp_path, monkeypatch):
+    """It reserves more than `--max-memory` may allow."""
+    resource = pytest.importorskip("resource")
+    (tmp_path / "a.csv").write_text(csv_text(1))
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    monkeypatch.setattr(module, "LARGE", 999)
+    monkeypatch.setattr("rvmon.readers.csv_arrow.arrow_block", lambda *_: pytest.fail("it is"))
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (1 << 30, 1 << 30))
+    assert by_columns(spec, tmp_path / "a.csv").verdicts
+
+
 @pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
 def test_a_cell_that_rows_refuse_is_not_read_by_columns(text, tmp_path, cut_into):
     """A cell is as long as it may be, or one longer: judged both ways, or refused with its line."""
