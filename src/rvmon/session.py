@@ -8,13 +8,13 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rvmon.spec.checked.selection import requirements_asked, sources_asked
-from rvmon.trace.schema import Schema
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
     from rvmon.codegen.unit_plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
+    from rvmon.monitor.c.prepare import Prepared
     from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
@@ -34,11 +34,13 @@ class Spec:
     Attributes:
         checked: names, types, units and formulas, as all engines read them.
         warnings: what the compiler thinks worth a look; errors would have been raised.
+        schema: the declared names with the kinds of their values, and what recordings call them.
     """
 
     def __init__(self, checked: CheckedSpec, warnings: Sequence[Diagnostic] = ()) -> None:
         self.checked = checked
         self.warnings = tuple(warnings)
+        self.schema = checked.schema
 
     def __repr__(self) -> str:
         return f"<Spec {self.checked.name}: {', '.join(self.checked.requirements)}>"
@@ -47,18 +49,6 @@ class Spec:
     def requirements(self) -> Mapping[str, Requirement]:
         """The requirements by id, in order of the file."""
         return self.checked.requirements
-
-    @cached_property
-    def schema(self) -> Schema:
-        """The declared names with the kinds of their values, and what recordings call them."""
-        return Schema(
-            {name: signal.type.kind for name, signal in self.checked.signals.items()},
-            {
-                name: {field: type_.kind for field, type_ in event.fields.items()}
-                for name, event in self.checked.events.items()
-            },
-            self.checked.ignoring,
-        )
 
     def reading(
         self,
@@ -93,9 +83,8 @@ class Spec:
         from rvmon.readers.naming import read_as
 
         other = copy(self)
-        other.schema = read_as(
-            self.schema, time=time, columns=columns, nan=nan, no_update=no_update
-        )
+        known = self.schema
+        other.schema = read_as(known, time=time, columns=columns, nan=nan, no_update=no_update)
         return other
 
     @cached_property
@@ -118,8 +107,6 @@ class Spec:
         >>> choice = loads(text).engines()["R"]
         >>> choice.online, choice.recording
         ('python', 'python')
-        >>> print(choice.refused["columns"].reason)
-        has an automaton of more than one clock, or of too many locations
         """
         from rvmon.monitor.engines.choice import choices
 
@@ -138,6 +125,23 @@ class Spec:
         from rvmon.monitor.compiled.code_plan import plan_alone
 
         return plan_alone(self._compiled, only)
+
+    def prepare(
+        self, *, only: Iterable[str] | None = None, ready: Callable[[Prepared], object] = id
+    ) -> tuple[Prepared, ...]:
+        """Compile ahead, into the cache, what the engine `c` would compile at its first use.
+
+        Args:
+            only: ids of the requirements, as the engine will be asked for them; default all.
+            ready: told each file when it is there.
+
+        Raises:
+            UnknownNameError: there is no such requirement.
+            RvmonError: there is no compiler or no cache, or the engine refuses a requirement.
+        """
+        from rvmon.monitor.c.prepare import prepare
+
+        return prepare(self._compiled, requirements_asked(self.checked, only), ready)
 
     def monitor(
         self,
@@ -168,13 +172,9 @@ class Spec:
         """
         from rvmon.monitor import build_monitor
 
+        names = sources_asked(self.checked, sources)
         return build_monitor(
-            self._compiled,
-            only=only,
-            engine=engine,
-            settle=settle,
-            sources=sources_asked(self.checked, sources),
-            keep=keep,
+            self._compiled, only=only, engine=engine, settle=settle, sources=names, keep=keep
         )
 
     def restore(self, data: bytes) -> Monitor:
@@ -379,12 +379,9 @@ class Spec:
         """
         from rvmon.monitor.robustness.monitor import RobustnessMonitor
 
+        chosen, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
         return RobustnessMonitor(
-            self._compiled,
-            only=requirements_asked(self.checked, only),
-            settle=settle,
-            sources=sources_asked(self.checked, sources),
-            streams=streams,
+            self._compiled, only=chosen, settle=settle, sources=names, streams=streams
         )
 
     def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:

@@ -34,6 +34,7 @@ COMMANDS = {
     "init": "a starter specification from a recording",
     "compile": "a specification as Python or C that runs alone, or as automata",
     "build": "a specification as a program that judges recordings",
+    "prepare": "compile ahead what the engine c runs",
     "cross": "a recording, judged by every engine and installed peer: do they agree?",
     "verify": "model-check a network of timed automata",
     "conform": "hold recorded runs against a network of timed automata",

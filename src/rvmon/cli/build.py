@@ -30,14 +30,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Generate, compile and copy, and return the exit code."""
     from rvmon.cli.constants import constants_of
-    from rvmon.codegen.c_program import built_program
+    from rvmon.codegen.c_build import built
+    from rvmon.codegen.c_program import program_build
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = None
     if arguments.only is not None:
         ids = [name.strip() for name in arguments.only.split(",") if name.strip()]
-    path = built_program(spec.plan(only=ids))
+    path = built(program_build(spec.plan(only=ids)))
     try:
         write_whole(arguments.output, path.read_bytes())
         if os.path.isfile(arguments.output):  # whoever may read it may run it

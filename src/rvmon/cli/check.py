@@ -100,12 +100,12 @@ def _checked(
 ) -> tuple[CheckedSpec | None, Sequence[Diagnostic]]:
     """The specification, or nothing if it is unfit for use, and what is to be said about it."""
     from rvmon.errors import SpecError
-    from rvmon.spec.compile import compile_text
+    from rvmon.spec.compiled_cache import compile_cached
 
     directory = None if name == "-" else Path(name).parent
     shown = "<stdin>" if name == "-" else name
     try:
-        return compile_text(text, name=shown, constants=constants, directory=directory)
+        return compile_cached(text, name=shown, constants=constants, directory=directory)
     except SpecError as error:
         return None, error.diagnostics
 

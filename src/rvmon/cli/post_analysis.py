@@ -18,8 +18,9 @@ from rvmon.trace.sample import Sample, Trace
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
+    from rvmon.dataflow.graph import Graph
     from rvmon.explain.late import Known
-    from rvmon.readers.changes import Changes
+    from rvmon.formula.state import Leaf
     from rvmon.spec.checked.formula import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -73,12 +74,11 @@ def post_analysis(
 
     late = _missed(spec, report)
     silent = _silent(spec, report)
-    asked = [names for names, _ in late.values()] + list(silent.values())
-    looked_at = frozenset[str]().union(*(names for names in asked if names is not None))
-    changes = _changes(spec, trace, looked_at, end, samples) if looked_at else None
+    asked = [graph for graph, _ in late.values()] + list(silent.values())
+    changes = _changes(spec, trace, asked, end, samples)
 
-    def read(names: frozenset[str] | None) -> Sequence[Sample]:
-        return samples() if names is None or changes is None else changes.samples(names)
+    def read(leaves: frozenset[Leaf] | None) -> Sequence[Sample]:
+        return samples() if leaves is None else changes[leaves]
 
     return replace(
         report,
@@ -87,10 +87,8 @@ def post_analysis(
     )
 
 
-def _missed(
-    spec: Spec, report: Report
-) -> Mapping[str, tuple[frozenset[str] | None, Sequence[Attempt]]]:
-    """By requirement, of the first failures, those that awaited something, and what that reads."""
+def _missed(spec: Spec, report: Report) -> Mapping[str, tuple[Graph | None, Sequence[Attempt]]]:
+    """By requirement what its first failures awaited, if values are all that counts, and these."""
     failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
     if not failed:
         return {}
@@ -113,8 +111,8 @@ def _missed(
     return found
 
 
-def _silent(spec: Spec, report: Report) -> dict[str, frozenset[str] | None]:
-    """The requirements without attempts, and what their triggers read."""
+def _silent(spec: Spec, report: Report) -> dict[str, Graph | None]:
+    """The requirements without attempts, and their triggers, if values are all that counts."""
     names = [name for name in report.verdicts if report.is_silent(name)]
     if not names:
         return {}
@@ -125,8 +123,8 @@ def _silent(spec: Spec, report: Report) -> dict[str, frozenset[str] | None]:
 
 def _late(
     spec: Spec,
-    missed: Mapping[str, tuple[frozenset[str] | None, Sequence[Attempt]]],
-    read: Callable[[frozenset[str] | None], Sequence[Sample]],
+    missed: Mapping[str, tuple[Graph | None, Sequence[Attempt]]],
+    read: Callable[[frozenset[Leaf] | None], Sequence[Sample]],
     end: int,
     sources: frozenset[str] | None,
 ) -> Mapping[str, Mapping[int, int]]:
@@ -135,13 +133,13 @@ def _late(
         return {}
     from rvmon.explain.late import late_arrivals
 
-    alike: dict[frozenset[str] | None, list[str]] = {}
-    for name, (names, _) in missed.items():
-        alike.setdefault(names, []).append(name)
+    alike: dict[frozenset[Leaf] | None, list[str]] = {}
+    for name, (graph, _) in missed.items():
+        alike.setdefault(_leaves(graph), []).append(name)
     found = {}
-    for names, own in alike.items():
+    for leaves, own in alike.items():
         known: Known = {}
-        samples = read(names)
+        samples = read(leaves)
         for name in own:
             requirement, attempts = spec.requirements[name], missed[name][1]
             late = late_arrivals(
@@ -154,8 +152,8 @@ def _late(
 
 def _misses(
     spec: Spec,
-    silent: Mapping[str, frozenset[str] | None],
-    read: Callable[[frozenset[str] | None], Sequence[Sample]],
+    silent: Mapping[str, Graph | None],
+    read: Callable[[frozenset[Leaf] | None], Sequence[Sample]],
     end: int,
     sources: frozenset[str] | None,
 ) -> dict[str, str]:
@@ -167,32 +165,49 @@ def _misses(
 
     known: dict[str, str] = {}
     found = {}
-    for name, names in silent.items():
+    for name, graph in silent.items():
         requirement = spec.requirements[name]
         trigger = format_formula(requirement.trigger)
         if trigger not in known or requirement.for_each is not None:
-            known[trigger] = why_not_triggered(spec.checked, requirement, read(names), end, sources)
+            samples = read(_leaves(graph))
+            known[trigger] = why_not_triggered(spec.checked, requirement, samples, end, sources)
         found[name] = known[trigger]
     return {name: miss for name, miss in found.items() if miss}
+
+
+def _leaves(graph: Graph | None) -> frozenset[Leaf] | None:
+    """What a graph reads: those that read the same can become another at the same samples."""
+    if graph is None:
+        return None
+    return frozenset(node.leaf for node in graph.nodes if node.leaf is not None)
 
 
 def _changes(
     spec: Spec,
     trace: str,
-    names: frozenset[str],
+    graphs: Iterable[Graph | None],
     end: int,
     samples: Callable[[], Sequence[Sample]],
-) -> Changes:
-    """What changes of these names, read by columns if the file is plain."""
-    from rvmon.readers.changes import Changes
+) -> Mapping[frozenset[Leaf] | None, Sequence[Sample]]:
+    """What changes, by the leaves of graphs; read by columns if the file is plain."""
+    alike = {_leaves(graph): graph for graph in graphs if graph is not None}
+    if not alike:
+        return {}
+    from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 
-    schema = spec.schema
     if spec.checked.max_delay is None:
+        looked_at = frozenset(name for graph in alike.values() for name in graph.by_name)
+        recording = opened(spec, trace, only=looked_at)
         with suppress(NotPlainError):
-            source = opened(spec, trace)
-            blocks = source.blocks(lambda: frozenset((*schema.signals, *schema.events)))
-            return Changes(blocks, names, schema.events.keys(), end)
-    return Changes.in_samples(samples(), names, schema.events.keys())
+            if recording.is_short:
+                raise NotPlainError("its samples are sooner looked at")
+            blocks = recording.blocks(lambda: looked_at)
+            found = changes_in_blocks(blocks, tuple(alike.values()), spec.checked, end)
+            return dict(zip(alike, found, strict=True))
+    return {
+        leaves: changes_in_samples(samples(), graph.by_name, spec.checked.events)
+        for leaves, graph in alike.items()
+    }
 
 
 def _goals(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rvmon.errors import RvmonError
@@ -134,12 +135,24 @@ def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
     return spec.reading(**reading_arguments(arguments))
 
 
-def opened(spec: Spec, trace: str) -> FileRecording:
+def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> FileRecording:
     """The recording at a path, for a specification that knows how it tells things.
+
+    Args:
+        spec: the specification.
+        trace: the path.
+        only: the names that are read of it; `None`: all that are declared.
 
     Raises:
         TraceError: it cannot be opened, or its header is wrong.
     """
     from rvmon.readers.recording import FileRecording
 
-    return FileRecording(trace, spec.schema, ordered=spec.checked.max_delay is None)
+    schema = spec.schema
+    if only is not None:
+        schema = replace(
+            schema,
+            signals={name: kind for name, kind in schema.signals.items() if name in only},
+            events={name: fields for name, fields in schema.events.items() if name in only},
+        )
+    return FileRecording(trace, schema, ordered=spec.checked.max_delay is None)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.codegen.c_build import NATIVE, loaded
+from rvmon.codegen.c_build import NATIVE, Build, loaded
 from rvmon.codegen.c_exact import too_large, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
@@ -90,6 +90,21 @@ def _library(path: Path) -> ctypes.CDLL:
     return ctypes.CDLL(str(path))
 
 
+def batch_build(plan: Plan, *, optimised: bool = True) -> Build:
+    """The shared library of a plan.
+
+    Args:
+        plan: of requirements that all have automata.
+        optimised: whether it is to be fast; otherwise it is compiled sooner.
+
+    Raises:
+        RvmonError: a number of the specification is no double.
+    """
+    made = c_files(plan)
+    speed = ("-O3", "-fno-math-errno", NATIVE) if optimised else ("-O0",)
+    return Build(made.texts, [f"{made.prefix}_batch.c"], ".so", [*speed, "-shared", "-fPIC"])
+
+
 class BatchLibrary:
     """A plan compiled to a shared library.
 
@@ -106,17 +121,11 @@ class BatchLibrary:
         self.names = Names(plan)
         self.plan = plan
         self.limits = whole_limits(plan)
-        made = c_files(plan)
-        flags = [
-            *(("-O3", "-fno-math-errno", NATIVE) if optimised else ("-O0",)),
-            "-shared",
-            "-fPIC",
-        ]
-        library = loaded(made.texts, [f"{made.prefix}_batch.c"], ".so", flags, _library)
+        library = loaded(batch_build(plan, optimised=optimised), _library)
         address, number = ctypes.c_void_p, ctypes.c_int64
 
         def function(name: str, result: Any, *arguments: Any) -> Any:
-            found = library[f"{made.prefix}_{name}"]
+            found = library[f"{self.names.prefix}_{name}"]
             found.restype, found.argtypes = result, arguments
             return found
 

@@ -10,6 +10,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -83,67 +84,100 @@ def processor() -> str:
     return "\n".join(dict.fromkeys(line for line in lines if line.startswith(marks)))
 
 
-def built(
-    texts: Mapping[str, str],
-    sources: Sequence[str],
-    suffix: str,
-    flags: Sequence[str],
-    libraries: Sequence[str] = ("-lm",),
-) -> Path:
-    """The path of what the compiler makes of some files; it is made if it is not in the cache.
+@dataclass(frozen=True, slots=True)
+class Build:
+    """What a compiler is to make.
 
-    Args:
-        texts: by file name.
+    Attributes:
+        texts: files by name.
         sources: those of them that are compiled.
         suffix: of the result.
         flags: for the compiler, beside `FLAGS`.
-        libraries: for the linker.
+        headers: a folder with Python's headers that it needs as well; `None`: none.
+    """
+
+    texts: Mapping[str, str]
+    sources: Sequence[str]
+    suffix: str
+    flags: Sequence[str]
+    headers: str | None = None
+
+
+def built(build: Build) -> Path:
+    """The path of what the compiler makes of some files; it is made if it is not in the cache.
+
+    Without a compiler, what any compiler has made of them is taken.
 
     Raises:
-        RvmonError: there is no compiler, it failed, or the cache takes no files.
+        RvmonError: there is no compiler, or no header; it failed, or the cache takes no files.
     """
-    command = [*compiler(), *FLAGS, *flags]
-    machine = processor() if NATIVE in flags else sys.platform
-    key = hashlib.sha256(repr((sorted(texts.items()), command, machine)).encode()).hexdigest()
+    machine = processor() if NATIVE in build.flags else sys.platform
+    said = (sorted(build.texts.items()), *FLAGS, *build.flags, machine)
     folder = cache_directory()
-    record = folder / f"built-{key[:40]}.json"
-    known = read_kept(record)
-    if known is not None and is_whole(path := folder / known.decode()):
-        return path
+    by_any = _record(folder, said)
     try:
-        made = _made(folder, texts, [*command, *sources], libraries)
-        path = keep_binary(folder / f"{key[:40]}{suffix}", made)
+        command = [*compiler(), *FLAGS, *build.flags]
+    except RvmonError:
+        if found := _recorded(by_any):
+            return found
+        raise
+    record = _record(folder, (*said, command))
+    if found := _recorded(record):
+        return found
+    if build.headers is not None:
+        command += ["-I", _with_headers(build.headers)]
+    try:
+        made = _made(folder, build.texts, [*command, *build.sources])
+        path = keep_binary(record.with_name(f"{record.stem.partition('-')[2]}{build.suffix}"), made)
     except OSError as error:
         raise _not_kept(folder, error) from None
-    keep(record, path.name.encode())
+    for place in (record, by_any):
+        keep(place, path.name.encode())
     return path
 
 
-def loaded(
-    texts: Mapping[str, str],
-    sources: Sequence[str],
-    suffix: str,
-    flags: Sequence[str],
-    load: Callable[[Path], Loaded],
-) -> Loaded:
+def _record(folder: Path, said: object) -> Path:
+    """Where it stands which file was made of something."""
+    return folder / f"built-{hashlib.sha256(repr(said).encode()).hexdigest()[:40]}.json"
+
+
+def _recorded(record: Path) -> Path | None:
+    """The file that was made, if it is still what it was."""
+    name = read_kept(record)
+    path = None if name is None else record.with_name(name.decode())
+    return path if path is not None and is_whole(path) else None
+
+
+def _with_headers(folder: str) -> str:
+    """The folder of Python's headers, if they are there.
+
+    Raises:
+        RvmonError: they are not; how to get them is said.
+    """
+    if not (Path(folder) / "Python.h").is_file():
+        raise RvmonError(
+            f"no Python.h in {folder}, which a compiled monitor needs to be stepped from Python: "
+            "install the package python3-dev, or use the engine `auto`"
+        )
+    return folder
+
+
+def loaded(build: Build, load: Callable[[Path], Loaded]) -> Loaded:
     """What is in a shared library, as `built` makes it; one that cannot be loaded is made anew.
 
     Args:
-        texts: as for `built`; so are the next three.
-        sources: those that are compiled.
-        suffix: of the library.
-        flags: for the compiler.
+        build: what it is made of.
         load: loads it.
 
     Raises:
         RvmonError: it cannot be made, or not be loaded.
     """
-    path = built(texts, sources, suffix, flags)
+    path = built(build)
     try:
         return load(path)
     except (OSError, ImportError):  # cut off, or of another machine that shares the folder
         path.unlink(missing_ok=True)
-    path = built(texts, sources, suffix, flags)
+    path = built(build)
     try:
         return load(path)
     except (OSError, ImportError) as error:
@@ -153,18 +187,13 @@ def loaded(
         ) from None
 
 
-def _made(
-    folder: Path,
-    texts: Mapping[str, str],
-    command: Sequence[str],
-    libraries: Sequence[str],
-) -> bytes:
+def _made(folder: Path, texts: Mapping[str, str], command: Sequence[str]) -> bytes:
     """What the compiler makes, in a folder of its own within another."""
     with tempfile.TemporaryDirectory(suffix=SUFFIX, prefix=PREFIX, dir=folder) as scratch:
         for name, text in texts.items():
             (Path(scratch) / name).write_text(text, encoding="utf-8")
         made = Path(scratch) / "made"
-        words = [*command, "-o", str(made), *libraries]
+        words = [*command, "-o", str(made), "-lm"]
         done = _run(words, scratch)
         if done.returncode and NATIVE in words:  # not every compiler has it for every processor
             words.remove(NATIVE)

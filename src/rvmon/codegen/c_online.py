@@ -16,7 +16,7 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any, Protocol
 
-from rvmon.codegen.c_build import NATIVE, compiler, loaded
+from rvmon.codegen.c_build import NATIVE, Build, loaded
 from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
@@ -163,41 +163,38 @@ class OnlineLibrary:
         )
 
 
-def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
-    """Compile a plan, once for each content.
+def online_build(plan: Plan, *, optimised: bool = True) -> Build:
+    """The module of a plan.
 
     Args:
         plan: of requirements that all have automata.
         optimised: whether it is to be fast; otherwise it is compiled sooner.
 
     Raises:
-        RvmonError: there is no C compiler, or no header of Python; a requirement has no automaton,
-            or a number of the specification is no double.
+        RvmonError: a number of the specification is no double.
     """
     # Under the specification's own name its functions might be called as some of Python's headers.
     named = replace(plan, spec=replace(plan.spec, name="rvmon"))
     made = c_files(named)
     name = f"{made.prefix}_online.c"
     texts = {**made.texts, name: online_source(named), "python.txt": sys.version}
-    flags = [*(FAST if optimised else ("-O0",)), *_SHARED, "-I", _headers()]
-    type_ = loaded(texts, [name], EXTENSION_SUFFIXES[0], flags, _type_in)
-    return OnlineLibrary(plan, Names(plan), whole_limits(plan), type_)
+    flags = [*(FAST if optimised else ("-O0",)), *_SHARED]
+    return Build(texts, [name], EXTENSION_SUFFIXES[0], flags, sysconfig.get_path("include"))
 
 
-def _headers() -> str:
-    """The folder of Python's headers.
+def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
+    """Compile a plan, once for each content.
+
+    Args:
+        plan: as for `online_build`; so is the next.
+        optimised: whether it is to be fast.
 
     Raises:
-        RvmonError: there is none; how to get it is said.
+        RvmonError: there is no C compiler, or no header of Python; a requirement has no automaton,
+            or a number of the specification is no double.
     """
-    compiler()  # whoever has neither is told of this first
-    folder = sysconfig.get_path("include")
-    if not (Path(folder) / "Python.h").is_file():
-        raise RvmonError(
-            f"no Python.h in {folder}, which a compiled monitor needs to be stepped from Python: "
-            "install the package python3-dev, or use the engine `auto`"
-        )
-    return folder
+    type_ = loaded(online_build(plan, optimised=optimised), _type_in)
+    return OnlineLibrary(plan, Names(plan), whole_limits(plan), type_)
 
 
 def _type_in(path: Path) -> Callable[..., Core]:

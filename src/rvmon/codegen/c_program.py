@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
-from rvmon.codegen.c_build import built
+from rvmon.codegen.c_build import Build
 from rvmon.codegen.c_exact import EXACT, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
@@ -41,16 +40,16 @@ _KINDS = {
 }
 
 
-def built_program(plan: Plan) -> Path:
-    """The program of a plan, in the cache; it is compiled if it is not there.
+def program_build(plan: Plan) -> Build:
+    """The program of a plan, for `rvmon.codegen.c_build.built`.
 
     Raises:
-        RvmonError: there is no compiler, it failed, or the cache takes no files.
+        RvmonError: a number of the specification is no double.
     """
     made = c_files(plan)
     name = f"{made.prefix}_program.c"
     texts = {**made.texts, name: program_source(plan)}
-    return built(texts, [f"{made.prefix}.c", name], ".program", ["-O3"])
+    return Build(texts, [f"{made.prefix}.c", name], ".program", ["-O3"])
 
 
 def program_source(plan: Plan) -> str:

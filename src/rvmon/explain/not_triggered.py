@@ -6,6 +6,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rvmon.dataflow.graph import Graph
 from rvmon.explain.spans import Spans
 from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.explain.states import state_of, values_read
@@ -81,8 +82,8 @@ def why_not_triggered(
     return _sentence(best, seen)
 
 
-def read_as_values(spec: CheckedSpec, requirement: Requirement) -> frozenset[str] | None:
-    """The names that a trigger reads, if their values are all that counts.
+def read_as_values(spec: CheckedSpec, requirement: Requirement) -> Graph | None:
+    """The parts of a trigger, if the values of what they read are all that counts.
 
     Returns:
         `None` if updates that repeat a value, payloads or positions may make a difference.

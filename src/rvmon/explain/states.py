@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import assert_never
 
-from rvmon.dataflow.graph import graph_of
+from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.numeric import operands
@@ -32,8 +32,8 @@ def state_of(formula: Formula, factory: Factory, spec: CheckedSpec) -> State:
 
 def values_read(
     spec: CheckedSpec, requirement: Requirement, formulas: Iterable[Formula]
-) -> frozenset[str] | None:
-    """The names that some formulas of a requirement read, if their values are all that counts.
+) -> Graph | None:
+    """Some formulas of a requirement, if the values of what they read are all that counts.
 
     Returns:
         `None` if updates that repeat a value, payloads or positions may make a difference.
@@ -44,8 +44,8 @@ def values_read(
     factory = Factory()
     graph = graph_of(state_of(formula, factory, spec) for formula in formulas)
     leaves = [node.leaf for node in graph.nodes if node.leaf is not None]
-    names = frozenset(graph.by_name)
-    return names if all(map(_is_of_values, leaves)) and not names & stale else None
+    of_values = all(map(_is_of_values, leaves)) and stale.isdisjoint(graph.by_name)
+    return graph if of_values else None
 
 
 def _is_of_values(leaf: Leaf) -> bool:

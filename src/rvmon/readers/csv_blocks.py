@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +17,7 @@ from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, decimals, instants, truth_values, whole_numbers
 from rvmon.readers.held import held_values
 from rvmon.readers.line_chunks import BLOCK, whole_lines
-from rvmon.readers.ticks import ticks_in_range
+from rvmon.readers.plain import Seam, expect_plain_columns
 from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:
@@ -23,14 +25,18 @@ if TYPE_CHECKING:
 
 _ODD = (b'"', b" ", b"\t", b"\0")
 
+LARGE = 1 << 22
+"""Bytes from which on a file is read by Arrow, if that is installed, so many at a time."""
+
 
 def csv_blocks(
     path: str | Path, schema: Schema, fillable: frozenset[str] = frozenset()
 ) -> Iterator[Block]:
     """Read a plain CSV file.
 
-    Plain is: numbers and truth values (0, 1) without quotes, spaces, labels and payloads, instants
-    that increase, no empty cell but of names that are fillable.
+    Plain is: numbers and truth values without quotes, spaces, labels and payloads, instants
+    that increase, no empty cell but of names that are fillable. Of small files, and without Arrow,
+    decimals have 15 digits at most, and truth values are 0 and 1.
 
     Args:
         path: of the file.
@@ -41,25 +47,41 @@ def csv_blocks(
     Raises:
         NotPlainError: it is not; the blocks before were right.
     """
-    last = None
-    layout = None
-    held: dict[str, Any] = {}
-    for text in whole_lines(path, BLOCK):
+    by_arrow = _arrow_reader(path)
+    layout = seam = block = None
+    for text in whole_lines(path, LARGE if by_arrow else BLOCK):
         if any(odd in text for odd in _ODD):
             raise NotPlainError("it has quoted or odd characters")
         body = text
-        if layout is None:
+        if layout is None or seam is None:
             header, _, body = text.partition(b"\n")
             layout = _plain_layout(header, schema)
+            seam = Seam(layout)
         if body:
-            block = _block(body, layout, fillable, held)
-            if last is not None and block.times[0] <= last:
-                raise NotPlainError("its instants do not increase")
-            last = block.times[-1]
-            held |= {column.name: block.columns[column.name][-1] for column in layout.signals}
-            yield block
-    if last is None:
+            rows = body, layout, fillable, seam.held
+            block = (by_arrow and by_arrow(*rows)) or _block(*rows)
+            yield seam.joined(block)
+    if block is None:
         raise NotPlainError("it has no rows")
+
+
+def _arrow_reader(path: str | Path) -> Callable[..., Block | None] | None:
+    """What reads large files on all cores, if it is installed."""
+    with suppress(OSError, ImportError):
+        if os.path.getsize(path) >= LARGE and not _is_short_of_memory():
+            from rvmon.readers.csv_arrow import arrow_block
+
+            return arrow_block
+    return None
+
+
+def _is_short_of_memory() -> bool:
+    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses."""
+    try:
+        import resource
+    except ImportError:
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
 
 
 def _plain_layout(header: bytes, schema: Schema) -> Layout:
@@ -70,9 +92,7 @@ def _plain_layout(header: bytes, schema: Schema) -> Layout:
         layout = read_layout(names, schema)
     except TraceError:
         raise NotPlainError("its header cannot be read") from None
-    for column in (*layout.events, *layout.signals):
-        if column.field is not None or column.kind is Kind.LABEL:
-            raise NotPlainError(f"`{layout.header[column.index]}` holds no numbers or truth values")
+    expect_plain_columns(layout)
     return layout
 
 
@@ -95,12 +115,6 @@ def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[
         return Cells(text, starts[:, index], table[:, index])
 
     times = _plain(instants(cells(layout.time), layout.stamps.unit))
-    if not (times[1:] > times[:-1]).all():
-        raise NotPlainError("its instants do not increase")
-    try:
-        ticks_in_range(times)
-    except TraceError:  # whoever reads rows says in which it is
-        raise NotPlainError("some instant is out of range") from None
     columns: dict[str, NDArray[Any]] = {
         column.name: _values(cells(column.index), column, fillable, held)
         for column in layout.signals

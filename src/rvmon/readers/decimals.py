@@ -19,7 +19,7 @@ _MOST = 19
 
 _POINT = np.uint8((ord(".") - ord("0")) % 256)
 
-_PLACES = {"s": 9, "ms": 6, "us": 3}
+PLACES = {"s": 9, "ms": 6, "us": 3}
 """So many digits behind the point are whole ticks."""
 
 _POWERS = 10.0 ** np.arange(_DIGITS + 1)
@@ -81,7 +81,7 @@ def instants(cells: Cells, unit: str) -> NDArray[np.int64] | None:
     """
     if unit == "ns":
         return whole_numbers(cells)
-    places = _PLACES.get(unit)
+    places = PLACES.get(unit)
     read = None if places is None else _mantissas(cells, _MOST, _reader(cells))
     if read is None or places is None:
         return None

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.columns import values_of_cells
-from rvmon.readers.csv_rows import Column, Layout, read_layout
+from rvmon.readers.csv_rows import Layout, read_layout
+from rvmon.readers.plain import Seam, expect_plain_columns
 from rvmon.readers.tables import arrow_cells
 from rvmon.readers.values import shorten
 from rvmon.trace.sample import Value
-from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
-from rvmon.trace.time import TIME_LIMIT
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 ROWS = 1 << 16
 """Rows that are in memory at a time."""
-
-_FITTING = {Kind.BOOL: "b", Kind.INT: "i", Kind.REAL: "fi"}
 
 
 def _opened(path: str | Path) -> Any:
@@ -122,71 +120,23 @@ def parquet_blocks(
 
 
 def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) -> Iterator[Block]:
+    from rvmon.readers.arrow_columns import block_of_arrays
+
     layout = parquet_layout(path, schema)
-    columns = layout.columns
-    if any(column.field is not None or column.kind is Kind.LABEL for column in columns):
-        raise NotPlainError("a column holds no numbers or truth values")
-    last = -TIME_LIMIT
-    held: dict[str, Any] = {}
-    for stamps, *batch in _batches(path, layout):
+    expect_plain_columns(layout)
+    seam = Seam(layout)
+    for stamps, *arrays in _batches(path, layout):
         times = _instants(stamps, layout.stamps)
-        if not len(times) or times[0] <= last or not (times[1:] > times[:-1]).all():
-            raise NotPlainError("its instants do not increase")
-        last = int(times[-1])
-        found = {}
-        for column, cells in zip(columns, batch, strict=True):
-            gaps = column.name in fillable
-            if column in layout.events:
-                found[column.name] = _occurrences(cells, gaps=gaps)
-                continue
-            found[column.name] = _values_held(cells, column, held, gaps=gaps)
-            held[column.name] = found[column.name][-1]
-        yield Block(times, found)
+        yield seam.joined(block_of_arrays(times, arrays, layout, fillable, seam.held))
 
 
 def _instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
+    from rvmon.readers.arrow_columns import array_of
     from rvmon.readers.ticks import ticks_of_column
 
     if column.null_count or stamps.unit == "iso":
         raise NotPlainError("its stamps are no plain numbers")
-    return ticks_of_column(_array_of(column, "i" if stamps.unit == "ns" else "fi"), stamps)
-
-
-def _array_of(column: Any, kinds: str) -> NDArray[Any]:
-    array: NDArray[Any] = column.to_numpy(zero_copy_only=False)
-    if array.dtype.kind not in kinds:
-        raise NotPlainError("a column holds other values than were declared")
-    return array
-
-
-def _occurrences(column: Any, *, gaps: bool) -> NDArray[Any]:
-    """Where an event occurs; a null says that it does not."""
-    from pyarrow import types
-
-    if not types.is_boolean(column.type) or (column.null_count and not gaps):
-        raise NotPlainError("an event has payloads, or gaps that may matter")
-    return _array_of(column.fill_null(False) if column.null_count else column, "b")
-
-
-def _values_held(
-    cells: Any, column: Column, held: Mapping[str, Any], *, gaps: bool
-) -> NDArray[Any]:
-    """A signal of which nulls hold the value above them, the first ones that of the batch before.
-
-    Raises:
-        NotPlainError: there is none; or the values are of another kind.
-    """
-    import numpy as np
-
-    from rvmon.readers.held import held_values
-
-    kinds = _FITTING[column.kind]
-    if not cells.null_count:
-        return _array_of(cells, kinds)
-    if not gaps:
-        raise NotPlainError("a signal has gaps that may matter")
-    some = _array_of(cells.drop_null(), kinds)
-    return held_values(some, np.asarray(cells.is_valid()), held.get(column.name))
+    return ticks_of_column(array_of(column, "i" if stamps.unit == "ns" else "fi"), stamps)
 
 
 def parquet_samples(

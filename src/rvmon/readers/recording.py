@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
@@ -24,6 +24,9 @@ from rvmon.trace.stamps import stamps_of
 
 FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet"}
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
+
+SHORT = 1 << 15
+"""Bytes of text that are sooner read line by line than NumPy is imported."""
 
 
 class FileRecording:
@@ -110,6 +113,14 @@ class FileRecording:
         """Whether somebody has said how columns are called, or what cells and stamps mean."""
         schema = self._schema
         return bool(schema.columns or schema.gaps or schema.stamps is not None)
+
+    @property
+    def is_short(self) -> bool:
+        """Whether it is a file of so little text that columns do not pay."""
+        with suppress(OSError):
+            is_text = self._format != "parquet" and can_be_read_again(self.path)
+            return is_text and Path(self.path).stat().st_size < SHORT
+        return False
 
     def blocks(
         self, fillable: Callable[[], frozenset[str]], until: int | None = None

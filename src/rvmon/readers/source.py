@@ -56,6 +56,11 @@ class Source:
         return self.recording.names
 
     @property
+    def is_short(self) -> bool:
+        """Whether it is a file of so little text that columns do not pay."""
+        return bool(getattr(self.recording, "is_short", False))
+
+    @property
     def end(self) -> int | None:
         """The end of the trace in ticks; `None`: its last sample."""
         return self.recording.end if self.until is None else self.until

@@ -8,9 +8,11 @@ import pytest
 import rvmon
 from rvmon.cli.judging import Options, judge
 from rvmon.cli.post_analysis import in_order
+from rvmon.dataflow.graph import graph_of
+from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 from rvmon.explain.not_triggered import read_as_values, why_not_triggered
+from rvmon.readers import recording
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.changes import Changes
 from rvmon.readers.recording import FileRecording
 from rvmon.trace.sample import Sample
 
@@ -32,6 +34,12 @@ SILENT = {
     "changes": "changed(x) and x > 50",
     "age": "age(x) > 20 s and p",
 }
+
+
+@pytest.fixture(autouse=True)
+def none_is_short(monkeypatch):
+    """Little text is read by columns, too."""
+    monkeypatch.setattr(recording, "SHORT", 0)
 
 
 def rows(seed: int) -> list[dict]:
@@ -99,7 +107,7 @@ def test_updates_that_count_are_seen():
         for name, requirement in zip(SILENT, spec.requirements.values(), strict=True)
     }
     assert {name for name, read in found.items() if read is None} == {"updates", "changes", "age"}
-    assert found["two ways"] == {"p", "q", "x", "go"}
+    assert found["two ways"].by_name.keys() == {"p", "q", "x", "go"}
 
 
 @pytest.mark.law
@@ -124,22 +132,30 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
 
 
-def test_rows_that_repeat_are_left_out():
-    """Across blocks, too; an event counts wherever it occurs, and NaN each time."""
+def parts_of(trigger: str):
+    """A specification, and the parts of the trigger of its requirement."""
+    text = HEAD.format(time="held") + f"requirement R\n  upon {trigger}\n  then q\n"
+    checked = rvmon.loads(text).checked
+    return checked, read_as_values(checked, checked.requirements["R"])
+
+
+def test_rows_that_change_no_truth_are_left_out():
+    """Across blocks but for the first row of each; an event counts wherever it occurs."""
     import numpy as np
 
     nan = float("nan")
     blocks = [
-        Block(np.array([1, 2]), {"x": np.array([1.0, 1.0]), "go": np.array([False, True])}),
+        Block(np.array([1, 2]), {"x": np.array([1.0, 1.5]), "go": np.array([False, True])}),
         Block(np.array([3, 4, 5]), {"x": np.array([1.0, nan, nan]), "go": np.array([False] * 3)}),
-        Block(np.array([6, 9]), {"x": np.array([2.0, 3.0]), "go": np.array([False, False])}),
+        Block(np.array([6, 7, 9]), {"x": np.array([2.0, 9.0, 1.0]), "go": np.array([False] * 3)}),
     ]
-    changes = Changes(blocks, {"x", "go"}, {"go"}, 8)
-    found = changes.samples({"x", "go"})
-    assert [sample.t for sample in found] == [1, 2, 4, 5, 6]
-    assert found[0].values == {"x": 1.0}
-    assert found[-1].values == {"x": 2.0}
-    assert [sample.t for sample in changes.samples({"go"})] == [1, 2]
+    checked, both = parts_of("go and x > 5")
+    event = graph_of(node for node in both.nodes if "go" in str(node.leaf))
+    found, occurred = changes_in_blocks(blocks, [both, event], checked, 8)
+    assert [sample.t for sample in found] == [1, 2, 3, 4, 6, 7]
+    assert found[0].values == {"x": 1.0, "go": False}
+    assert found[-1].values == {"x": 9.0, "go": False}
+    assert [sample.t for sample in occurred] == [1, 2, 3, 6]
 
 
 def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
@@ -186,21 +202,21 @@ def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, m
     }
 
 
-def test_samples_show_the_changes_that_columns_show():
-    """Of a recording that is not plain the same is looked at, wherever a value is not known too."""
-    import numpy as np
-
+def test_of_samples_those_that_tell_something_new_are_looked_at():
+    """Of a recording that is not plain: another value, an event, or that nothing is known."""
     times, values, occurred = [1, 2, 4, 7, 9], [1.5, 1.5, 2.0, 2.0, 1.5], [1, 0, 0, 1, 0]
-    events = np.array(occurred, bool)
-    block = Block(np.array(times), {"x": np.array(values), "go": events})
     samples = [
         Sample(t, {"x": x, "go": bool(go), "else": t})
         for t, x, go in zip(times, values, occurred, strict=True)
     ]
-    by_columns = Changes([block], {"x", "go"}, {"go"}, 9)
-    by_samples = Changes.in_samples(samples, {"x", "go"}, {"go"})
-    for names in ({"x"}, {"go"}, {"x", "go"}, set()):
-        assert by_samples.samples(names) == by_columns.samples(names)
+
+    def told(names: set[str]) -> list[tuple[int, dict]]:
+        return [(one.t, one.values) for one in changes_in_samples(samples, names, {"go"})]
+
+    assert told({"x"}) == [(1, {"x": 1.5}), (4, {"x": 2.0}), (9, {"x": 1.5})]
+    assert told({"go"}) == [(1, {"go": True}), (7, {"go": True})]
+    assert [t for t, _ in told({"x", "go"})] == [1, 4, 7, 9]
+    assert told(set()) == [(1, {})]
     gone = [Sample(1, {"x": 1.0}), Sample(3, {}), Sample(5, {"x": None}), Sample(8, {"x": None})]
-    assert [one.t for one in Changes.in_samples(gone, {"x"}, ()).samples({"x"})] == [1, 5]
-    assert Changes.in_samples([], {"x"}, ()).samples({"x"}) == []
+    assert [one.t for one in changes_in_samples(gone, {"x"}, ())] == [1, 5]
+    assert changes_in_samples([], {"x"}, ()) == []

@@ -11,7 +11,7 @@ from tests.tools.filled import filled, judge_columns
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.codegen.c_build import built
+from rvmon.codegen.c_build import Build, built
 from rvmon.monitor import compile_spec
 from rvmon.monitor.columns import evaluate as arrays
 from rvmon.monitor.engines import row_judge
@@ -92,9 +92,9 @@ def test_most_rows_are_passed_over(monkeypatch):
     columns |= {"stop": np.zeros(3000, bool), "go": columns["t"] < 0, "count": np.zeros(3000, int)}
     columns["speed"] = np.linspace(0.3, 0.4, 3000)
     taken = []
-    real = row_judge._rows_that_matter
+    real = row_judge.rows_that_matter
     monkeypatch.setattr(
-        row_judge, "_rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
+        row_judge, "rows_that_matter", lambda *a: taken.append(len(found := real(*a))) or found
     )
     report = spec.evaluate(columns, engine="automaton")
     assert report == one_by_one(spec, columns)
@@ -183,7 +183,7 @@ def test_builds_at_the_same_time_do_not_disturb_each_other(tmp_path, monkeypatch
     texts = {"one.c": "int one(void);\nint one(void) { return 1; }\n"}
 
     def build(_: int) -> object:
-        return built(texts, ["one.c"], ".so", ["-shared", "-fPIC"])
+        return built(Build(texts, ["one.c"], ".so", ["-shared", "-fPIC"]))
 
     with ThreadPoolExecutor(4) as pool:
         paths = set(pool.map(build, range(8)))

@@ -9,8 +9,9 @@ from tests.tools.differential import campaign
 
 import rvmon
 from rvmon.cli import main
+from rvmon.codegen.c_build import built
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_program import built_program, program_source
+from rvmon.codegen.c_program import program_build, program_source
 from rvmon.codegen.c_source import c_files
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
@@ -129,7 +130,7 @@ def named(name: str) -> rvmon.Spec:
 def test_no_name_of_a_spec_collides(name, tmp_path):
     """What a specification is called does not matter to the compiler."""
     spec = named(name)
-    assert built_program(spec.plan(only=["R2", "R4"])).exists()
+    assert built(program_build(spec.plan(only=["R2", "R4"]))).exists()
     made = c_files(spec.plan())
     for file, text in made.texts.items():
         (tmp_path / file).write_text(text)

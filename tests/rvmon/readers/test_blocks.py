@@ -1,6 +1,7 @@
 """Files read by columns: the same report as row by row, or not at all."""
 
 import random
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,11 @@ import pytest
 import rvmon
 from rvmon.readers import csv_blocks as module
 from rvmon.readers import parquet as parquet_module
+from rvmon.readers import recording
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.decimals import Cells, decimals, instants, whole_numbers
+from rvmon.readers.recording import FileRecording
 from rvmon.readers.source import Source
 from rvmon.trace.time import ticks_of_text
 
@@ -33,6 +36,12 @@ requirement R3 "c"
 """
 
 
+@pytest.fixture(autouse=True)
+def none_is_short(monkeypatch):
+    """Little text is read by columns, too."""
+    monkeypatch.setattr(recording, "SHORT", 0)
+
+
 def csv_text(seed: int, rows: int = 2000) -> str:
     """A plain file: every cell is filled."""
     rng = random.Random(seed)
@@ -50,9 +59,9 @@ def csv_text(seed: int, rows: int = 2000) -> str:
 
 def by_rows(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Report:
     """The report of the slow way, on the samples up to an instant."""
-    recording = spec.recording(path)
-    monitor = spec.monitor(sources=recording.names)
-    for sample in recording:
+    opened = spec.recording(path)
+    monitor = spec.monitor(sources=opened.names)
+    for sample in opened:
         if end is None or sample.t <= end:
             monitor.step_ns(sample.t, sample.values)
     return monitor.finish_ns(end)
@@ -62,8 +71,8 @@ def by_columns(
     spec: rvmon.Spec, path: Path, engine: str = "auto", end: int | None = None
 ) -> rvmon.Report:
     """The report of the quick way; what is not plain fails."""
-    recording = spec.recording(path)
-    source = Source(recording, end, is_cut=True, read=lambda _: pytest.fail("rows are read"))
+    opened = spec.recording(path)
+    source = Source(opened, end, is_cut=True, read=lambda _: pytest.fail("rows are read"))
     return spec.judge(source, engine=engine)
 
 
@@ -75,13 +84,19 @@ def has_columns(spec: rvmon.Spec, path: Path) -> bool:
         return False
 
 
+@pytest.fixture(params=["BLOCK", "LARGE"])
+def cut_into(request, monkeypatch):
+    """Has files read in pieces of so many bytes, by NumPy or by Arrow."""
+    return lambda size: monkeypatch.setattr(module, request.param, size)
+
+
 @pytest.mark.law
 @pytest.mark.parametrize("engine", ["auto", "automaton"])
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("end", [0.1, 31.4, 120.0, 9999.0])
-def test_a_file_can_be_cut(end, time, engine, tmp_path, monkeypatch):
+def test_a_file_can_be_cut(end, time, engine, tmp_path, cut_into):
     """Rows behind an instant are left out, wherever it lies in a block."""
-    monkeypatch.setattr(module, "BLOCK", 1999)
+    cut_into(1999)
     (tmp_path / "a.csv").write_text(csv_text(3))
     spec = rvmon.loads(SPEC.format(time=time, stale=""))
     report = by_columns(spec, tmp_path / "a.csv", engine, round(end * 1e9))
@@ -91,9 +106,9 @@ def test_a_file_can_be_cut(end, time, engine, tmp_path, monkeypatch):
 @pytest.mark.law
 @pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
-def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
+def test_columns_say_what_rows_say(time, stale, tmp_path, cut_into):
     """Verdicts, records, reasons and health are the same, wherever a block ends."""
-    monkeypatch.setattr(module, "BLOCK", 1999)
+    cut_into(1999)
     (tmp_path / "a.csv").write_text(csv_text(1).replace("\n", "\r\n"))
     spec = rvmon.loads(SPEC.format(time=time, stale=stale))
     report = by_columns(spec, tmp_path / "a.csv")
@@ -104,9 +119,9 @@ def test_columns_say_what_rows_say(time, stale, tmp_path, monkeypatch):
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", ["held", "sampled every 20 ms", "sampled"])
-def test_gaps_are_filled_where_only_values_matter(time, tmp_path, monkeypatch):
+def test_gaps_are_filled_where_only_values_matter(time, tmp_path, cut_into):
     """Empty cells: signals hold, events do not occur; the same as row by row."""
-    monkeypatch.setattr(module, "BLOCK", 997)
+    cut_into(997)
     rng = random.Random(5)
     first, second, *rest = csv_text(4).splitlines()
     rest = [
@@ -212,9 +227,85 @@ def test_what_is_not_plain_is_left_to_the_other_way(text, tmp_path):
     assert not has_columns(spec, tmp_path / "a.csv")
 
 
+CELLS = {
+    "t,p\n0,{}\n": "1 0 true FALSE yes 1.0 -0",
+    "t,count\n0,{}\n": "3 -7 +12 007 0x1F 1.0 9223372036854775808 nan 1_000",
+    "t,speed\n0,{}\n1,0.1\n": "0.1 0.30000000000000004 1e-3 +1.5 -0 .5 5. . inf -inf 1e400 "
+    "1e-400 nan nan(1) 1_0 1e",
+    "t,p\n{},1\n": "1 1.5 1e0 1.000000001 1.0000000001 +1 nan inf 1_0 4611686018.427387904",
+    "t_ns,p\n{},1\n": "1 +1 007 0x1F 1.0 1e3 4611686018427387903 4611686018427387904",
+}
+"""Files with a cell to be filled in, and what is."""
+
+
+def told(spec: rvmon.Spec, path: Path) -> rvmon.Report | str:
+    """What is said of a file, or of its fault."""
+    try:
+        return spec.evaluate(path, allow_missing=True)
+    except rvmon.TraceError as error:
+        return str(error)
+
+
+@pytest.mark.parametrize(
+    "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
+)
+def test_a_large_file_is_read_as_a_small_one(text, tmp_path, monkeypatch):
+    """Whatever Arrow takes for a number, or does not: report and errors are those of rows."""
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    with monkeypatch.context() as patched:
+        patched.setattr(FileRecording, "blocks", none_plain)
+        by_rows = told(spec, path)
+    monkeypatch.setattr(module, "LARGE", len(text))
+    assert told(spec, path) == by_rows
+
+
+def none_plain(*_: object) -> None:
+    """A recording without columns."""
+    raise NotPlainError("it is not asked for")
+
+
+def test_arrow_reads_what_is_written_in_full(tmp_path, monkeypatch):
+    """Decimals of any length and truth values in words: large files of them have columns."""
+    path = tmp_path / "a.csv"
+    text = "t,speed,p\n0.1,0.30000000000000004,true\n1e0,1e-3,False\n"
+    path.write_text(text)
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    with pytest.raises(NotPlainError):
+        list(csv_blocks(path, spec.schema))
+    monkeypatch.setattr(module, "LARGE", len(text))
+    (block,) = csv_blocks(path, spec.schema)
+    assert block.times.tolist() == [100_000_000, 1_000_000_000]
+    assert block.columns["speed"].tolist() == [0.30000000000000004, 1e-3]
+    assert block.columns["p"].tolist() == [True, False]
+
+
+def test_without_arrow_a_large_file_is_read_too(tmp_path, monkeypatch):
+    """It is not needed for CSV."""
+    (tmp_path / "a.csv").write_text(csv_text(1))
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    expected = spec.evaluate(tmp_path / "a.csv")
+    monkeypatch.setattr(module, "LARGE", 999)
+    monkeypatch.setitem(sys.modules, "rvmon.readers.csv_arrow", None)
+    assert by_columns(spec, tmp_path / "a.csv") == expected
+
+
+def test_where_memory_is_limited_arrow_is_not_asked(tmp_path, monkeypatch):
+    """It reserves more than `--max-memory` may allow."""
+    resource = pytest.importorskip("resource")
+    (tmp_path / "a.csv").write_text(csv_text(1))
+    spec = rvmon.loads(SPEC.format(time="held", stale=""))
+    monkeypatch.setattr(module, "LARGE", 999)
+    monkeypatch.setattr("rvmon.readers.csv_arrow.arrow_block", lambda *_: pytest.fail("it is"))
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (1 << 30, 1 << 30))
+    assert by_columns(spec, tmp_path / "a.csv").verdicts
+
+
 @pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
-def test_a_cell_that_rows_refuse_is_not_read_by_columns(text, tmp_path):
+def test_a_cell_that_rows_refuse_is_not_read_by_columns(text, tmp_path, cut_into):
     """A cell is as long as it may be, or one longer: judged both ways, or refused with its line."""
+    cut_into(1 << 17)
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     (tmp_path / "a.csv").write_text(text.format("a" * 131072))
     assert len(list(csv_blocks(tmp_path / "a.csv", spec.schema))) == 1

@@ -49,6 +49,23 @@ def judged_by_program(compiled: CompiledSpec, source: Source, only: Sequence[str
         RvmonError: there is no compiler, or a requirement is beyond generated code.
     """
     path = _plain_path(compiled.checked, source, only)
+    # What was noticed while reading, whoever reads the recording's head says as well.
+    return replace(
+        Report.from_json(_printed(program_of(compiled, only), path)), trace="", health=()
+    )
+
+
+def program_of(compiled: CompiledSpec, only: Sequence[str] | None) -> Path:
+    """The program of some requirements; it is compiled if it is not in the cache.
+
+    Args:
+        compiled: the specification; not compiled any further if the program is there.
+        only: ids of the requirements; default all.
+
+    Raises:
+        NotPlainError: there is no cache.
+        RvmonError: there is no compiler, or a requirement is beyond generated code.
+    """
     folder = cache_folder()
     if folder is None:
         raise NotPlainError("there is no cache to keep a program in")
@@ -58,13 +75,13 @@ def judged_by_program(compiled: CompiledSpec, source: Source, only: Sequence[str
     record = folder / f"run-{key}.json"
     program = folder / (read_kept(record) or b"none").decode()
     if not is_whole(program):
-        from rvmon.codegen.c_program import built_program
+        from rvmon.codegen.c_build import built
+        from rvmon.codegen.c_program import program_build
         from rvmon.monitor.compiled.code_plan import plan_alone
 
-        program = built_program(plan_alone(compiled, only))
+        program = built(program_build(plan_alone(compiled, only)))
         keep(record, program.name.encode())
-    # What was noticed while reading, whoever reads the recording's head says as well.
-    return replace(Report.from_json(_printed(program, path)), trace="", health=())
+    return program
 
 
 def _plain_path(checked: CheckedSpec, source: Source, only: Sequence[str] | None) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.checked.formula import FieldValue, Formula, Numeric
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:
     from rvmon.spec.checked.ctl import Property
@@ -182,3 +182,15 @@ class CheckedSpec:
     def ignoring(self) -> frozenset[str]:
         """The signals of which NaN and null are no update."""
         return frozenset(name for name, signal in self.signals.items() if signal.ignores_nan)
+
+    @property
+    def schema(self) -> Schema:
+        """The declared names with the kinds of their values."""
+        return Schema(
+            {name: signal.type.kind for name, signal in self.signals.items()},
+            {
+                name: {field: type_.kind for field, type_ in event.fields.items()}
+                for name, event in self.events.items()
+            },
+            self.ignoring,
+        )

@@ -374,8 +374,9 @@ def test_beyond_compiled_monitors():
         rvmon.loads(text).monitor(engine="c")
 
 
-def test_no_headers(spec, monkeypatch):
-    """Without the headers of Python it says what to install."""
+def test_no_headers(spec, monkeypatch, tmp_path):
+    """Without the headers of Python it says what to install, unless the module is there."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(sysconfig, "get_path", lambda _: "/nowhere")
     with pytest.raises(RvmonError, match="python3-dev"):
         spec.monitor(engine="c")

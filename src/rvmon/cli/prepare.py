@@ -1,0 +1,61 @@
+"""`rvmon prepare`: compile ahead what the engine `c` runs."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import asdict
+from itertools import count
+
+from rvmon.cli.progress import bar
+from rvmon.cli.say import say, say_json
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "prepare",
+        help="compile ahead what the engine c runs",
+        description="Compile a specification ahead (by a C compiler: $CC, cc, gcc or clang): the "
+        "engine c then starts at once, on the same machine without a compiler as well. The files "
+        "are kept in the cache. The other engines need no compiler, and auto never takes c, whose "
+        "records have no reasons.",
+        epilog="example: rvmon prepare specs/door.rv && rvmon run specs/door.rv *.csv --engine c",
+    )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument(
+        "--only", metavar="IDS", help="these requirements, which --only then names as well: R1,R3"
+    )
+    parser.add_argument(
+        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
+    )
+    parser.add_argument(
+        "--format", choices=("text", "json"), default="text", help="for people, or as data"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compile, say what is ready, and return the exit code."""
+    from rvmon.cli.constants import constants_of
+    from rvmon.loading import load
+    from rvmon.monitor.c.prepare import USES
+    from rvmon.report.plain_table import plain_table
+
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    ids = None
+    if arguments.only is not None:
+        ids = [name.strip() for name in arguments.only.split(",") if name.strip()]
+    with bar("compiling", len(USES)) as tell:
+        done = count(1)
+        found = spec.prepare(only=ids, ready=lambda _: tell(next(done)))
+    if arguments.format == "json":
+        import json
+
+        say_json(json.dumps([{**asdict(one), "path": str(one.path)} for one in found], indent=1))
+        return 0
+    rows = [(one.use, f"{one.seconds:.1f} s", _size(one.size), str(one.path)) for one in found]
+    say(plain_table([("for", "took", "size", "file"), *rows]).rstrip())
+    return 0
+
+
+def _size(size: int) -> str:
+    return f"{(size + 999) // 1000} kB"

@@ -1,0 +1,73 @@
+"""What the engine `c` would have compiled at its first use, compiled ahead."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.codegen.c_batch import batch_build
+from rvmon.codegen.c_build import built
+from rvmon.codegen.c_online import online_build
+from rvmon.errors import RvmonError
+from rvmon.monitor.c.program import program_of
+from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.readers.blocks import NotPlainError
+
+if TYPE_CHECKING:
+    from rvmon.monitor.compiled.specification import CompiledSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """One file that lies ready in the cache.
+
+    Attributes:
+        use: `streams`, `columns`, or `short files`: what the engine `c` judges by it.
+        path: of the file.
+        size: bytes.
+        seconds: that it took, few if it was there.
+    """
+
+    use: str
+    path: Path
+    size: int
+    seconds: float
+
+
+USES = ("streams", "columns", "short files")
+
+
+def prepare(
+    compiled: CompiledSpec, only: Sequence[str] | None, ready: Callable[[Prepared], object]
+) -> tuple[Prepared, ...]:
+    """Compile what is not in the cache.
+
+    Args:
+        compiled: the specification.
+        only: ids of the requirements; `None`: all.
+        ready: told each file when it is there.
+
+    Raises:
+        RvmonError: there is no compiler or no cache, or a requirement is beyond generated code.
+    """
+    plan = plan_alone(compiled, only)
+    makers: tuple[Callable[[], Path], ...] = (
+        lambda: built(online_build(plan)),
+        lambda: built(batch_build(plan)),
+        lambda: program_of(compiled, only),
+    )
+    found: list[Prepared] = []
+    for use, make in zip(USES, makers, strict=True):
+        started = time.perf_counter()
+        try:
+            path = make()
+        except NotPlainError as error:
+            told = f"{error}: leave out RVMON_CACHE=off, and let no others write to its folder"
+            raise RvmonError(told) from None
+        seconds = time.perf_counter() - started
+        found.append(Prepared(use, path, path.stat().st_size, seconds))
+        ready(found[-1])
+    return tuple(found)

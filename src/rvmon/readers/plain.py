@@ -1,0 +1,52 @@
+"""What columns have to be, and blocks of them one after the other, to be read without rows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.csv_rows import Layout
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import TIME_LIMIT
+
+
+def expect_plain_columns(layout: Layout) -> None:
+    """See that all columns hold numbers and truth values.
+
+    Raises:
+        NotPlainError: one holds labels, or a field of a payload.
+    """
+    for column in layout.columns:
+        if column.field is not None or column.kind is Kind.LABEL:
+            raise NotPlainError(f"`{column.called}` holds no numbers or truth values")
+
+
+class Seam:
+    """What the rows before a block leave to it.
+
+    Args:
+        layout: of the recording.
+
+    Attributes:
+        held: by signal its last value.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        self.held: dict[str, Any] = {}
+        self._signals = [column.name for column in layout.signals]
+        self._last = -TIME_LIMIT
+
+    def joined(self, block: Block) -> Block:
+        """The block, which comes next.
+
+        Raises:
+            NotPlainError: it has no rows, or the instants do not increase.
+        """
+        times = block.times
+        if len(times) and not -TIME_LIMIT < times[0] <= times[-1] < TIME_LIMIT:
+            raise NotPlainError("some instant is out of range")
+        if not len(times) or times[0] <= self._last or not (times[1:] > times[:-1]).all():
+            raise NotPlainError("its instants do not increase")
+        self._last = int(times[-1])
+        self.held |= {name: block.columns[name][-1] for name in self._signals}
+        return block

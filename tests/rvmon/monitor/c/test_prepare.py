@@ -1,0 +1,96 @@
+"""`spec.prepare()` and `rvmon prepare`: what is compiled ahead, and taken without a compiler."""
+
+import json
+
+import pytest
+
+import rvmon
+from rvmon.cli import main
+
+pytestmark = pytest.mark.compiler
+
+SPEC = "spec s\nsignal p : bool\nrequirement R1\n  always p\nrequirement R2\n  upon p then p\n"
+TRACE = {"t": [0.0, 1.0], "p": [True, False]}
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory):
+    """A cache in which the specification is prepared."""
+    folder = tmp_path_factory.mktemp("cache")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        patch.delenv("RVMON_CACHE", raising=False)
+        told = []
+        found = rvmon.loads(SPEC).prepare(ready=told.append)
+        assert [one.use for one in found] == ["streams", "columns", "short files"]
+        assert tuple(told) == found
+        assert all(one.size == one.path.stat().st_size for one in found)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def no_compiler(home, monkeypatch):
+    """From now on none is found."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(home))
+    monkeypatch.delenv("RVMON_CACHE", raising=False)
+    monkeypatch.setenv("CC", "no-such-compiler")
+
+
+def test_what_is_prepared_needs_no_compiler(tmp_path, capsys):
+    """Streams, columns and short files are judged by what lies in the cache."""
+    spec = rvmon.loads(SPEC)
+    assert spec.evaluate(TRACE, engine="c").verdicts == {"R1": "F", "R2": "P"}
+    monitor = spec.monitor(engine="c")
+    monitor.step(0.0, {"p": True})
+    monitor.step(1.0, {"p": False})
+    assert monitor.finish().verdicts["R1"] == "F"
+    (tmp_path / "s.rv").write_text(SPEC)
+    (tmp_path / "a.csv").write_text("t,p\n0,1\n1,0\n")
+    words = [str(tmp_path / name) for name in ("s.rv", "a.csv")]
+    assert main(["run", *words, "--engine", "c", "--format", "json"]) == 1
+    assert json.loads(capsys.readouterr().out)["requirements"]["R1"]["verdict"] == "F"
+
+
+def test_what_is_not_prepared_is_told(capsys, tmp_path):
+    """Of other requirements nothing is ready, and no compiler to make it."""
+    with pytest.raises(rvmon.RvmonError, match="no C compiler found .no-such-compiler"):
+        rvmon.loads(SPEC).prepare(only=["R1"])
+    (tmp_path / "s.rv").write_text("spec s\nsignal p : bool\nrequirement R1\n  always not p\n")
+    assert main(["prepare", str(tmp_path / "s.rv")]) == 2
+    assert "install one, or name it with CC=" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_the_command_says_what_is_ready(form, tmp_path, capsys):
+    """A line for each file: what for, how long it took, how large it is, and where."""
+    (tmp_path / "s.rv").write_text(SPEC)
+    assert main(["prepare", str(tmp_path / "s.rv"), "--format", form]) == 0
+    told = capsys.readouterr().out
+    if form == "json":
+        assert [one["use"] for one in json.loads(told)] == ["streams", "columns", "short files"]
+        assert all(one["path"].startswith(str(tmp_path.parent)) for one in json.loads(told))
+    else:
+        head, *lines = told.splitlines()
+        assert head.split() == ["for", "took", "size", "file"]
+        assert [line.split("  ")[0] for line in lines] == ["streams", "columns", "short files"]
+
+
+def test_a_requirement_that_c_refuses_is_named(tmp_path, capsys):
+    """With what to do: leave it out."""
+    text = "spec s\nsignal p : bool\nrequirement R1\n  whenever p then F[2 s, 5 s] p\n"
+    with pytest.raises(rvmon.RvmonError, match="R1 has no automaton.*leave it out"):
+        rvmon.loads(text).prepare()
+
+
+def test_without_a_cache_nothing_can_be_prepared(monkeypatch):
+    """It is said how to have one."""
+    monkeypatch.setenv("RVMON_CACHE", "off")
+    with pytest.raises(rvmon.RvmonError, match="no cache .*RVMON_CACHE=off"):
+        rvmon.loads(SPEC).prepare()
+
+
+def test_auto_takes_nothing_that_is_compiled():
+    """Its records have reasons, whatever lies ready."""
+    report = rvmon.loads(SPEC).evaluate(TRACE)
+    assert report.engine != "c"
+    assert all(attempt.reason for attempt in report.attempts)
