@@ -8,8 +8,11 @@ PACKAGE = Path(__file__).resolve().parent.parent / "src" / "rvmon"
 
 _FORMULAS = ("formula/*.py",)
 _INPUTS = (
-    *(f"dataflow/{name}.py" for name in ("graph", "inputs", "leaves", "numbers", "outages")),
-    *(f"codegen/{name}.py" for name in ("planning", "python_class", "python_lane")),
+    *(
+        f"plan/{name}.py"
+        for name in ("graph", "inputs", "leaves", "numbers", "outages", "planning")
+    ),
+    *(f"codegen/{name}.py" for name in ("python_class", "python_lane")),
     *("runtime/copies.py", "runtime/nodes.py"),
 )
 _ATTEMPTS = tuple(
@@ -33,7 +36,7 @@ _ATTEMPTS = tuple(
 _AUTOMATA = tuple(
     f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
 )
-_PLANS = tuple(f"codegen/{name}.py" for name in ("planning",))
+_PLANS = ("plan/planning.py",)
 _DRIVEN = tuple(
     f"runtime/{name}.py" for name in ("past", "rule", "schedule", "starts", "table", "values")
 )

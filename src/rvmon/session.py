@@ -11,13 +11,13 @@ from rvmon.spec.checked.selection import requirements_asked, sources_asked
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
-    from rvmon.codegen.unit_plan import Plan
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.c.prepare import Prepared
     from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
+    from rvmon.plan.plan import Plan
     from rvmon.readers.reading import Reading, ReadingArguments, SchemaArguments
     from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement

@@ -9,9 +9,9 @@ from itertools import combinations, product
 from typing import TypeVar, assert_never
 
 from rvmon.analysis.solve import Variable, parts_of, turning_values
-from rvmon.dataflow.inputs import OneSample
-from rvmon.dataflow.leaves import captured_names, reads, truth_of
 from rvmon.formula.state import Leaf
+from rvmon.plan.inputs import OneSample
+from rvmon.plan.leaves import captured_names, reads, truth_of
 from rvmon.spec.checked.formula import (
     Compare,
     EventAtom,

@@ -16,9 +16,9 @@ from typing import Generic, TypeVar, assert_never
 
 from rvmon.analysis.choices import Silence, values_of
 from rvmon.analysis.solve import is_solved
-from rvmon.dataflow.inputs import OneSample
-from rvmon.dataflow.leaves import captured_names, reads, truth_of
 from rvmon.formula.state import TRUE, Lapsed, Leaf, State, StateOp
+from rvmon.plan.inputs import OneSample
+from rvmon.plan.leaves import captured_names, reads, truth_of
 from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 

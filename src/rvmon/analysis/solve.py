@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import assert_never
 
-from rvmon.dataflow.inputs import OneSample
-from rvmon.dataflow.numbers import reader
+from rvmon.plan.inputs import OneSample
+from rvmon.plan.numbers import reader
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,

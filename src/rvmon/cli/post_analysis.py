@@ -18,9 +18,9 @@ from rvmon.trace.sample import Sample, Trace
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.dataflow.graph import Graph
     from rvmon.explain.late import Known
     from rvmon.formula.state import Leaf
+    from rvmon.plan.graph import Graph
     from rvmon.spec.checked.formula import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report

@@ -15,8 +15,8 @@ from rvmon.codegen.c_exact import too_large, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
 from rvmon.codegen.c_source import c_files
-from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError
+from rvmon.plan.plan import Plan
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,9 +6,9 @@ import reprlib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
-from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import TraceError
 from rvmon.formula.numeric import operands
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Arithmetic,

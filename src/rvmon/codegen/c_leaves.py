@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import assert_never
 
 from rvmon.codegen.c_names import Memory, Names, memory_of
-from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.numbers import events_of
 from rvmon.errors import RvmonError
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import (
@@ -23,6 +21,8 @@ from rvmon.formula.state import (
     StateOp,
     Unborn,
 )
+from rvmon.plan.numbers import events_of
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Arithmetic,

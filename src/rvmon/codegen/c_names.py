@@ -6,8 +6,8 @@ import re
 from enum import Enum
 from functools import cached_property
 
-from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import Elapsed, State, StateOp
+from rvmon.plan.plan import Plan
 
 _TAKEN = (
     # Names of a monitor so called would be those of functions within the generated C,

@@ -13,8 +13,8 @@ from itertools import chain
 
 from rvmon.codegen.c_leaves import node_statements, node_value
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State, StateOp
+from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.formula import ProbeAtom
 
 GROUP = 32

@@ -23,8 +23,8 @@ from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
-from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt

@@ -10,8 +10,8 @@ from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
-from rvmon.codegen.unit_plan import Plan
 from rvmon.diagnostics.shown import shown_json
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.reads import names_of_requirement
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind

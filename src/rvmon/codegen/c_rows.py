@@ -8,7 +8,7 @@ from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import ROW, read_signals, take_source
 from rvmon.codegen.c_text import called, template
 from rvmon.codegen.c_words import words_source
-from rvmon.codegen.unit_plan import Plan
+from rvmon.plan.plan import Plan
 
 
 def rows_source(plan: Plan, names: Names) -> Iterator[str]:

@@ -9,10 +9,10 @@ from rvmon.codegen.c_leaves import leaf_value
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_nodes import group_count, groups_of
 from rvmon.codegen.comment import comment
-from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import UNKNOWN, Leaf, State, Unborn
+from rvmon.plan.numbers import inputs_of
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 

@@ -24,9 +24,9 @@ from rvmon.codegen.c_samples import SAMPLE, take_source
 from rvmon.codegen.c_tables import array, automata_source, lists, repeats
 from rvmon.codegen.c_text import called, filled, template
 from rvmon.codegen.comment import comment
-from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError
 from rvmon.formula.state import StateOp
+from rvmon.plan.plan import Plan
 
 _LIBRARY = ("helpers.c.in", "monitor_past.c.in")
 """Functions of which a source has those that it calls."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rvmon.automaton.table import TableData, tables_of
-from rvmon.codegen.unit_plan import Plan, PlannedRule
+from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.specification import EndPolicy, Mode
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.end import settle_at_end

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from rvmon.codegen.c_leaves import TRUTHS, leaf_value
 from rvmon.codegen.c_names import Memory, Names, memory_of
 from rvmon.codegen.c_samples import births_asked, read_events, read_signals, value_type
-from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import (
     FALSE,
     TRUE,
@@ -22,6 +21,7 @@ from rvmon.formula.state import (
     StateOp,
     Unborn,
 )
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import Compare, Constant, Probe, ProbeAtom, SignalAtom
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import State, StateOp, Unborn
+from rvmon.plan.plan import Plan
 from rvmon.runtime.values import FALSE, TRUE
 from rvmon.spec.checked.formula import Constant
 

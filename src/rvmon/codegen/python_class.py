@@ -15,7 +15,7 @@ from rvmon.codegen.python_nodes import (
 )
 from rvmon.codegen.python_values import ValueWriter
 from rvmon.codegen.python_visit import indented
-from rvmon.codegen.unit_plan import Plan
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.spec.print.printer import format_formula
 

@@ -10,8 +10,8 @@ from rvmon.automaton.table import tables_of
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, outcomes
 from rvmon.codegen.comment import comment
 from rvmon.codegen.python_source import judges, unit_source
-from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import RvmonError
+from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 

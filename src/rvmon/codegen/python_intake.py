@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_values import ValueWriter
 from rvmon.codegen.python_visit import VisitWriter, alone, indented
-from rvmon.codegen.unit_plan import Plan
+from rvmon.plan.plan import Plan
 
 _WHOLE = 64
 """Up to so many names, samples that hold all of them are taken name by name."""

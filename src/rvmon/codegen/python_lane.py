@@ -8,7 +8,7 @@ from rvmon.codegen.python_class import node_constants, node_functions, slots, ta
 from rvmon.codegen.python_nodes import NodeWriter, roles_alike
 from rvmon.codegen.python_values import ValueWriter
 from rvmon.codegen.python_visit import indented
-from rvmon.codegen.unit_plan import Plan
+from rvmon.plan.plan import Plan
 
 
 def lane_source(plan: Plan) -> str:

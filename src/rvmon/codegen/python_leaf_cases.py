@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from rvmon.codegen.python_leaves import known_test
 from rvmon.codegen.python_nodes import BEFORE, NodeWriter, bits, is_timed
 from rvmon.codegen.python_visit import VisitWriter, indented
-from rvmon.codegen.unit_plan import Plan, asks_knowledge
+from rvmon.plan.plan import Plan, asks_knowledge
 from rvmon.spec.checked.formula import Constant, SignalAtom
 
 _DEEPEST = 8

@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable
 from typing import assert_never
 
-from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.numbers import events_of
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Unborn
+from rvmon.plan.numbers import events_of
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import (
     Arithmetic,
     BoundAtom,

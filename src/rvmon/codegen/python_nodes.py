@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.codegen.python_leaves import leaf_expression
-from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import COMBINING, Elapsed, State, StateOp
+from rvmon.plan.plan import Plan
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.formula import Constant
 

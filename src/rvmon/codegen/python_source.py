@@ -12,8 +12,8 @@ from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_nodes import NodeWriter, is_queued, roles_of
 from rvmon.codegen.python_visit import VisitWriter, indented, is_straight
-from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.formula.state import State
+from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.runtime.solo import only_location
 from rvmon.spec.checked.specification import Mode
 

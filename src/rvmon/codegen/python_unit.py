@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from rvmon.codegen.python_lane import lane_source
 from rvmon.codegen.python_source import unit_source
-from rvmon.codegen.unit_plan import Plan
+from rvmon.plan.plan import Plan
 from rvmon.runtime.bulk import BulkRule
 from rvmon.runtime.nodes import BUSY, LIMIT, MISSING, Nodes
 from rvmon.runtime.past import compared, finite, number

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from rvmon.codegen.python_leaves import known_test, leaf_expression
 from rvmon.codegen.python_nodes import bits
 from rvmon.codegen.python_visit import indented
-from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.state import Leaf
+from rvmon.plan.numbers import inputs_of
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
 

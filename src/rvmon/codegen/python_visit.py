@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.codegen.python_nodes import NodeWriter, Roles, bits, keeps_stretches
-from rvmon.codegen.unit_plan import Plan
+from rvmon.plan.plan import Plan
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import Mode
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Mapping
 from itertools import product
 
-from rvmon.dataflow.inputs import Input
-from rvmon.dataflow.numbers import events_of, reader
 from rvmon.dataflow.steps import INFINITE
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
+from rvmon.plan.inputs import Input
+from rvmon.plan.numbers import events_of, reader
 from rvmon.spec.checked.arithmetic import UnitRule
 from rvmon.spec.checked.formula import (
     Arithmetic,

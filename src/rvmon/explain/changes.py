@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterable, Sequence
 
-from rvmon.dataflow.graph import Graph
+from rvmon.plan.graph import Graph
 from rvmon.readers.blocks import Block, up_to
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample

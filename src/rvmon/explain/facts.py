@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.dataflow.graph import graph_of
 from rvmon.formula.horizon import horizon
 from rvmon.formula.state import State, StateOp
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.graph import graph_of
 from rvmon.spec.print.printer import format_duration
 
 Facts = dict[str, str]

@@ -6,11 +6,11 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.dataflow.graph import Graph
 from rvmon.explain.spans import Spans
 from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.explain.states import state_of, values_read
 from rvmon.formula.factory import Factory
+from rvmon.plan.graph import Graph
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,

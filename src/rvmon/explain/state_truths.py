@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.codegen.planning import uses_of
-from rvmon.dataflow.graph import graph_of
-from rvmon.dataflow.outages import Outages
 from rvmon.explain.spans import FOREVER, Spans, union
 from rvmon.formula.state import FALSE, TRUE, State
 from rvmon.monitor.attempts.instance import Instance, seen_by
 from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.attempts.lane_classes import generated
+from rvmon.plan.graph import graph_of
+from rvmon.plan.outages import Outages
+from rvmon.plan.planning import uses_of
 from rvmon.readers.coalesce import updates_in
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Scalar

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import assert_never
 
-from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import UNKNOWN, Elapsed, Lapsed, Leaf, Lost, State, Unborn
+from rvmon.plan.graph import Graph, graph_of
 from rvmon.spec.checked.formula import (
     BoundAtom,
     Compare,

@@ -9,13 +9,13 @@ from typing import Any
 from rvmon.codegen.c_batch import BatchLibrary, BatchRun
 from rvmon.codegen.c_online import OnlineLibrary, online_library
 from rvmon.codegen.python_file import python_file
-from rvmon.codegen.unit_plan import Plan
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.c.monitor import CompiledMonitor
 from rvmon.monitor.c.recorded import report_of_records
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.engines.registry import EXPLAINING, HANDING_ON, engine_named
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.drive import Monitored, OnlineMonitor

@@ -8,9 +8,9 @@ import pytest
 import rvmon
 from rvmon.cli.judging import Options, judge
 from rvmon.cli.post_analysis import in_order
-from rvmon.dataflow.graph import graph_of
 from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 from rvmon.explain.not_triggered import read_as_values, why_not_triggered
+from rvmon.plan.graph import graph_of
 from rvmon.readers import recording
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.recording import FileRecording

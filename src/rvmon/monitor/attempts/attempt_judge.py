@@ -7,12 +7,12 @@ from functools import cached_property
 from typing import Any, Protocol
 
 from rvmon.automaton.machine import Token
-from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.outages import Outage
-from rvmon.dataflow.standing import Standing
 from rvmon.formula.state import TRUE, UNKNOWN, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.reasons.doubt import Doubt
+from rvmon.plan.graph import Graph
+from rvmon.plan.outages import Outage
+from rvmon.plan.standing import Standing
 from rvmon.runtime.rule import Rule
 from rvmon.spec.checked.specification import Mode
 from rvmon.trace.sample import Scalar

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rvmon.dataflow.numbers import events_of, reader
 from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open, doubt_in, leaves_in
 from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.numbers import events_of, reader
 from rvmon.spec.checked.formula import Numeric
 from rvmon.trace.sample import Payload, Scalar
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rvmon.dataflow.inputs import Reported, payloads_of
+from rvmon.plan.inputs import Reported, payloads_of
 from rvmon.spec.checked.formula import FieldValue
 from rvmon.trace.sample import Payload, Scalar, Value
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rvmon.dataflow.standing import Standing
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk
 from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.standing import Standing
 from rvmon.runtime.rule import Rule
 from rvmon.spec.checked.specification import Mode
 from rvmon.trace.sample import Scalar

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.leaves import captured_names
-from rvmon.dataflow.numbers import events_of
 from rvmon.formula.state import Leaf, State, StateOp
 from rvmon.monitor.attempts.instance import Instance, values_in
 from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.graph import Graph
+from rvmon.plan.leaves import captured_names
+from rvmon.plan.numbers import events_of
 from rvmon.spec.checked.formula import Captured, Compare, CompareOp, EventAtom, FieldValue
 from rvmon.spec.checked.specification import ForEach
 from rvmon.trace.sample import Scalar, Value

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from typing import Protocol
 
-from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.inputs import Reported
-from rvmon.dataflow.outages import Outage, Outages
 from rvmon.formula.state import FALSE, TRUE, Lapsed
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.graph import Graph
+from rvmon.plan.inputs import Reported
+from rvmon.plan.outages import Outage, Outages
 from rvmon.runtime.copies import remembered, take_all, take_inputs, take_nodes
 from rvmon.runtime.nodes import Nodes
 from rvmon.runtime.past import History
@@ -35,7 +35,7 @@ class WatchedAttempt(Protocol):
 class Lane(Nodes, Schedule):
     """Generated state formulas and the requirements that read them.
 
-    It stands as `rvmon.dataflow.standing.Standing` for its judges.
+    It stands as `rvmon.plan.standing.Standing` for its judges.
 
     Args:
         outages: what is not known at first.
@@ -141,7 +141,7 @@ class Lane(Nodes, Schedule):
         """See `Standing`."""
         return t if self.v[place] == value else self.until[3 * place + value]
 
-    # What expressions read; see `rvmon.dataflow.numbers.Input`.
+    # What expressions read; see `rvmon.plan.numbers.Input`.
 
     def value_of(self, signal: str) -> Scalar:
         """The value of a signal as seen now; `None` if unknown."""

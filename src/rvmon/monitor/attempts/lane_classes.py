@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
-from rvmon.codegen.planning import plan_of_lane, uses_of
 from rvmon.codegen.python_nodes import keeps_stretches
 from rvmon.codegen.python_unit import lane_class
-from rvmon.codegen.unit_plan import Uses
-from rvmon.dataflow.graph import Graph, graph_of
 from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.graph import Graph, graph_of
+from rvmon.plan.plan import Uses
+from rvmon.plan.planning import plan_of_lane, uses_of
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from rvmon.automaton.machine import Machine
-from rvmon.dataflow.standing import Standing
 from rvmon.formula.progress import after, holds_at_end
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.standing import Standing
 from rvmon.trace.sample import Scalar
 
 

@@ -15,13 +15,13 @@ from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.piecewise import Pieces, stamp
 from rvmon.dataflow.ranges import merged
-from rvmon.dataflow.standing import Standing
 from rvmon.dataflow.sweep import Carried
 from rvmon.dataflow.time_decisions import Moment
 from rvmon.formula.core import Constant, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.plan.standing import Standing
 from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.dataflow.outages import Outage, Outages
+from rvmon.plan.outages import Outage, Outages
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import TIME_LIMIT

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.leaves import reads
 from rvmon.formula.state import Leaf, Unborn
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError, compared
 from rvmon.monitor.columns.reading import first_known
 from rvmon.monitor.inputs.health import holds_nan
+from rvmon.plan.graph import Graph
+from rvmon.plan.leaves import reads
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec
 

@@ -10,8 +10,6 @@ import numpy as np
 
 from rvmon.automaton.machine import Token
 from rvmon.automaton.moves import Moves, moves_of
-from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.outages import Outage
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.columns.attempts import Attempts, Tokens, joined_attempts, starting_attempts
@@ -30,6 +28,8 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.reasons.doubt import Doubt
 from rvmon.monitor.records.deferred_reasons import DeferredReasons, Stood
 from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.outages import Outage
+from rvmon.plan.plan import Plan
 from rvmon.spec.checked.specification import Mode
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from rvmon.codegen.unit_plan import Plan
 from rvmon.formula.state import Elapsed, State, StateOp
 from rvmon.monitor.columns.axis import Axis, RowAxis, TickAxis
 from rvmon.monitor.columns.doubt import Doubt
@@ -17,6 +16,7 @@ from rvmon.monitor.columns.leaves import Columns, Truth, combined, known_truth, 
 from rvmon.monitor.columns.past import Previous, Since
 from rvmon.monitor.columns.reading import Flat, Reading, steady
 from rvmon.monitor.columns.stretches import between, complement, in_at_least, nowhere
+from rvmon.plan.plan import Plan
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.codegen.planning import plan_of
-from rvmon.codegen.unit_plan import Plan, PlannedRule
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.refusal import of_c, of_generated, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.plan.plan import Plan, PlannedRule
+from rvmon.plan.planning import plan_of
 from rvmon.spec.checked.selection import requirements_asked
 
 

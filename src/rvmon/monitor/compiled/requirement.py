@@ -16,10 +16,8 @@ from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
-from rvmon.dataflow.graph import Graph, graph_of, leaf_texts
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import Plan
-from rvmon.dataflow.numbers import events_of, inputs_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
@@ -28,6 +26,8 @@ from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
+from rvmon.plan.graph import Graph, graph_of, leaf_texts
+from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 

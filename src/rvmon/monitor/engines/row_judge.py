@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rvmon.dataflow.graph import Graph
 from rvmon.monitor.columns.leaves import Columns
 from rvmon.monitor.columns.row_changes import rows_that_matter
 from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, Engine
 from rvmon.monitor.inputs.health import HealthLog, by_name
+from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.report import Report

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rvmon.dataflow.inputs import payloads_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.intake import MOST_HELD, Intake
+from rvmon.plan.inputs import payloads_of
 from rvmon.readers.alternation import Alternations
 from rvmon.runtime.nodes import Nodes
 from rvmon.trace.health import Health, HealthKind

@@ -18,11 +18,11 @@ from typing import Any
 
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Plan
-from rvmon.dataflow.outages import Outage
 from rvmon.dataflow.positions import Positions
 from rvmon.errors import SnapshotError
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.reasons.doubt import Doubt
+from rvmon.plan.outages import Outage
 from rvmon.runtime.bulk import Run
 from rvmon.runtime.nodes import MISSING
 from rvmon.runtime.past import History, Since

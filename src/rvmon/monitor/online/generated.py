@@ -8,7 +8,6 @@ from typing import Any
 
 from rvmon.automaton.machine import Machine
 from rvmon.codegen.python_unit import unit_class
-from rvmon.dataflow.outages import Outages
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.judges import judge_of
 from rvmon.monitor.compiled.code_plan import plan_requirements
@@ -20,6 +19,7 @@ from rvmon.monitor.online.monitor import Monitor, Step
 from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.online.unit_clerks import JudgeClerk, UnitClerk, UnitStanding
 from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.outages import Outages
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.unit import Unit

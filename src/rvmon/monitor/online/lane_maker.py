@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from rvmon.dataflow.outages import Outages
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge
 from rvmon.monitor.attempts.captured import CapturedAttempt
 from rvmon.monitor.attempts.instance import Instance
@@ -13,6 +12,7 @@ from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.attempts.lane_classes import class_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.outages import Outages
 from rvmon.runtime.rule import Rule
 from rvmon.spec.checked.specification import CheckedSpec, Mode
 from rvmon.trace.sample import Scalar

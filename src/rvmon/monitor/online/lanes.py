@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from rvmon.dataflow.outages import Outages
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.captured import captured_value
 from rvmon.monitor.attempts.instance import Instance, Shape, seen_by, values_in
@@ -16,6 +15,7 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
 from rvmon.monitor.online.lane_maker import Captured, LaneMaker
 from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.outages import Outages
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec

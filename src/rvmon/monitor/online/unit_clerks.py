@@ -7,13 +7,13 @@ from operator import itemgetter
 from typing import Any
 
 from rvmon.automaton.machine import Token
-from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.outages import Outage
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.records.deferred_reasons import DeferredReasons
 from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.outages import Outage
+from rvmon.plan.plan import Plan
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.unit import Unit
 from rvmon.verdict.attempt import decided_attempt
@@ -26,7 +26,7 @@ Noted = Callable[..., tuple[Any, ...]]
 
 
 class UnitStanding:
-    """The values that generated code works out; see `rvmon.dataflow.standing.Standing`.
+    """The values that generated code works out; see `rvmon.plan.standing.Standing`.
 
     Args:
         plan: of the generated code.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rvmon.dataflow.outages import Outage
+from rvmon.plan.outages import Outage
 from rvmon.spec.print.printer import format_duration
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.dataflow.standing import Standing
 from rvmon.formula.core import Constant, Core, Literal, Release, Sense, Until
 from rvmon.formula.obligation import Origin
 from rvmon.formula.progress import after, value
@@ -13,6 +12,7 @@ from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.reasons.cause import Cause
 from rvmon.monitor.reasons.sentence import AfterTrigger, Base, LastWith, Place, Sentence, Turned
+from rvmon.plan.standing import Standing
 from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.tense import has_future, is_pulse
 from rvmon.spec.print.printer import format_formula

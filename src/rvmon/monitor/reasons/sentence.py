@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, assert_never
 
-from rvmon.dataflow.standing import Standing
 from rvmon.formula.state import State
+from rvmon.plan.standing import Standing
 from rvmon.trace.time import format_ticks
 
 

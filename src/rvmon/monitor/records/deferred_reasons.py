@@ -7,15 +7,15 @@ from functools import cached_property
 from typing import Any
 
 from rvmon.automaton.machine import Machine
-from rvmon.codegen.unit_plan import Plan
-from rvmon.dataflow.outages import Outage
-from rvmon.dataflow.standing import Standing
 from rvmon.monitor.attempts.attempt_judge import Clerk, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.records.explain_machine import explained, just_before
 from rvmon.monitor.records.ledger import truths_shown
 from rvmon.monitor.records.reasons import Reasons
+from rvmon.plan.outages import Outage
+from rvmon.plan.plan import Plan
+from rvmon.plan.standing import Standing
 from rvmon.runtime.bulk import FROM_TRIGGER, unpacked
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
@@ -116,7 +116,7 @@ class DeferredReasons:
 
 
 class Stood:
-    """The values of state formulas as they stood; see `rvmon.dataflow.standing.Standing`.
+    """The values of state formulas as they stood; see `rvmon.plan.standing.Standing`.
 
     Args:
         plan: has the nodes.

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Machine, Token
-from rvmon.dataflow.standing import Standing
 from rvmon.formula.progress import after
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
@@ -14,6 +13,7 @@ from rvmon.monitor.reasons.obligation_words import settled_alone
 from rvmon.monitor.reasons.sentence import rendered
 from rvmon.monitor.records.explanation import Explanation, earlier, longer, still_owed, unborn
 from rvmon.monitor.records.reasons import Reasons
+from rvmon.plan.standing import Standing
 from rvmon.runtime.table import run
 
 

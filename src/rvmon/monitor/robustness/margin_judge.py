@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from rvmon.dataflow.leaves import reads
 from rvmon.dataflow.margin_nodes import Rest
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import Plan
@@ -18,6 +17,7 @@ from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.robustness.values import Robustness
+from rvmon.plan.leaves import reads
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar
 

@@ -22,14 +22,14 @@ from tests.tools.build import (
     x,
 )
 
-from rvmon.codegen.planning import uses_of
-from rvmon.dataflow.graph import graph_of
-from rvmon.dataflow.outages import Outages
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.attempts.lane_classes import generated
+from rvmon.plan.graph import graph_of
+from rvmon.plan.outages import Outages
+from rvmon.plan.planning import uses_of
 from rvmon.runtime.past import Since
 from rvmon.runtime.values import NEVER
 

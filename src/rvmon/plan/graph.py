@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from rvmon.dataflow.leaves import Reads, captured_names, reads
 from rvmon.formula.state import Elapsed, Shown, State, StateOp
+from rvmon.plan.leaves import Reads, captured_names, reads
 from rvmon.spec.print.printer import format_formula
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from rvmon.codegen.unit_plan import Plan, PlannedRule, Uses
-from rvmon.dataflow.graph import Graph, graph_of
-from rvmon.dataflow.numbers import inputs_of
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import UNKNOWN, State, Unborn
+from rvmon.plan.graph import Graph, graph_of
+from rvmon.plan.numbers import inputs_of
+from rvmon.plan.plan import Plan, PlannedRule, Uses
 from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
 

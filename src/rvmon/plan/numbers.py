@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import assert_never
 
-from rvmon.dataflow.inputs import Input
 from rvmon.formula.numeric import operands
+from rvmon.plan.inputs import Input
 from rvmon.runtime.past import History, finite, number
 from rvmon.spec.checked.formula import (
     Arithmetic,

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.dataflow.graph import Graph
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.state import Leaf, State, Unborn
+from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import product
 from typing import assert_never
 
-from rvmon.dataflow.inputs import Input
-from rvmon.dataflow.numbers import captured_of, events_of, inputs_of, reader
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Unborn
+from rvmon.plan.inputs import Input
+from rvmon.plan.numbers import captured_of, events_of, inputs_of, reader
 from rvmon.runtime.past import compared
 from rvmon.spec.checked.formula import (
     BoundAtom,

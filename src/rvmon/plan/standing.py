@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from rvmon.dataflow.graph import Graph
-from rvmon.dataflow.outages import Outage
+from rvmon.plan.graph import Graph
+from rvmon.plan.outages import Outage
 
 
 class Standing(Protocol):
