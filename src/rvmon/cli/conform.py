@@ -7,6 +7,7 @@ import json
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
+from rvmon.cli.options import add_format
 from rvmon.cli.reading import add_time
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
@@ -50,12 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=duration,
         help="compare to T seconds after the first sample, be it before or after the last one",
     )
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
+    add_format(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

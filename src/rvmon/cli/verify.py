@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration, positive
+from rvmon.cli.options import add_format
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError
 
@@ -74,12 +75,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
     )
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
+    add_format(parser)
     parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")
     parser.add_argument("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
     parser.add_argument(
