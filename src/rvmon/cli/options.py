@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from rvmon.cli.numbers import duration, positive
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
     import argparse
 
     from rvmon.session import Spec
+    from rvmon.timed.search.problem import Budget
 
 
 def add_only(parser: argparse.ArgumentParser, what: str = "these requirements") -> None:
@@ -43,6 +45,26 @@ def add_format(parser: argparse.ArgumentParser) -> None:
         default="text",
         help="for people (default), or as data",
     )
+
+
+def add_budget(parser: argparse.ArgumentParser) -> None:
+    """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
+    parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")
+    parser.add_argument("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
+    parser.add_argument(
+        "--max-memory",
+        metavar="MB",
+        type=positive,
+        default=2048,
+        help="give up beyond (default: 2048)",
+    )
+
+
+def budget_of(arguments: argparse.Namespace) -> Budget:
+    """When a search gives up."""
+    from rvmon.timed.search.problem import Budget
+
+    return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
 
 
 def add_const(parser: argparse.ArgumentParser) -> None:

@@ -88,7 +88,6 @@ def built(
     sources: Sequence[str],
     suffix: str,
     flags: Sequence[str],
-    libraries: Sequence[str] = ("-lm",),
 ) -> Path:
     """The path of what the compiler makes of some files; it is made if it is not in the cache.
 
@@ -97,7 +96,6 @@ def built(
         sources: those of them that are compiled.
         suffix: of the result.
         flags: for the compiler, beside `FLAGS`.
-        libraries: for the linker.
 
     Raises:
         RvmonError: there is no compiler, it failed, or the cache takes no files.
@@ -111,7 +109,7 @@ def built(
     if known is not None and is_whole(path := folder / known.decode()):
         return path
     try:
-        made = _made(folder, texts, [*command, *sources], libraries)
+        made = _made(folder, texts, [*command, *sources])
         path = keep_binary(folder / f"{key[:40]}{suffix}", made)
     except OSError as error:
         raise _not_kept(folder, error) from None
@@ -157,14 +155,13 @@ def _made(
     folder: Path,
     texts: Mapping[str, str],
     command: Sequence[str],
-    libraries: Sequence[str],
 ) -> bytes:
     """What the compiler makes, in a folder of its own within another."""
     with tempfile.TemporaryDirectory(suffix=SUFFIX, prefix=PREFIX, dir=folder) as scratch:
         for name, text in texts.items():
             (Path(scratch) / name).write_text(text, encoding="utf-8")
         made = Path(scratch) / "made"
-        words = [*command, "-o", str(made), *libraries]
+        words = [*command, "-o", str(made), "-lm"]
         done = _run(words, scratch)
         if done.returncode and NATIVE in words:  # not every compiler has it for every processor
             words.remove(NATIVE)
