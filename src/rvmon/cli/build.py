@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
+from rvmon.cli.options import add_const, add_only, constants_of, ids_of
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
@@ -21,24 +22,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("-o", "--output", metavar="BINARY", required=True, help="the program")
-    parser.add_argument("--only", metavar="IDS", help="these requirements: R1,R3")
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_only(parser)
+    add_const(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Generate, compile and copy, and return the exit code."""
-    from rvmon.cli.constants import constants_of
     from rvmon.codegen.c_build import built
     from rvmon.codegen.c_program import program_build
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids = None
-    if arguments.only is not None:
-        ids = [name.strip() for name in arguments.only.split(",") if name.strip()]
-    path = built(program_build(spec.plan(only=ids)))
+    path = built(program_build(spec.plan(only=ids_of(arguments.only, spec))))
     try:
         write_whole(arguments.output, path.read_bytes())
         if os.path.isfile(arguments.output):  # whoever may read it may run it

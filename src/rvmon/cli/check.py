@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
+from rvmon.cli.options import add_const, constants_of
 from rvmon.cli.say import say, say_json, warn
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
@@ -28,9 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="examples: rvmon check specs/*.rv --format concise; rvmon check door.rv --engines",
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_const(parser)
     parser.add_argument(
         "--format",
         choices=("text", "concise", "json"),
@@ -58,8 +57,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Check, print the findings, and return the exit code."""
-    from rvmon.cli.constants import constants_of
-
     constants = constants_of(arguments.const)
     findings: list[Diagnostic] = []
     remarks: list[str] = []

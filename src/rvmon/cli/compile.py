@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.options import add_const, add_only, constants_of, ids_of
 from rvmon.cli.say import say
 from rvmon.diagnostics.shown import shown_json
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
@@ -38,19 +39,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)"
     )
-    parser.add_argument("--only", metavar="IDS", help="these requirements: R1,R3")
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_only(parser)
+    add_const(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Generate and write, and return the exit code."""
-    from rvmon.cli.constants import constants_of
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids = None if arguments.only is None else [name.strip() for name in arguments.only.split(",")]
+    ids = ids_of(arguments.only, spec)
     if arguments.to in _AUTOMATA:
         if not spec.requirements:
             raise RvmonError(f"error: {arguments.spec} has no requirement: it has no automaton")
@@ -85,10 +83,6 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
     from rvmon.monitor import compile_spec
 
     compiled = compile_spec(spec.checked)
-    for name in ids or ():
-        if name not in compiled.requirements:
-            known = ", ".join(compiled.requirements)
-            raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
     chosen = [one for name, one in compiled.requirements.items() if ids is None or name in ids]
     if form == "costs":
         from rvmon.report.costs_text import costs_text

@@ -7,6 +7,7 @@ import json
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
+from rvmon.cli.options import add_budget, add_format, budget_of
 from rvmon.cli.reading import add_time
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
@@ -24,8 +25,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="hold recorded runs against a network of timed automata",
         description="Say whether recordings (.csv, .jsonl) are runs of a network, as far as they "
         "show: their events are the labels of its edges, or its channels. The first sample is the "
-        "network's start. Exit code 0: all conform; 1: some do not; 2: a recording cannot be read, "
-        "or shows nothing of the model.",
+        "network's start. Exit code 0: all conform; 1: some do not, or it is not decided; 2: a "
+        "recording cannot be read, or shows nothing of the model.",
         epilog="example: rvmon conform model.ta monday.csv --observe started,stopped "
         "--tolerance 0.1",
     )
@@ -50,12 +51,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=duration,
         help="compare to T seconds after the first sample, be it before or after the last one",
     )
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
+    add_format(parser)
+    add_budget(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -63,19 +60,16 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.timed.conformance.recordings import labels_of
     from rvmon.timed.language.load import load_network
     from rvmon.trace.stamps import stamps_of
-    from rvmon.trace.time import ticks_of_seconds
 
     network = load_network(arguments.model)
     labels = labels_of(network)
     chosen = _chosen(arguments.observe, labels)
-    until = None if arguments.until is None else ticks_of_seconds(arguments.until)
-    tolerance = ticks_of_seconds(arguments.tolerance)
     stamps = None if arguments.time is None else stamps_of(arguments.time)
     answers: dict[str, Conformance] = {}
     broken = False
     for path in arguments.traces:
         try:
-            answers[path] = _compare(network, path, stamps, labels, chosen, until, tolerance)
+            answers[path] = _compare(network, path, stamps, labels, chosen, arguments)
         except TraceError as error:
             warn(f"error: {error}")
             broken = True
@@ -102,13 +96,13 @@ def _compare(
     stamps: Stamps | None,
     labels: tuple[str, ...],
     chosen: frozenset[str] | None,
-    until: int | None,
-    tolerance: int,
+    arguments: argparse.Namespace,
 ) -> Conformance:
     from rvmon.readers.recording import FileRecording
     from rvmon.timed.conformance.conform import conform
     from rvmon.timed.conformance.recordings import actions_in
     from rvmon.trace.schema import Schema
+    from rvmon.trace.time import ticks_of_seconds
 
     wanted = frozenset(labels) if chosen is None else chosen
     recording = FileRecording(path, Schema({}, {name: {} for name in wanted}, stamps=stamps))
@@ -118,13 +112,20 @@ def _compare(
         chosen = _some(shown, path, labels)
     elif recording.names is not None and (missing := sorted(chosen - shown)):
         raise TraceError(f"{path}: there is no column `{missing[0]}` to observe")
-    end = length if until is None else until
+    end = length if arguments.until is None else ticks_of_seconds(arguments.until)
     later = sum(action.t > end for action in actions)
     if later:
         what = "1 later action is" if later == 1 else f"{later} later actions are"
         warn(f"{path}: {what} not looked at, because of --until")
     actions = [action for action in actions if action.t <= end]
-    return conform(network, actions, observed=chosen, end=end, tolerance=tolerance)
+    return conform(
+        network,
+        actions,
+        observed=chosen,
+        end=end,
+        tolerance=ticks_of_seconds(arguments.tolerance),
+        budget=budget_of(arguments),
+    )
 
 
 def _some(shown: frozenset[str], path: str, labels: tuple[str, ...]) -> frozenset[str]:

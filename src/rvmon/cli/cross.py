@@ -10,6 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.options import add_const, add_format, add_only, constants_of, ids_of
 from rvmon.cli.reading import add_reading, opened, reading_spec
 from rvmon.cli.say import say, say_json
 from rvmon.errors import RvmonError
@@ -38,10 +39,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("trace", metavar="TRACE", help="a recording: .csv, .jsonl or .ndjson")
-    parser.add_argument("--only", metavar="IDS", help="these requirements: R1,R3")
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_only(parser)
+    add_const(parser)
     add_reading(parser)
     parser.add_argument(
         "--peers",
@@ -49,19 +48,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         default=sys.executable,
         help="the interpreter that has the peers (default: this one)",
     )
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
+    add_format(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge, compare, show, and return the exit code."""
     from dataclasses import replace
 
-    from rvmon.cli.constants import constants_of
     from rvmon.loading import load
     from rvmon.report.run_text import health_lines
     from rvmon.testing.case import Case
@@ -73,13 +66,8 @@ def run(arguments: argparse.Namespace) -> int:
     checked = spec.checked
     if not checked.requirements:
         raise RvmonError(f"error: {arguments.spec} has no requirement: there is nothing to compare")
-    if arguments.only is not None:
-        names = [name.strip() for name in arguments.only.split(",")]
-        unknown = [name for name in names if name not in checked.requirements]
-        if unknown:
-            known = ", ".join(checked.requirements)
-            raise RvmonError(f"error: no requirement `{unknown[0]}`: there are {known}")
-        chosen = {name: checked.requirements[name] for name in names}
+    if (ids := ids_of(arguments.only, spec)) is not None:
+        chosen = {name: checked.requirements[name] for name in ids}
         checked = replace(checked, requirements=chosen)
     recording = opened(spec, arguments.trace)
     samples, late = _as_run_takes_them(recording, checked)

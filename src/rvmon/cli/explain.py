@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import positive
+from rvmon.cli.options import add_const, constants_of
 from rvmon.cli.say import say
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
@@ -35,9 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)"
     )
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_const(parser)
     parser.add_argument("--svg", metavar="FILE", help="write the automaton as a picture")
     parser.add_argument("--dot", action="store_true", help="print the automaton as DOT, no more")
     parser.add_argument(
@@ -55,7 +54,6 @@ def run(arguments: argparse.Namespace) -> int:
         code = arguments.subject
         say(code_list() if code == "codes" else model_page(code) or page_of(code), end="")
         return 0
-    from rvmon.cli.constants import constants_of
     from rvmon.loading import load
     from rvmon.monitor import compile_spec
 
@@ -70,10 +68,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _ids(named: list[str], spec: Spec) -> list[str]:
-    known = ", ".join(spec.requirements) or "none"
-    for name in named:
-        if name not in spec.requirements:
-            raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
+    from rvmon.spec.checked.selection import requirements_asked
+
+    requirements_asked(spec.checked, named)
     if len(named) > 2 or (len(named) == 2 and named[0] == named[1]):
         raise RvmonError("error: expected one requirement, or two different ones to tell apart")
     if not spec.requirements:

@@ -6,6 +6,7 @@ import argparse
 from dataclasses import asdict
 from itertools import count
 
+from rvmon.cli.options import add_const, add_only, constants_of, ids_of
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say, say_json
 
@@ -22,12 +23,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon prepare specs/door.rv && rvmon run specs/door.rv *.csv --engine c",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument(
-        "--only", metavar="IDS", help="these requirements, which --only then names as well: R1,R3"
-    )
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_only(parser)
+    add_const(parser)
     parser.add_argument(
         "--format", choices=("text", "json"), default="text", help="for people, or as data"
     )
@@ -35,18 +32,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compile, say what is ready, and return the exit code."""
-    from rvmon.cli.constants import constants_of
     from rvmon.loading import load
     from rvmon.monitor.c.prepare import USES
     from rvmon.report.plain_table import plain_table
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids = None
-    if arguments.only is not None:
-        ids = [name.strip() for name in arguments.only.split(",") if name.strip()]
     with bar("compiling", len(USES)) as tell:
         done = count(1)
-        found = spec.prepare(only=ids, ready=lambda _: tell(next(done)))
+        found = spec.prepare(only=ids_of(arguments.only, spec), ready=lambda _: tell(next(done)))
     if arguments.format == "json":
         import json
 

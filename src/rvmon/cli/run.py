@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import instant, positive
+from rvmon.cli.options import add_const, add_format, add_only, constants_of, ids_of
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
@@ -19,7 +20,7 @@ from rvmon.cli.reading import (
     reading_words,
 )
 from rvmon.cli.say import say_json, warn
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import RvmonError
 from rvmon.monitor.engines.registry import ENGINES
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
@@ -45,10 +46,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings")
-    parser.add_argument("--only", metavar="IDS", help="judge these requirements: R1,R3")
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_only(parser, "judge these requirements")
+    add_const(parser)
     parser.add_argument(
         "--until",
         metavar="T",
@@ -72,12 +71,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="say by how much each attempt passed or failed (SI units; negative: failed)",
     )
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
+    add_format(parser)
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
     parser.add_argument(
@@ -98,7 +92,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge, show, and return the exit code."""
-    from rvmon.cli.constants import constants_of
     from rvmon.cli.judging import Options, judge_all
     from rvmon.loading import load
 
@@ -106,14 +99,14 @@ def run(arguments: argparse.Namespace) -> int:
     _show_warnings(spec)
     _refuse_places(arguments, spec)
     options = Options(
-        _ids(arguments.only, spec),
+        ids_of(arguments.only, spec),
         arguments.engine,
         arguments.until,
         arguments.strict_columns,
         arguments.robustness,
         allowed_names(arguments.allow_missing),
     )
-    must_trigger = _ids(arguments.require_triggered or None, spec)
+    must_trigger = ids_of(arguments.require_triggered or None, spec)
     judged = list(judge_all(spec, arguments.traces, options, arguments.jobs))
     _show(arguments.format, spec, judged)
     reports = [one.report for one in judged if one.report is not None]
@@ -228,23 +221,6 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
             return shlex.join(["rvmon", "run", arguments.spec, trace, *reading_words(arguments)])
 
         write_run_pages(Path(arguments.report), spec.checked, reports, read, command)
-
-
-def _ids(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
-    if listed is None:
-        return None
-    ids = tuple(name.strip() for name in listed.split(",") if name.strip())
-    if not ids:
-        raise UnknownNameError(
-            f"the list of requirements is empty: there are {', '.join(spec.requirements)}"
-        )
-    for name in ids:
-        if name not in spec.requirements:
-            raise UnknownNameError(
-                f"no requirement `{name}` in {spec.checked.name}: "
-                f"there are {', '.join(spec.requirements) or 'none'}"
-            )
-    return ids
 
 
 def _failed(report: Report, *, strict: bool) -> bool:

@@ -9,7 +9,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import duration, positive
+from rvmon.cli.numbers import positive
+from rvmon.cli.options import add_budget, add_format, budget_of
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError
 
@@ -74,33 +75,19 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
     )
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
-    parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")
-    parser.add_argument("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
-    parser.add_argument(
-        "--max-memory",
-        metavar="MB",
-        type=positive,
-        default=2048,
-        help="give up beyond (default: 2048)",
-    )
+    add_format(parser)
+    add_budget(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Decide, show, and return the exit code."""
     from rvmon.timed.language.load import load_network
-    from rvmon.timed.search.problem import Budget
 
     _refuse_unused(arguments)
     constants = dict(_constant(text) for text in arguments.const)
     network = load_network(arguments.model, constants=constants)
     _show_warnings(network)
-    budget = Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
+    budget = budget_of(arguments)
     if arguments.spec is not None:
         from rvmon.cli.verify_spec import check_spec
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import instant
+from rvmon.cli.options import add_const, add_format, constants_of
 from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
 from rvmon.cli.say import say_json
 from rvmon.errors import RvmonError, UnknownNameError
@@ -35,9 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="an attempt such as R1#3, or R1?2 for one in doubt; R1 alone means its first failed "
         "one, else its first open one, else its first",
     )
-    parser.add_argument(
-        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
-    )
+    add_const(parser)
     parser.add_argument(
         "--until",
         metavar="T",
@@ -46,17 +45,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add_reading(parser)
     add_allow_missing(parser)
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
+    add_format(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
-    from rvmon.cli.constants import constants_of
     from rvmon.cli.post_analysis import in_order
     from rvmon.explain.dissect import dissect
     from rvmon.explain.not_triggered import why_not_triggered
@@ -109,9 +102,9 @@ def _named(text: str, spec: Spec) -> tuple[str, str | None]:
             "first failed"
         )
     name, mark, number = found["name"], found["mark"], found["number"]
-    if name not in spec.requirements:
-        known = ", ".join(spec.requirements) or "none"
-        raise UnknownNameError(f"error: no requirement `{name}`: there are {known}")
+    from rvmon.spec.checked.selection import requirements_asked
+
+    requirements_asked(spec.checked, [name])
     return name, f"{name}{mark}{int(number)}" if number else None
 
 

@@ -45,6 +45,14 @@ def test_a_run_that_does_not(folder, capsys):
     assert "`dark` from 5 to 7 s" in out
 
 
+def test_a_budget_leaves_it_open(folder, capsys):
+    """A search that gives up says so, and is no answer: exit code 1."""
+    files = [str(folder / name) for name in ("lamp.ta", "good.csv")]
+    assert main(["conform", *files, "--observe", "dark", "--max-states", "1"]) == 1
+    assert "good.csv: not decided: " in capsys.readouterr().out
+    assert main(["conform", *files, "--observe", "dark"]) == 0
+
+
 def test_json(folder, capsys):
     """Programs get the same as data, by recording."""
     path = str(folder / "bad.csv")

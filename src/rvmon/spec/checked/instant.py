@@ -30,14 +30,14 @@ FIRST: Facts = {Bound.START: True}
 """Of the first instant of a run."""
 
 
-def facts_of(formula: Formula, truth: bool = True) -> dict[Hashable, bool]:
-    """What has to be so where a formula of the present and past is true, or false.
+def facts_of(formula: Formula) -> dict[Hashable, bool]:
+    """What has to be so where a formula of the present and past is true.
 
     >>> from rvmon.spec.checked.formula import BinaryOp
     >>> facts_of(Binary(BinaryOp.AND, EventAtom("e"), Unary(UnaryOp.NOT, SignalAtom("p"))))
     {'e': True, 'p': False}
     """
-    return dict(_both_facts(formula)[0 if truth else 1])
+    return dict(_both_facts(formula)[0])
 
 
 Both = tuple[dict[Hashable, bool], dict[Hashable, bool]]

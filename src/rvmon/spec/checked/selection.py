@@ -18,7 +18,7 @@ def requirements_asked(spec: CheckedSpec, only: Iterable[str] | None) -> tuple[s
     chosen = None if only is None else tuple(only)
     for name in chosen or ():
         if name not in spec.requirements:
-            known = ", ".join(spec.requirements)
+            known = ", ".join(spec.requirements) or "none"
             raise UnknownNameError(f"no requirement `{name}`: there are {known}")
     return chosen
 

@@ -62,13 +62,13 @@ def parse_document(source: Source) -> Document:
     )
 
 
-def parse_query(text: str, name: str = "<query>") -> QueryText:
+def parse_query(text: str) -> QueryText:
     """Read one query.
 
     Raises:
         ModelError: the text is no query.
     """
-    source = Source(name, text)
+    source = Source("<query>", text)
     formula = parse_part(text, "query", lambda start, end: Span(source, start, end))
     return QueryText("", "", text, formula, Span(source, 0, len(text)))
 

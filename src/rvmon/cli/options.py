@@ -1,0 +1,92 @@
+"""Options that several commands take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from rvmon.cli.numbers import duration, positive
+from rvmon.errors import RvmonError, UnknownNameError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rvmon.session import Spec
+    from rvmon.timed.search.problem import Budget
+
+
+def add_only(parser: argparse.ArgumentParser, what: str = "these requirements") -> None:
+    """Declare `--only`."""
+    parser.add_argument("--only", metavar="IDS", help=f"{what}: R1,R3")
+
+
+def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
+    """The requirements of a list with commas; `None`: all.
+
+    Raises:
+        UnknownNameError: the list is empty, or there is no such requirement.
+    """
+    from rvmon.spec.checked.selection import requirements_asked
+
+    if listed is None:
+        return None
+    ids = tuple(name.strip() for name in listed.split(",") if name.strip())
+    if not ids:
+        known = ", ".join(spec.requirements)
+        raise UnknownNameError(f"the list of requirements is empty: there are {known}")
+    return requirements_asked(spec.checked, ids)
+
+
+def add_format(parser: argparse.ArgumentParser) -> None:
+    """Declare `--format`."""
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="for people (default), or as data",
+    )
+
+
+def add_budget(parser: argparse.ArgumentParser) -> None:
+    """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
+    parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")
+    parser.add_argument("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
+    parser.add_argument(
+        "--max-memory",
+        metavar="MB",
+        type=positive,
+        default=2048,
+        help="give up beyond (default: 2048)",
+    )
+
+
+def budget_of(arguments: argparse.Namespace) -> Budget:
+    """When a search gives up."""
+    from rvmon.timed.search.problem import Budget
+
+    return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
+
+
+def add_const(parser: argparse.ArgumentParser) -> None:
+    """Declare `--const`."""
+    parser.add_argument(
+        "--const", metavar="NAME=VALUE", action="append", default=[], help="override a constant"
+    )
+
+
+def constants_of(texts: Iterable[str]) -> dict[str, str]:
+    """The values by name.
+
+    Raises:
+        RvmonError: a text has another form.
+
+    >>> constants_of(["T=2 s"])
+    {'T': '2 s'}
+    """
+    constants = {}
+    for text in texts:
+        name, sign, value = text.partition("=")
+        if not sign or not name.strip() or not value.strip():
+            raise RvmonError(f"--const {text}: expected NAME=VALUE, such as T=2s")
+        constants[name.strip()] = value.strip()
+    return constants
