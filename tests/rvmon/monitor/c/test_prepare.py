@@ -53,7 +53,7 @@ def test_what_is_prepared_needs_no_compiler(tmp_path, capsys):
 
 def test_what_is_not_prepared_is_told(capsys, tmp_path):
     """Of other requirements nothing is ready, and no compiler to make it."""
-    with pytest.raises(rvmon.RvmonError, match="no C compiler found .no-such-compiler"):
+    with pytest.raises(rvmon.RvmonError, match=r"no C compiler found .no-such-compiler"):
         rvmon.loads(SPEC).prepare(only=["R1"])
     (tmp_path / "s.rv").write_text("spec s\nsignal p : bool\nrequirement R1\n  always not p\n")
     assert main(["prepare", str(tmp_path / "s.rv")]) == 2
@@ -78,14 +78,14 @@ def test_the_command_says_what_is_ready(form, tmp_path, capsys):
 def test_a_requirement_that_c_refuses_is_named(tmp_path, capsys):
     """With what to do: leave it out."""
     text = "spec s\nsignal p : bool\nrequirement R1\n  whenever p then F[2 s, 5 s] p\n"
-    with pytest.raises(rvmon.RvmonError, match="R1 has no automaton.*leave it out"):
+    with pytest.raises(rvmon.RvmonError, match=r"R1 has no automaton.*leave it out"):
         rvmon.loads(text).prepare()
 
 
 def test_without_a_cache_nothing_can_be_prepared(monkeypatch):
     """It is said how to have one."""
     monkeypatch.setenv("RVMON_CACHE", "off")
-    with pytest.raises(rvmon.RvmonError, match="no cache .*RVMON_CACHE=off"):
+    with pytest.raises(rvmon.RvmonError, match=r"no cache .*RVMON_CACHE=off"):
         rvmon.loads(SPEC).prepare()
 
 
