@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -22,6 +23,9 @@ REMARK = (
 
 _LEAST = 3
 """Stretches of unknown values; fewer are dropouts."""
+
+_SCALARS = frozenset({bool, int, float, str})
+"""Of these types all values are known but NaN, which differs from itself."""
 
 _LONGEST = 4
 """Known values of a stretch, on average, at most."""
@@ -80,30 +84,26 @@ class Alternations:
     """Those of all names of a recording; payload fields are called `event.field`."""
 
     def __init__(self) -> None:
-        self._found: dict[str, Alternation] = {}
+        self._found: dict[str, Alternation] = defaultdict(Alternation)
 
     def note(self, values: Mapping[str, Value]) -> None:
         """Look through a sample."""
         for name, value in values.items():
-            if isinstance(value, Mapping):
+            if value.__class__ in _SCALARS and value == value:
+                self._found[name].add_known(1)
+            elif isinstance(value, Mapping):
                 for field, scalar in value.items():
-                    self._of(f"{name}.{field}").add(is_unknown=is_unknown(scalar))
+                    self._found[f"{name}.{field}"].add(is_unknown=is_unknown(scalar))
             elif not isinstance(value, tuple):
-                self._of(name).add(is_unknown=is_unknown(value))
+                self._found[name].add(is_unknown=is_unknown(value))
 
     def note_column(self, name: str, unknown: NDArray[np.bool_]) -> None:
         """Look through rows of a signal: whether its value is unknown in each; there is one."""
-        self._of(name).add_all(unknown)
+        self._found[name].add_all(unknown)
 
     def note_known(self, name: str, count: int) -> None:
         """Take so many rows of a signal in which its value is known."""
-        self._of(name).add_known(count)
-
-    def _of(self, name: str) -> Alternation:
-        found = self._found.get(name)
-        if found is None:
-            found = self._found[name] = Alternation()
-        return found
+        self._found[name].add_known(count)
 
     def remarked(self, health: Iterable[Health]) -> tuple[Health, ...]:
         """The findings, with a remark at unknown values that look like a merge's."""

@@ -6,6 +6,7 @@ import sys
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
@@ -140,7 +141,7 @@ class FileRecording:
         if self._schema.gaps:
             raise NotPlainError("values that stand for no update are looked for in rows")
         seen = Counter[str]()
-        for block in self._blocks(fillable(), seen):
+        for block in self._noted(self._blocks(fillable(), seen)):
             own = up_to(until, block)
             yield own
             if len(own.times) < len(block.times):
@@ -149,6 +150,16 @@ class FileRecording:
                 return
         for name, count in seen.items():
             self.ignored[name] = count
+
+    def _noted(self, blocks: Iterable[Block]) -> Iterator[Block]:
+        """The same blocks; the first stamps are noted once as many have come as are looked at."""
+        first: list[int] = []
+        for block in blocks:
+            if len(first) < LOOKED_AT:
+                first += block.times[: LOOKED_AT - len(first)].tolist()
+                if len(first) == LOOKED_AT and self.names is not None:
+                    self.rows.first = first
+            yield block
 
     def _blocks(self, fillable: frozenset[str], seen: Counter[str]) -> Iterator[Block]:
         """The blocks of its format; where each line has names of its own, undeclared ones count."""
@@ -180,7 +191,8 @@ class FileRecording:
         """Whether its first stamps look like milliseconds; they are read if they were not yet."""
         first = self.rows.first
         if not first and self._stamps.unit == "s" and self.path != "-":
-            again = FileRecording(self.path, self._schema, ordered=self._ordered)
+            bare = replace(self._schema, signals={}, events={})
+            again = FileRecording(self.path, bare, ordered=self._ordered)
             deque(islice(again, LOOKED_AT), 0)
             first, self._stamps = again.rows.first, again._stamps
         return doubt_unit(first, self._stamps)

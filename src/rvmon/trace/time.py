@@ -32,6 +32,9 @@ UNIT_WORDS = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": 
 _FAR = 4e9
 """Seconds within `TIME_LIMIT`."""
 
+_FEW_DIGITS = 28
+"""So many are read as a whole number before anything else is tried."""
+
 _SURE = 0.4999
 """So near to a whole number, a product of a fraction and 1e9 is rounded as the exact one is."""
 
@@ -120,6 +123,13 @@ def ticks_of_text(text: str, unit: str = "s") -> int:
     >>> ticks_of_text("1700000000.123456789"), ticks_of_text("1e-3")
     (1700000000123456789, 1000000)
     """
+    whole, _, part = text.partition(".")
+    digits = whole + part
+    if len(digits) <= _FEW_DIGITS and digits.isascii() and digits.isdecimal():
+        parts: int = 10 ** len(part)
+        ticks, rest = divmod(int(digits) * TICKS_PER_UNIT[unit], parts)
+        if not rest and ticks < TIME_LIMIT:
+            return ticks
     shown = reprlib.repr(text)[1:-1]
     try:
         # Python reads 1_000 as a number; no recording means it.

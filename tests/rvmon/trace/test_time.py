@@ -7,7 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rvmon.errors import TraceError
-from rvmon.trace.time import ticks_of_seconds, whole_ticks
+from rvmon.trace.time import (
+    TICKS_PER_UNIT,
+    TIME_LIMIT,
+    ticks_of_seconds,
+    ticks_of_text,
+    whole_ticks,
+)
 
 
 @pytest.mark.parametrize(
@@ -46,3 +52,29 @@ def test_very_many_digits_are_refused(read):
 def test_seconds_are_rounded_once(seconds):
     """Floats give the tick nearest to what they stand for exactly, the even one of two."""
     assert ticks_of_seconds(seconds) == round(Fraction(seconds) * 1_000_000_000)
+
+
+@settings(deadline=None)
+@given(
+    st.from_regex(
+        r"[+-]?(\d{1,32}(\.\d{0,22})?|\.\d{1,22})", fullmatch=True, alphabet="0123456789+-."
+    ),
+    st.sampled_from(["s", "ms", "us"]),
+)
+def test_texts_are_rounded_once(text, unit):
+    """Decimals, short or long, give the nearest tick, the even one of two, or are refused."""
+    exact = round(Fraction(text) * TICKS_PER_UNIT[unit])
+    if abs(exact) < TIME_LIMIT:
+        assert ticks_of_text(text, unit) == exact
+    else:
+        with pytest.raises(TraceError, match="out of range"):
+            ticks_of_text(text, unit)
+
+
+@pytest.mark.parametrize(
+    "text", ["", ".", "1_0", "1.2.3", "\N{SUPERSCRIPT TWO}", "0x1", "1 2", "nan"]
+)
+def test_what_is_no_decimal_is_refused(text):
+    """Digits of other scripts are read as Python reads them; all else is no number."""
+    with pytest.raises(TraceError):
+        ticks_of_text(text)
