@@ -185,29 +185,32 @@ def _leaves(graph: Graph | None) -> frozenset[Leaf] | None:
 def _changes(
     spec: Spec,
     trace: str,
-    graphs: Iterable[Graph | None],
+    asked: Iterable[Graph | None],
     end: int,
     samples: Callable[[], Sequence[Sample]],
 ) -> Mapping[frozenset[Leaf] | None, Sequence[Sample]]:
     """What changes, by the leaves of graphs; read by columns if the file is plain."""
-    alike = {_leaves(graph): graph for graph in graphs if graph is not None}
+    alike = {_leaves(graph): graph for graph in asked if graph is not None}
     if not alike:
         return {}
     from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 
+    graphs = tuple(alike.values())
+    told: Iterable[Sample]
     if spec.checked.max_delay is None:
-        looked_at = frozenset(name for graph in alike.values() for name in graph.by_name)
+        looked_at = frozenset(name for graph in graphs for name in graph.by_name)
         recording = opened(spec, trace, only=looked_at)
         with suppress(NotPlainError):
             if recording.is_short:
                 raise NotPlainError("its samples are sooner looked at")
             blocks = recording.blocks(lambda: looked_at)
-            found = changes_in_blocks(blocks, tuple(alike.values()), spec.checked, end)
+            found = changes_in_blocks(blocks, graphs, spec.checked, end)
             return dict(zip(alike, found, strict=True))
-    return {
-        leaves: changes_in_samples(samples(), graph.by_name, spec.checked.events)
-        for leaves, graph in alike.items()
-    }
+        told = takewhile(lambda sample: sample.t <= end, recording)
+    else:
+        told = samples()
+    found = changes_in_samples(told, [graph.by_name for graph in graphs], spec.checked.events)
+    return dict(zip(alike, found, strict=True))
 
 
 def _goals(

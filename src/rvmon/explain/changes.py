@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 from rvmon.plan.graph import Graph
 from rvmon.readers.blocks import Block, up_to
@@ -44,32 +44,34 @@ def changes_in_blocks(
 
 
 def changes_in_samples(
-    samples: Sequence[Sample], names: Container[str], events: Collection[str]
-) -> list[Sample]:
-    """The first sample, and those that tell another value than the one before, or of an event.
+    samples: Iterable[Sample], read: Sequence[Container[str]], events: Container[str]
+) -> list[list[Sample]]:
+    """For each choice of names the samples that tell of one of them what was not told before.
+
+    The first sample is always given. Another value than the one before is new, and an event is.
 
     Args:
-        samples: of one recording, in order.
-        names: those that are looked at; what is said of others is left out.
+        samples: of one recording, in order; they are read once.
+        read: the choices; what is said of other names is left out.
         events: the names of events.
 
     >>> found = [Sample(t, {"p": t > 2, "q": t}) for t in range(5)]
-    >>> [(one.t, dict(one.values)) for one in changes_in_samples(found, {"p"}, ())]
+    >>> [(one.t, dict(one.values)) for one in changes_in_samples(found, [{"p"}], ())[0]]
     [(0, {'p': False}), (3, {'p': True})]
     """
     held: dict[str, object] = {}
-    made: list[Sample] = []
+    found: list[list[Sample]] = [[] for _ in read]
     for sample in samples:
-        own = {}
+        new = {}
         for name, value in sample.values.items():
-            if name not in names:
-                continue
             differs = value is not False
             if name not in events:
                 differs = name not in held or bool(value != held[name])
                 held[name] = value
             if differs:
-                own[name] = value
-        if own or not made:
-            made.append(Sample(sample.t, own))
-    return made
+                new[name] = value
+        for names, own in zip(read, found, strict=True):
+            told = {name: value for name, value in new.items() if name in names}
+            if told or not own:
+                own.append(Sample(sample.t, told))
+    return found

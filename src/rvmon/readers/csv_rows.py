@@ -195,8 +195,9 @@ def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Val
     """
     values: dict[str, Any] = {}
     payloads: dict[str, dict[str, Scalar]] = {}
+    has_gaps = bool(gaps)
     for column, cell in cells:
-        if gaps and gaps.holds(cell):
+        if has_gaps and gaps.holds(cell):
             continue
         value = as_declared(cell, column.kind)
         if column.field is None:
