@@ -306,9 +306,8 @@ class Lane(Nodes, Schedule):
             self.until[:] = [None] * len(self.until)
         self.dirty = 0
         self.position = t
-        if self.opens_at == NEVER:
-            triggers = every = 0
-        self.conclude(t, letters | every, triggers | every)
+        # What looks back sees every position, whether attempts start or not.
+        self.conclude(t, letters | every, 0 if self.opens_at == NEVER else triggers | every)
         self.watched = [one for one in self.watched if one.keeps(t)]
 
     def leave(self) -> None:

@@ -142,3 +142,16 @@ def test_of_attempts_that_are_sure_at_once_the_one_that_began_first_has_the_lowe
         found = {one.number: (one.triggered, one.captured["n"]) for one in attempts}
         assert found[4] == (27, 1)
         assert found[5] == (32, -1)
+
+
+def test_an_instance_looks_back_to_the_first_position_of_the_run():
+    """Where nothing started yet: what is owed speaks of the position before its event."""
+    spec = rvmon.loads(
+        "time sampled\nevent g(k : int)\n"
+        "requirement R\n  upon g\n  then (previous (next true))\n  for each n in g.k\n"
+    )
+    for engine in ("auto", "network"):
+        monitor = spec.monitor(engine=engine)
+        monitor.step_ns(0, {})
+        (attempt,) = monitor.step_ns(1, {"g": {"k": 0}})
+        assert attempt.verdict == "P"
