@@ -138,6 +138,26 @@ EQUIVALENT = {
     "`self.nodes.roles.parents[other] >> place | 1`": (
         "what stands above a leaf is worked out whether or not its own operands have changed"
     ),
+    "python_leaf_cases.py off by one: `self.nodes.roles.parents[other] >> place & 1` => "
+    "`self.nodes.roles.parents[other] >> place`": (
+        "what stands above a leaf is worked out whether or not its own operands have changed"
+    ),
+    "python_leaf_cases.py constant: `if not set(leaves).intersection(below[root.place]) and "
+    "written[root.place][0]` => `if not set(leaves).intersection(below[root.place]) and "
+    "written[root.place][(1)]`": (
+        "what is settled is looked at only if an operand of its own has changed: else it is so"
+    ),
+    "python_leaf_cases.py and/or: `bool(kept) and (not "
+    "isinstance(self.plan.graph.nodes[place].leaf, Constant))` => `bool(kept) or not "
+    "isinstance(self.plan.graph.nodes[place].leaf, Constant)`": (
+        "what is written for nodes that have come to their last values is used less often"
+    ),
+    "generated.py off by one: `self._reached - 1` => `self._reached`": (
+        "a sample at the instant that time has come to takes the way of every monitor"
+    ),
+    "unit.py dropped operand: `self.eyed and triggers & 1` => `self.eyed`": (
+        "a trigger that has not changed is only looked at once more"
+    ),
     "schedule.py off by one: `t + 1` => `t`": (
         "where only samples are positions the next one is asked, after one that was asked in vain"
     ),

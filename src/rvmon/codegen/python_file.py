@@ -90,7 +90,6 @@ def _body(name: str) -> str:
     head = takewhile(lambda node: isinstance(node, _HEADING), ast.parse(text).body)
     *_, last = head
     text = "".join(text.splitlines(keepends=True)[last.end_lineno :])
-    text = text.replace("  # noqa: B905", "")
     return "\n" + text.strip("\n") + "\n\n\n"
 
 
