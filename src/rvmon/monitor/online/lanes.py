@@ -212,7 +212,12 @@ class Lanes(LaneMaker):
     def undetermined(self) -> list[str]:
         """The requirements whose trigger was never true or false."""
         asked = [(self.main, one) for one in self._shared]
-        asked += [(lane, one) for lane, _ in self.instances.entries() if (one := lane.made_for)]
+        # What comes after the last tick of a clock has occurred at no position.
+        asked += [
+            (lane, lane.made_for)
+            for lane, instance in self.instances.entries()
+            if lane.made_for and (instance.value is None or instance.first <= lane.position)
+        ]
         determined = {one.requirement.id for lane, one in asked if lane.is_determined(one)}
         return [name for name in self._by_id if name not in determined]
 

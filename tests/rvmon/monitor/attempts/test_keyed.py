@@ -155,3 +155,16 @@ def test_an_instance_looks_back_to_the_first_position_of_the_run():
         monitor.step_ns(0, {})
         (attempt,) = monitor.step_ns(1, {"g": {"k": 0}})
         assert attempt.verdict == "P"
+
+
+def test_a_value_that_occurs_after_the_last_tick_of_a_clock_tells_nothing():
+    """Of what has no value yet the trigger is unknown, and no other occurs at any position."""
+    spec = rvmon.loads(
+        "time sampled every 2 ns\nsignal y : int\nevent g(k : int)\n"
+        "requirement R\n  upon y != n\n  then true\n  for each n in g.k\n"
+    )
+    for engine in ("auto", "automaton", "network", "progression"):
+        monitor = spec.monitor(engine=engine)
+        monitor.step_ns(0, {"y": 0})
+        monitor.step_ns(3, {"g": {"k": 0}})
+        assert monitor.finish_ns().verdicts["R"] == "I"
