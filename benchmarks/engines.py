@@ -78,6 +78,8 @@ ENGINES: dict[str, tuple[str, ...]] = {
         "dataflow/evaluate.py",
         "dataflow/knowledge.py",
         "dataflow/network.py",
+        "dataflow/news.py",
+        "dataflow/news_of_past.py",
         "dataflow/nodes.py",
         "dataflow/piecewise.py",
         "dataflow/network_plan.py",

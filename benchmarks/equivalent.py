@@ -63,13 +63,6 @@ EQUIVALENT = {
     "=> `FOREVER if span < self.plan.settles else 2 * (t + span)`": (
         "the same; and what is worked out far ahead is worked out again when the letter changes"
     ),
-    "network.py swapped branches: `FAR if self.ahead >= FOREVER else (self.ahead - due) // slope` "
-    "=> `(self.ahead - due) // slope if self.ahead >= FOREVER else FAR`": (
-        "more is worked out ahead than is asked for"
-    ),
-    "ranges.py dropped operand: `not pieces or pieces[-1][0] < fresh[0][0]` => `not pieces`": (
-        "only a short cut to the same place at the end"
-    ),
     "python_values.py and/or: `state.leaf is not None and self._is_instant(state.leaf)` => "
     "`state.leaf is not None or self._is_instant(state.leaf)`": (
         "leaves are looked at when a value comes that would be worked out with the others anyway"

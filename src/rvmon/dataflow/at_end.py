@@ -28,7 +28,7 @@ def held_at_end(network: Network, end: int, reached: int) -> Pieces:
     network.positions.end(end // network.positions.gap)
     held: list[Pieces] = []
     for place, node in enumerate(network.plan.nodes):
-        true: Pieces = up_to(network.known[place][0], limit)
+        true: Pieces = up_to(network.pieces(place)[0], limit)
         if not isinstance(node, Leaf):
             found = up_to(
                 _at_end(network, place, [(held[o], ()) for o in operands_of(node)]), limit

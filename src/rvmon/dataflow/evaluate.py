@@ -18,10 +18,8 @@ from rvmon.dataflow.piecewise import (
     soonest,
 )
 from rvmon.dataflow.positions import Positions
+from rvmon.dataflow.ranges import Range
 from rvmon.dataflow.sweep import Carried, Known, since, until
-
-Range = tuple[int, int]
-"""First and last integer."""
 
 
 def evaluated(
@@ -46,7 +44,10 @@ def evaluated(
         return _turned(_clipped(found, first, last), node.every)
     if isinstance(node, Shift):
         offset = node.offset
-        true, false = _clipped(operands[0], first + offset, last + offset)
+        true, false = operands[0]
+        if offset < 0:
+            true, false = positions.held_on(true), positions.held_on(false)
+        true, false = _clipped((true, false), first + offset, last + offset)
         moved = shift(true, offset), shift(false, offset)
         return _not_early(moved, positions) if offset < 0 else moved
     raise ValueError("leaves are read")

@@ -6,21 +6,24 @@ from collections.abc import Sequence
 from typing import Self, assert_never
 
 from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window
-from rvmon.dataflow.piecewise import FAR, PAST, Piece, as_past, stamp, up_to
+from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, stamp
 from rvmon.dataflow.positions import Positions
-from rvmon.dataflow.ranges import drop, end_of, retract, settle
+from rvmon.dataflow.ranges import Range, Ranges, around, cut, drop, overlapping
+from rvmon.dataflow.ranges import add as add_to
 from rvmon.dataflow.sweep import Carried, Known
 from rvmon.formula.core import Core
 
-_FEW = 64
-"""So many pieces are never tidied up."""
-
-_SELDOM = 4
+_SELDOM = 16
 """After so many positions it is looked what is still wanted."""
+
+NO_NEWS: Known = ((), ())
 
 
 class Knowledge:
     """What is known of the nodes of a network, and when.
+
+    Where positions are sparse, what is known of one is known of all integers back to the position
+    before it.
 
     Args:
         plan: its nodes.
@@ -31,6 +34,7 @@ class Knowledge:
         positions: those of the word.
         known: per node, where it is true and where it is false, if the letter stays and no further
             position comes where they are sparse.
+        news: what of that became known last, and when; all the rest was known before.
         grown: the stamp that time has come to; what is known by then stays as it is.
         ahead: the stamp as of which all is worked out, the letter staying; not before `grown`.
         pending: per node, the first position that is wanted and not known.
@@ -42,7 +46,8 @@ class Knowledge:
         count = len(plan.nodes)
         self.plan = plan
         self.positions = Positions(gap)
-        self.known: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in range(count)]
+        self.known: list[tuple[Ranges, Ranges]] = [([], []) for _ in range(count)]
+        self.news: list[Known] = [NO_NEWS] * count
         self.grown = self.ahead = -FAR
         self.pending = [-FAR] * count
         self.swept = [-FAR] * count
@@ -50,7 +55,6 @@ class Knowledge:
             (isinstance(node, Sweep) and node.dual, PAST) for node in plan.nodes
         ]
         self._letter: Sequence[bool] = ()
-        self._tidy = _FEW
         self._visits = _SELDOM
 
     def copy(self) -> Self:
@@ -59,39 +63,61 @@ class Knowledge:
         made.plan = self.plan
         made.positions = self.positions.copy()
         made.known = [(list(true), list(false)) for true, false in self.known]
+        made.news = list(self.news)
         made.grown, made.ahead = self.grown, self.ahead
         made.pending = list(self.pending)
         made.swept = list(self.swept)
         made.carried = list(self.carried)
         made._letter = self._letter
-        made._tidy = self._tidy
         made._visits = self._visits
         return made
 
     def truth(self, t: int) -> Carried:
         """What becomes known of the formula at the position at `t`, and its stamp."""
-        return self._truth_at(len(self.plan.nodes) - 1, t // self.positions.gap)
+        return self.truth_at(len(self.plan.nodes) - 1, t // self.positions.gap)
 
-    @property
-    def whole(self) -> Known:
-        """What becomes known of the formula."""
-        return self.known[-1]
-
-    def _truth_at(self, place: int, integer: int) -> Carried:
-        true, false = self.known[place]
-        if (found := stamp(true, integer)) is not None:
-            return True, found
-        if (found := stamp(false, integer)) is not None:
-            return False, found
+    def truth_at(self, place: int, integer: int) -> Carried:
+        """What becomes known of a node at an integer, and its stamp."""
+        for value, ranges, news in zip(
+            (True, False), self.known[place], self.news[place], strict=True
+        ):
+            if around(ranges, integer) is not None:
+                at = stamp(news, integer)
+                return value, PAST if at is None else at
         return None
+
+    def pieces(self, place: int, on: Range = (-FAR, FAR)) -> Known:
+        """What becomes known of a node on a stretch."""
+        return self.side(place, 0, on), self.side(place, 1, on)
+
+    def side(self, place: int, side: int, on: Range) -> Pieces:
+        """Where on a stretch a node becomes known to be true (side 0), or false (1)."""
+        first, last = on
+        made: list[Piece] = []
+        news = self.news[place][side]
+        if news and (news[-1][1] < first or news[0][0] > last):
+            news = ()
+        for left, right in overlapping(self.known[place][side], first, last):
+            start, end = max(left, first), min(right, last)
+            for its_left, its_right, at, slope in news:
+                if its_right >= start and its_left <= end:
+                    append(made, start, its_left - 1, PAST, 0)
+                    append(made, max(its_left, start), min(its_right, end), at, slope)
+                    start = its_right + 1
+            append(made, start, end, PAST, 0)
+        return made
 
     def known_of(self, core: Core) -> Known:
         """What becomes known of a part of the formula."""
-        return self.known[self.plan.places[core]]
+        return self.pieces(self.plan.places[core])
+
+    def news_of(self, core: Core) -> Known:
+        """What became known last of a part of the formula."""
+        return self.news[self.plan.places[core]]
 
     def value_at(self, core: Core, position: int, limit: int) -> bool | None:
         """What is known of a part of the formula at a stamp."""
-        found = self._truth_at(self.plan.places[core], position)
+        found = self.truth_at(self.plan.places[core], position)
         return found[0] if found is not None and found[1] <= limit else None
 
     def first_unknown(self, core: Core, first: int, limit: int) -> int | None:
@@ -104,21 +130,56 @@ class Knowledge:
         """
         # What lies before `pending` was known, and may have been dropped.
         place = self.plan.places[core]
-        found = self._unknown_from(place, max(first, self.pending[place]), limit, skips=True)
+        found = self._unknown_from(place, max(first, self.pending[place]), skips=True)
         is_position = found <= self.positions.last and self.positions.slope * found < limit
         return found if is_position else None
 
     def relative(self, t: int) -> object:
         """All that is known, as seen from `t`."""
         gap = self.positions.gap
+        self.take_back()
         return tuple(
             tuple(
-                (left if left <= -FAR else left * gap - t, right * gap - t)
-                for left, right, _, _ in as_past(up_to(side, self.grown))
+                (left if left <= -FAR else left * gap - t, right * gap - t) for left, right in side
             )
             for known in self.known
             for side in known
         )
+
+    # What becomes known.
+
+    def tell(self, place: int, side: int, pieces: Pieces) -> None:
+        """Add to what becomes known of a node, ascending; it is not known yet."""
+        ranges = self.known[place][side]
+        for left, right, _, _ in pieces:
+            add_to(ranges, left, right)
+        old = self.news[place]
+        new = (*old[side], *pieces)
+        self.news[place] = (old[0], new) if side else (new, old[1])
+
+    def take_back(self) -> None:
+        """Forget what was worked out for times to come."""
+        if self.ahead <= self.grown:
+            return
+        self.ahead = self.grown
+        for place, sides in enumerate(self.news):
+            if sides is NO_NEWS:
+                continue
+            true, false = self.known[place]
+            self.news[place] = self._kept(true, sides[0]), self._kept(false, sides[1])
+
+    def _kept(self, ranges: Ranges, news: Pieces) -> Pieces:
+        """What of some news is known by now; the rest is taken out of the ranges."""
+        kept: list[Piece] = []
+        for left, right, at, slope in news:
+            end = right if at <= self.grown else left - 1
+            if slope:
+                end = min(right, (self.grown - at) // slope)
+            if end >= left:
+                kept.append((left, end, at, slope))
+            if end < right:
+                cut(ranges, max(left, end + 1), right)
+        return kept
 
     # What is wanted.
 
@@ -131,25 +192,28 @@ class Knowledge:
             node, base = nodes[place], wanted[place]
             if isinstance(node, Sweep) and not node.future:
                 base = min(base, self._take_over(place))
-            for pieces in self.known[place]:
-                drop(pieces, base)
+            for ranges in self.known[place]:
+                drop(ranges, base)
             start = max(base, self.pending[place])
-            skips = not isinstance(node, Sweep)
-            pending = self._unknown_from(place, start, self.grown, skips=skips)
+            pending = self._unknown_from(place, start, skips=not isinstance(node, Sweep))
             self.pending[place] = pending
             for operand, first in self._asks(place, node, pending):
                 wanted[operand] = min(wanted[operand], first)
         self.positions.forget(min(wanted))
 
-    def _unknown_from(self, place: int, integer: int, limit: int, *, skips: bool) -> int:
+    def _unknown_from(self, place: int, integer: int, *, skips: bool) -> int:
         """The first integer from one on that is not known; if `skips`, the first position."""
-        true, false = self.known[place]
         while True:
             integer = self.positions.following(integer) if skips else integer
-            end = max(end_of(true, integer, limit), end_of(false, integer, limit))
+            end = max(self._end(place, side, integer) for side in (0, 1))
             if end < integer:
                 return integer
             integer = end + 1
+
+    def _end(self, place: int, side: int, integer: int) -> int:
+        """The end of what is known around an integer of one side; one less if it is not."""
+        found = around(self.known[place][side], integer)
+        return integer - 1 if found is None else found[1]
 
     def _asks(self, place: int, node: Node, pending: int) -> Sequence[tuple[int, int]]:
         """The operands of a node, each with the first integer at which it matters."""
@@ -161,7 +225,8 @@ class Knowledge:
             case Window(operand=operand, low=low):
                 return [(operand, pending + low)]
             case Shift(operand=operand, offset=offset):
-                return [(operand, pending + offset)]
+                first = pending + offset
+                return [(operand, first if offset >= 0 else self.positions.standing_at(first))]
             case Sweep(left=left, right=right):
                 if node.future:
                     self._lead_on(place, node, pending)
@@ -171,11 +236,11 @@ class Knowledge:
 
     def _lead_on(self, place: int, node: Sweep, pending: int) -> None:
         """Pass the positions whose operands are known and only lead on to the next one."""
-        stays, meets = self.known[node.left][node.dual], self.known[node.right][not node.dual]
         start = max(self.swept[place], pending)
         while True:
             start = self.positions.following(start)
-            end = min(end_of(stays, start, self.grown), end_of(meets, start, self.grown))
+            stays = self._end(node.left, node.dual, start)
+            end = min(stays, self._end(node.right, not node.dual, start))
             if end < start:
                 break
             start = end + 1
@@ -184,40 +249,25 @@ class Knowledge:
     def _take_over(self, place: int) -> int:
         """Pass the integers at which a `since` is known; returns the first one behind."""
         start = max(self.swept[place], self.positions.first)
-        while (found := self._truth_at(place, start)) is not None and found[1] <= self.grown:
+        while (found := self.truth_at(place, start)) is not None:
             self.carried[place] = (found[0], PAST)
-            start = end_of(self.known[place][not found[0]], start, self.grown) + 1
+            start = self._end(place, not found[0], start) + 1
         self.swept[place] = start
         return start
 
     def _tidy_up(self, position: int) -> None:
-        """See now and then what is wanted, and join pieces when there are many.
+        """See now and then what is wanted.
 
         Args:
             position: the first one whose value is wanted.
         """
         self._visits += 1
-        if self._visits < _SELDOM:
-            return
-        self._visits = 0
-        self._want(position)
-        if sum(len(true) + len(false) for true, false in self.known) > self._tidy:
-            for sides in self.known:
-                for pieces in sides:
-                    settle(pieces, self.grown)
-            count = sum(len(true) + len(false) for true, false in self.known)
-            self._tidy = max(_FEW, 2 * count)
-
-    def _take_back(self) -> None:
-        """Forget what was worked out for times to come."""
-        self.ahead = self.grown
-        for place, sides in enumerate(self.known):
-            for pieces in sides:
-                retract(pieces, (self.pending[place], FAR), self.grown)
+        if self._visits >= _SELDOM:
+            self._visits = 0
+            self._want(position)
 
     def _begin(self) -> None:
         """Before the first position, nothing has been met."""
-        before = (-FAR, self.positions.first - 1, PAST, 0)
         for place, node in enumerate(self.plan.nodes):
             if isinstance(node, Sweep) and not node.future:
-                self.known[place][not node.dual].insert(0, before)
+                add_to(self.known[place][not node.dual], -FAR, self.positions.first - 1)

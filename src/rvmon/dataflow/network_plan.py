@@ -34,9 +34,10 @@ def plan_of(owed: Core, gap: int | None) -> Plan:
     planning.place(owed)
     nodes = tuple(planning.nodes)
     leaves = tuple((place, node.core) for place, node in enumerate(nodes) if isinstance(node, Leaf))
+    inner = tuple((place, node) for place, node in enumerate(nodes) if not isinstance(node, Leaf))
     looks_back = any(isinstance(core, Since | Previous) for core in planning.places)
     settles = sum(_settles(node) for node in nodes) * planning.gap + 2 * planning.gap
-    return Plan(nodes, planning.places, leaves, looks_back, settles)
+    return Plan(nodes, planning.places, leaves, inner, looks_back, settles)
 
 
 def _settles(node: Node) -> int:

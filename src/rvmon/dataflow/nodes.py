@@ -86,6 +86,7 @@ class Plan:
         nodes: operands before operators, the root last.
         places: the place of each formula.
         leaves: the places of those that read a letter, with what they read.
+        inner: those of the others, each with its place, in the same order.
         looks_back: whether something speaks of what was before an attempt began.
         settles: ticks after which nothing more comes of a letter that stays.
     """
@@ -93,6 +94,7 @@ class Plan:
     nodes: tuple[Node, ...]
     places: dict[Core, int]
     leaves: tuple[tuple[int, Literal | Constant], ...]
+    inner: tuple[tuple[int, Junction | Window | Sweep | Shift], ...]
     looks_back: bool
     settles: int
 

@@ -96,18 +96,6 @@ def span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
     return start, max(bisect_right(pieces, right, key=_left), start)
 
 
-def without(pieces: Pieces, known: Pieces) -> list[Piece]:
-    """What is not known already."""
-    made: list[Piece] = []
-    for left, right, at, slope in pieces:
-        start = left
-        for first, last, _, _ in clip(known, left, right):
-            append(made, start, first - 1, at, slope)
-            start = last + 1
-        append(made, start, right, at, slope)
-    return made
-
-
 def shift(pieces: Pieces, offset: int) -> Pieces:
     """At each position what is known of the one `offset` further on."""
     if not offset:

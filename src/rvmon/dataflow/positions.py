@@ -65,9 +65,9 @@ class Positions:
         self.last = min(self.last, last)
 
     def forget(self, before: int) -> None:
-        """Drop the positions before `before`, of which nothing will be asked."""
+        """Drop the positions before `before`, of which nothing will be asked, but for the last."""
         if self._stamps:
-            del self._stamps[: bisect_left(self._stamps, before)]
+            del self._stamps[: max(bisect_left(self._stamps, before) - 1, 0)]
 
     def following(self, integer: int) -> int:
         """The first position at or behind an integer, or the integer itself if there is none."""
@@ -76,10 +76,46 @@ class Positions:
         index = bisect_left(self._stamps, integer)
         return self._stamps[index] if index < len(self._stamps) else max(integer, self.last + 1)
 
+    def standing_at(self, integer: int) -> int:
+        """The last position not behind an integer, or the integer itself if there is none."""
+        if self._stamps is None:
+            return integer
+        index = bisect_right(self._stamps, integer)
+        return self._stamps[index - 1] if index else integer
+
     def within(self, left: int, right: int) -> list[int]:
         """The positions from `left` to `right` where they are sparse."""
         stamps = self._stamps or []
         return stamps[bisect_left(stamps, left) : bisect_right(stamps, right)]
+
+    def cells(self, pieces: Pieces) -> Pieces:
+        """Of each piece its positions, where they are sparse with all integers back to others."""
+        if self._stamps is None:
+            return pieces
+        stamps = self._stamps
+        made: list[Piece] = []
+        for left, right, at, slope in pieces:
+            index, end = bisect_left(stamps, left), bisect_right(stamps, right)
+            while index < end:
+                until = index + 1 if slope else end
+                start = stamps[index - 1] + 1 if index else stamps[0]
+                append(made, start, stamps[until - 1], at + slope * stamps[until - 1], 0)
+                index = until
+        return made
+
+    def held_on(self, pieces: Pieces) -> Pieces:
+        """Of each piece its positions, where they are sparse with all integers up to others."""
+        if self._stamps is None:
+            return pieces
+        stamps = self._stamps
+        made: list[Piece] = []
+        for left, right, at, slope in pieces:
+            append(made, left, min(right, self.first - 1), at, slope)
+            for index in range(bisect_left(stamps, left), bisect_right(stamps, right)):
+                position = stamps[index]
+                end = stamps[index + 1] - 1 if index + 1 < len(stamps) else FAR
+                append(made, position, end, at + slope * position, 0)
+        return made
 
     def only(self, pieces: Pieces, left: int, right: int) -> Pieces:
         """Known at positions alone, for what has to be met at one of them.

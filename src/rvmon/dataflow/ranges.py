@@ -1,143 +1,131 @@
-"""Ranges of integers, and where pieces begin and end around one."""
+"""Ranges of integers in order, none touching another, and where pieces begin and end around one."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from operator import itemgetter
 
-from rvmon.dataflow.evaluate import Range
-from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, span
+from rvmon.dataflow.piecewise import FAR, Piece, Pieces, append
 from rvmon.dataflow.sweep import Known
+
+Range = tuple[int, int]
+"""First and last integer."""
+
+Ranges = list[Range]
 
 _left = itemgetter(0)
 
 
-def holds(ranges: Iterable[Range], integer: int) -> bool:
-    """Whether an integer lies in one of them."""
-    return any(first <= integer <= last for first, last in ranges)
-
-
-def merged(ranges: Iterable[Range]) -> list[Range]:
+def merged(ranges: Iterable[Range]) -> Ranges:
     """The same integers, in ascending ranges that do not touch."""
-    made: list[Range] = []
+    made: Ranges = []
     for first, last in sorted(ranges):
+        if first > last:
+            continue
         if made and first <= made[-1][1] + 1:
             made[-1] = (made[-1][0], max(made[-1][1], last))
-        elif first <= last:
+        else:
             made.append((first, last))
     return made
 
 
-def drop(pieces: list[Piece], before: int) -> None:
-    """Drop the pieces that lie wholly before an integer."""
+def add(ranges: Ranges, left: int, right: int) -> None:
+    """Add integers that are not in them yet."""
+    if not ranges or ranges[-1][1] < left:
+        if ranges and ranges[-1][1] == left - 1:
+            ranges[-1] = (ranges[-1][0], right)
+        else:
+            ranges.append((left, right))
+        return
+    index = bisect_right(ranges, left, key=_left)
+    start, end = index, index
+    if index and ranges[index - 1][1] == left - 1:
+        start, left = index - 1, ranges[index - 1][0]
+    if index < len(ranges) and ranges[index][0] == right + 1:
+        end, right = index + 1, ranges[index][1]
+    ranges[start:end] = [(left, right)]
+
+
+def cut(ranges: Ranges, left: int, right: int) -> None:
+    """Take out integers that lie in one of them."""
+    index = bisect_right(ranges, left, key=_left) - 1
+    if index >= 0:
+        first, last = ranges[index]
+        parts = ((first, left - 1), (right + 1, last))
+        ranges[index : index + 1] = [part for part in parts if part[0] <= part[1]]
+
+
+def drop(ranges: Ranges, before: int) -> None:
+    """Drop those that lie wholly before an integer."""
     count = 0
-    while count < len(pieces) and pieces[count][1] < before:
+    while count < len(ranges) and ranges[count][1] < before:
         count += 1
     if count:
-        del pieces[:count]
+        del ranges[:count]
 
 
-def end_of(pieces: Pieces, integer: int, limit: int) -> int:
-    """The end of what is known at a stamp of the piece that holds an integer.
-
-    One less than the integer if nothing is known there.
-    """
-    index = bisect_right(pieces, integer, key=_left) - 1
-    if index < 0:
-        return integer - 1
-    _, right, at, slope = pieces[index]
-    if slope:
-        right = min(right, (limit - at) // slope)
-    elif at > limit:
-        return integer - 1
-    return max(right, integer - 1)
+def around(ranges: Ranges, integer: int) -> Range | None:
+    """The range that holds an integer."""
+    if not ranges or ranges[-1][1] < integer:
+        return None
+    if ranges[-1][0] <= integer:
+        return ranges[-1]
+    index = bisect_right(ranges, integer, key=_left) - 1
+    return ranges[index] if index >= 0 and ranges[index][1] >= integer else None
 
 
-def settle(pieces: list[Piece], limit: int) -> None:
-    """Forget the stamps of what is known at a stamp, and join it."""
-    gone = retract(pieces, (-FAR, FAR), limit)
-    insert(pieces, gone)
+def last_up_to(ranges: Ranges, integer: int) -> int:
+    """The last integer in them that is not behind one; below `-FAR` if there is none."""
+    index = bisect_right(ranges, integer, key=_left) - 1
+    return min(ranges[index][1], integer) if index >= 0 else -FAR - 1
 
 
-def retract(pieces: list[Piece], on: Range, limit: int) -> list[Piece]:
-    """Take out of a stretch what is not known at a stamp; of the rest forget the stamps.
-
-    Args:
-        pieces: changed in place.
-        on: the stretch.
-        limit: the stamp.
-
-    Returns:
-        What was taken out.
-    """
-    first, last = on
-    if not pieces or pieces[-1][1] < first or pieces[0][0] > last:
-        return []
-    start, end = span(pieces, first, last)
-    if start == end:
-        return []
-    kept: list[Piece] = []
-    gone: list[Piece] = []
-    behind: list[Piece] = []
-    for left, right, at, slope in pieces[start:end]:
-        if left < first:
-            kept.append((left, first - 1, at, slope))
-            left = first
-        if right > last:
-            behind.append((last + 1, right, at, slope))
-            right = last
-        known = right if at <= limit else left - 1
-        if slope:
-            known = min(right, (limit - at) // slope)
-        append(kept, left, known, PAST, 0)
-        append(gone, max(left, known + 1), right, at, slope)
-    pieces[start:end] = kept + behind
-    return gone
+def overlapping(ranges: Ranges, left: int, right: int) -> Sequence[Range]:
+    """Those that have an integer from `left` to `right`, whole."""
+    if not ranges or ranges[-1][1] < left or left > right:
+        return ()
+    if ranges[-1][0] <= left:
+        return ranges[-1:]
+    start = max(bisect_right(ranges, left, key=_left) - 1, 0)
+    if ranges[start][1] < left:
+        start += 1
+    return ranges[start : bisect_right(ranges, right, key=_left)]
 
 
-def insert(pieces: list[Piece], fresh: Pieces) -> None:
-    """Add pieces in place, in order, that lie where there are none."""
-    if not fresh:
-        return
-    if not pieces or pieces[-1][0] < fresh[0][0]:
-        pieces.extend(fresh)
-        return
-    start = bisect_right(pieces, fresh[0][0], key=_left)
-    if start == len(pieces) or fresh[-1][0] < pieces[start][0]:
-        pieces[start:start] = fresh
-    else:
-        pieces[start:] = sorted([*pieces[start:], *fresh])
+def within(pieces: Pieces, ranges: Ranges) -> list[Piece]:
+    """The parts of pieces that lie in some ranges."""
+    made: list[Piece] = []
+    for left, right, at, slope in pieces:
+        for first, last in overlapping(ranges, left, right):
+            append(made, max(left, first), min(right, last), at, slope)
+    return made
 
 
-def gaps(known: Known, on: Range) -> list[Range]:
-    """The parts of a stretch of which nothing is known."""
-    found: list[Range] = []
+def outside(pieces: Pieces, ranges: Ranges) -> Pieces:
+    """The parts of pieces that lie in none of some ranges."""
+    if not pieces or not ranges or ranges[-1][1] < pieces[0][0]:
+        return pieces
+    made: list[Piece] = []
+    for left, right, at, slope in pieces:
+        start = left
+        for first, last in overlapping(ranges, left, right):
+            append(made, start, first - 1, at, slope)
+            start = last + 1
+        append(made, start, right, at, slope)
+    return made
+
+
+def gaps(ranges: Ranges, on: Range) -> Ranges:
+    """The parts of a stretch that lie in none of some ranges."""
+    found: Ranges = []
     at, last = on
-    held = [
-        piece
-        for pieces in known
-        if pieces and pieces[-1][1] >= at
-        for piece in pieces[slice(*span(pieces, at, last))]
-    ]
-    if not held:
-        return [on]
-    for left, right, _, _ in sorted(held):
+    for left, right in overlapping(ranges, *on):
         if at < left:
             found.append((at, left - 1))
-        at = max(at, right + 1)
+        at = right + 1
     if at <= last:
         found.append((at, last))
-    return found
-
-
-def some_before(known: Known, integer: int, count: int) -> int:
-    """How far back from an integer at most so many pieces of each side reach, whole ones."""
-    found = -FAR
-    for pieces in known:
-        index = bisect_right(pieces, integer, key=_left) - count
-        if index >= 0:
-            found = max(found, pieces[index][0])
     return found
 
 

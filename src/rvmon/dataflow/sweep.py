@@ -31,27 +31,31 @@ def until(left: Known, right: Known, start: int, end: int, beyond: Carried = Non
     """
     one, other = _all_over(left, start, end), _all_over(right, start, end)
     if one is not None and other is not None:
-        stays, meets = one[0], other[0]
-        if not (stays and stays[1][1]) and not (meets and meets[1][1]):
-            return _level_pieces(start, end, _level(stays, meets, beyond))
+        return _until_on(start, end, one[0], other[0], beyond)
     found: list[tuple[Pieces, Pieces]] = []
     carried = beyond
     for first, last, stays, meets in reversed(list(_stretches(left, right, start, end))):
-        if not (stays and stays[1][1]) and not (meets and meets[1][1]):
-            carried = _level(stays, meets, carried)
-            found.append(_level_pieces(first, last, carried))
-            continue
-        true = _whole(first, last, meets, True)
-        false = latest(_whole(first, last, stays, False), _whole(first, last, meets, False))
-        if carried is not None:
-            value, known = carried
-            side = stays if value else meets
-            if side is not None and side[0] is value:
-                way = ((first, last, max(_at(side[1], last), known), 0),)
-                true, false = (soonest(true, way), false) if value else (true, soonest(false, way))
+        true, false = _until_on(first, last, stays, meets, carried)
         found.append((true, false))
         carried = _value_at(first, true, false)
     return _joined(reversed(found))
+
+
+def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried) -> Known:
+    """`until` on a stretch on which neither operand changes."""
+    if not (stays and stays[1][1]) and not (meets and meets[1][1]):
+        return _level_pieces(first, last, _level(stays, meets, beyond))
+    true = _whole(first, last, meets, True)
+    false: Pieces = ()
+    if meets is not None and not meets[0]:
+        false = latest(_whole(first, last, stays, False), _whole(first, last, meets, False))
+    if beyond is not None:
+        value, known = beyond
+        side = stays if value else meets
+        if side is not None and side[0] is value:
+            way = ((first, last, max(_at(side[1], last), known), 0),)
+            true, false = (soonest(true, way), false) if value else (true, soonest(false, way))
+    return true, false
 
 
 def _all_over(known: Known, start: int, end: int) -> tuple[_Side] | None:

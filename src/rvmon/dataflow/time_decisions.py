@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from rvmon.dataflow.evaluate import Range, evaluated
+from rvmon.dataflow.evaluate import evaluated
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import Leaf, Shift, Sweep, Window, operands_of
 from rvmon.dataflow.piecewise import FAR, Pieces, clip, soonest, stamp, up_to
 from rvmon.dataflow.positions import Positions
+from rvmon.dataflow.ranges import Range
 from rvmon.dataflow.sweep import Carried, Known
 
 
@@ -26,6 +27,7 @@ class Moment:
     def __init__(self, network: Network, now: int) -> None:
         self.network = network.copy()
         self.network.grow(now)
+        self.network.take_back()
 
     @cached_property
     def alone(self) -> Known:
@@ -48,8 +50,11 @@ def known_alone(network: Network, limit: int, on: Range = (-FAR, FAR)) -> Known:
     asked = _asked(network, positions, limit, on)
     known: list[Known] = []
     for place, node in enumerate(network.plan.nodes):
-        true, false = (up_to(clip(side, *asked[place]), limit) for side in network.known[place])
-        if not isinstance(node, Leaf) and asked[place][0] <= asked[place][1]:
+        if asked[place][0] > asked[place][1]:
+            known.append(((), ()))
+            continue
+        true, false = (up_to(side, limit) for side in network.pieces(place, asked[place]))
+        if not isinstance(node, Leaf):
             operands = [known[operand] for operand in operands_of(node)]
             found = _evaluated(network, positions, place, operands, asked[place])
             true, false = soonest(true, found[0]), soonest(false, found[1])
@@ -72,8 +77,8 @@ def _asked(network: Network, positions: Positions, limit: int, on: Range) -> lis
         elif isinstance(node, Shift):
             low = high = node.offset
         elif isinstance(node, Sweep) and node.future:
-            first, last = network.swept[place], max(last, network.swept[place])
-            cut = network.known[node.left][not node.dual]
+            first, last = (max(end, network.swept[place]) for end in (first, last))
+            cut = network.side(node.left, not node.dual, (last, FAR))
             last = _first_of(cut, positions, last, limit)
         elif isinstance(node, Sweep):
             first = network.swept[place]
@@ -119,7 +124,7 @@ def _evaluated(
         return (), ()
     if not isinstance(node, Sweep):
         return evaluated(node, operands, positions, (first, on[1]), None)
-    start = network.swept[place]
+    start = max(network.swept[place], first) if node.future else network.swept[place]
     edge: Carried = None if node.future else network.carried[place]
     true, false = evaluated(node, operands, positions, (start, max(on[1], start)), edge)
     if node.future and first < start:

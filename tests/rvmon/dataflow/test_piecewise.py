@@ -17,9 +17,7 @@ from rvmon.dataflow.piecewise import (
     soonest,
     stamp,
     up_to,
-    without,
 )
-from rvmon.dataflow.ranges import end_of, gaps, holds, insert, retract, settle
 from rvmon.dataflow.sweep import since, until
 
 NEVER = 1 << 100
@@ -61,36 +59,6 @@ def test_points(seed):
         assert at(clip(one, first, last), i) == (at(one, i) if first <= i <= last else NEVER)
         assert at(up_to(one, 15), i) == (at(one, i) if at(one, i) <= 15 else NEVER)
         assert at(as_past(one), i) == (PAST if at(one, i) < NEVER else NEVER)
-        fresh = without(one, other)
-        assert at(fresh, i) == (at(one, i) if at(other, i) == NEVER else NEVER)
-
-
-@pytest.mark.parametrize("seed", CASES)
-def test_what_is_known_stays_and_the_rest_is_taken_out(seed):
-    """Of a stretch what is not known at a stamp goes, and can be put back; the rest is settled."""
-    rng = random.Random(seed)
-    known = random_known(rng)
-    first, last, limit = rng.randint(-2, 10), rng.randint(10, LAST + 2), rng.randint(-5, 40)
-    left = [list(side) for side in known]
-    gone = [retract(side, (first, last), limit) for side in left]
-    free = gaps(left, (first, last))
-    for side, own, out in zip(left, known, gone, strict=True):
-        back = list(side)
-        insert(back, out)
-        settled = list(own)
-        settle(settled, limit)
-        for i in range(-8, LAST + 9):
-            before = at(own, i)
-            inside = first <= i <= last
-            after = PAST if inside and before <= limit else before
-            assert at(side, i) == (NEVER if inside and before > limit else after)
-            assert at(back, i) == after
-            assert at(settled, i) == (PAST if before <= limit else before)
-            end = end_of(own, i, limit)
-            assert (end >= i) is (before <= limit)
-            assert all(at(own, k) <= limit for k in range(i, end + 1))
-    for i in range(first, last + 1):
-        assert holds(free, i) is all(at(side, i) == NEVER for side in left)
 
 
 @pytest.mark.parametrize("seed", CASES)

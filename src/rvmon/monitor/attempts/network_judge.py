@@ -10,11 +10,10 @@ from typing import Any
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.dataflow.at_end import held_at_end
-from rvmon.dataflow.evaluate import Range
 from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import Plan
 from rvmon.dataflow.piecewise import Pieces, stamp
-from rvmon.dataflow.ranges import merged
+from rvmon.dataflow.ranges import Range, merged
 from rvmon.dataflow.sweep import Carried
 from rvmon.dataflow.time_decisions import Moment
 from rvmon.formula.core import Constant, Sense
@@ -31,8 +30,24 @@ WAITING = PASSED + 1
 The token of an attempt is how it stands in a network, and the position whose value it is.
 """
 
-_PATIENCE = 16
+_PATIENCE = 4
 """A letter that has stayed for a while is looked ahead for so many times that."""
+
+
+_VALUES = (FALSE, UNKNOWN, TRUE)
+
+_LETTERS = {
+    sense: (
+        tuple(value == (TRUE if sense is Sense.TRUE else FALSE) for value in _VALUES),
+        tuple(
+            value == (TRUE if sense is Sense.TRUE else FALSE)
+            or (value == UNKNOWN and sense is not Sense.KNOWN_FALSE)
+            for value in _VALUES
+        ),
+    )
+    for sense in Sense
+}
+"""By sense and value, whether a leaf is true, the unknown taken for the worse and the better."""
 
 
 class NetworkJudge(AttemptJudge):
@@ -69,7 +84,7 @@ class NetworkJudge(AttemptJudge):
         self._next_decision = NEVER
         self._changed = self.position
         """When the letter changed last."""
-        self._span = _PATIENCE * self.plan.settles
+        self._span = self.plan.settles
         """How far it is worth while to look ahead when it does, ticks."""
         self._held: Pieces | None = None
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
@@ -77,26 +92,20 @@ class NetworkJudge(AttemptJudge):
         self.now = -1 << 64
         index = flow.graph.index
         self._reads = tuple(
-            (-1, core.value)
+            (-1, (core.value,), (core.value,))
             if isinstance(core, Constant)
-            else (index[core.proposition], core.sense)
+            else (index[core.proposition], *_LETTERS[core.sense])
             for _, core in self.plan.leaves
         )
 
     def read(self) -> tuple[list[bool], list[bool]]:
         """The truth of the plan's leaves, the unknown taken for the worse and for the better."""
         values = self.flow.values
-        worse, better = [], []
-        for place, sense in self._reads:
-            if isinstance(sense, bool):
-                worse.append(sense)
-                better.append(sense)
-                continue
-            value = values[place]
-            certain = value == (TRUE if sense is Sense.TRUE else FALSE)
-            worse.append(certain)
-            better.append(certain or (value == UNKNOWN and sense is not Sense.KNOWN_FALSE))
-        return worse, better
+        reads = self._reads
+        return (
+            [worse[values[place] if place >= 0 else 0] for place, worse, _ in reads],
+            [better[values[place] if place >= 0 else 0] for place, _, better in reads],
+        )
 
     @property
     def watches(self) -> bool:  # type: ignore[override]
@@ -145,8 +154,7 @@ class NetworkJudge(AttemptJudge):
     def _turn(self, t: int, worse: Network, letters: tuple[list[bool], list[bool]]) -> None:
         self._letters = letters
         self._news = -FOREVER
-        stayed = min(t - self._changed, self.plan.settles)
-        self._span = max(_PATIENCE * stayed, self._span * 3 // 4)
+        self._span = max(min(t - self._changed, self.plan.settles), self._span // 2)
         self._changed = t
         if self.better is None and letters[0] != letters[1]:
             self.better = worse.copy()
@@ -171,21 +179,31 @@ class NetworkJudge(AttemptJudge):
                 return position
         return None
 
-    def _look(self, limit: int) -> None:
-        """Let time come to a stamp, and hear of the decisions that this brings."""
-        if self.worse is None or limit <= self.now:
-            return
-        before, self.now = self.now, limit
+    def _look(self, limit: int, ahead: int = -FOREVER) -> None:
+        """Let time come to a stamp, and hear of the decisions that this brings.
+
+        Args:
+            limit: the stamp.
+            ahead: what the letter brings up to here if it stays is worked out at once, unless more
+                is already.
+        """
         networks = self._networks
         unforeseen = any(network.ahead < limit for network in networks)
         for network in networks:
+            if network.ahead <= limit + 1:
+                network.foresee(ahead)
             network.grow(limit)
+        if not networks or limit <= self.now:
+            return
+        before, self.now = self.now, limit
         if unforeseen or self._news <= limit:
             self._hear(before)
 
     @property
     def _networks(self) -> list[Network]:
-        return [network for network in (self.worse, self.better) if network is not None]
+        if self.worse is None:
+            return []
+        return [self.worse] if self.better is None else [self.worse, self.better]
 
     def _hear(self, before: int) -> None:
         """Judge what became known after a stamp."""
@@ -213,9 +231,12 @@ class NetworkJudge(AttemptJudge):
 
     def _learnt(self, network: Network, before: int) -> Iterator[Range]:
         """The attempts, by first and last index, whose value became known after a stamp."""
+        if not self.attempts:
+            return
         gap = network.positions.gap
-        for left, right, at, slope in chain(*network.whole):
-            if not slope and not before < at <= self.now:
+        oldest, youngest = (_position(self.attempts[end]) // gap for end in (0, -1))
+        for left, right, at, slope in chain(*network.news[-1]):
+            if right < oldest or left > youngest or not (slope or before < at <= self.now):
                 continue
             first, last = left, right
             if slope:
@@ -247,9 +268,11 @@ class NetworkJudge(AttemptJudge):
         return False
 
     def _known(self, network: Network, t: int) -> Carried:
-        """What is known by now of the position at `t`, and since which stamp."""
+        """What is known by now of the position at `t`, and since which stamp, at least its own."""
         found = network.truth(t)
-        return found if found is not None and found[1] <= self.now else None
+        if found is None or found[1] > self.now:
+            return None
+        return found[0], max(found[1], 2 * t)
 
     def _foresee(self) -> None:
         """Set when what is waited for is known next, and when that decides something."""
@@ -268,10 +291,9 @@ class NetworkJudge(AttemptJudge):
         """The values that attempts will have by a network, if the letter stays, and the stamps."""
         attempts, now, gap = self.attempts, self.now, network.positions.gap
         oldest, youngest = _position(attempts[0]) // gap, _position(attempts[-1]) // gap
-        # Most of what is known was so before.
         coming = [
             (value, piece)
-            for value, pieces in zip((True, False), network.whole, strict=True)
+            for value, pieces in zip((True, False), network.news[-1], strict=True)
             for piece in pieces
             if (piece[3] or piece[2] > now) and piece[0] <= youngest and piece[1] >= oldest
         ]
@@ -294,21 +316,13 @@ class NetworkJudge(AttemptJudge):
 
     def pass_to(self, t: int) -> None:
         """Let time come to `t` with the letters as they are."""
-        self._look(2 * t + 1)
-        self._look_ahead(_PATIENCE * (t - self._changed))
+        self._look(2 * t + 1, self._far(t + 1, _PATIENCE * (t - self._changed)))
         self._foresee()
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, of which the letter is not known, from the instant before."""
-        self._look(2 * t)
-        self._look_ahead(_PATIENCE * (t - self._changed))
+        self._look(2 * t, self._far(t + 1, _PATIENCE * (t - self._changed)))
         self._foresee()
-
-    def _look_ahead(self, span: int) -> None:
-        """Have worked out what so many ticks bring, the letter staying, unless more is already."""
-        for network in self._networks:
-            if network.ahead <= self.now + 1:
-                network.foresee(self._far(self.now // 2 + 1, span))
 
     def _far(self, t: int, span: int) -> int:
         """The stamp so many ticks behind an instant; if nothing more comes then, behind all."""

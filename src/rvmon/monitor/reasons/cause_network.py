@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from rvmon.dataflow.network import Network
-from rvmon.dataflow.piecewise import FAR
+from rvmon.dataflow.piecewise import FAR, PAST
 from rvmon.formula.core import (
     And,
     Constant,
@@ -96,7 +96,9 @@ class NetworkCauseFinder:
         """The first position at which a formula got the decision's value at its stamp."""
         if isinstance(core, Constant):
             return None
-        for left, right, at, slope in self.network.known_of(core)[not self.verdict]:
+        # What was known before is as fresh as anything that was.
+        known_of = self.network.known_of if self.at == PAST else self.network.news_of
+        for left, right, at, slope in known_of(core)[not self.verdict]:
             low, high = max(left, first), min(right, last)
             if low > high:
                 continue

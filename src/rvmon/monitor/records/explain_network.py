@@ -30,12 +30,20 @@ def network_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) 
     blame: Blame | None = None if verdict else words.blame(cause, t, start, judge.flow)
     deadline = None
     if t > attempt.token[1][0]:  # else it owed nothing yet
-        alone = settled(known_alone(network, found[1] - 1, (position, position)), position)
+        last = _settled_before(network, position, found[1])
         # What had long been settled when the attempt began was no deadline of it.
-        if alone is not None and alone[0] >= attempt.token[1][0] - 1:
-            deadline = alone[0]
+        if last is not None and last >= attempt.token[1][0] - 1:
+            deadline = last
     sentence = rendered(words.sentence(cause, verdict), t, start, attempt.triggered, judge.flow)
     return Explanation(sentence, deadline=deadline, blame=blame)
+
+
+def _settled_before(network: Network, position: int, at: int) -> int | None:
+    """The last instant before time alone would have settled what became known at a stamp."""
+    if at % 2 == 0:
+        return at // 2 - 1  # as it did: no letter of that instant was needed
+    alone = settled(known_alone(network, at - 1, (position, position)), position)
+    return None if alone is None else alone[0]
 
 
 def network_open(
