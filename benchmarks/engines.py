@@ -12,7 +12,7 @@ _INPUTS = (
         f"plan/{name}.py"
         for name in ("graph", "inputs", "leaves", "numbers", "outages", "planning")
     ),
-    *(f"codegen/{name}.py" for name in ("python_class", "python_lane")),
+    *(f"codegen/{name}.py" for name in ("python_class", "python_evaluator")),
     *("runtime/copies.py", "runtime/nodes.py"),
 )
 _ATTEMPTS = tuple(
@@ -21,14 +21,14 @@ _ATTEMPTS = tuple(
         "attempts/attempt_judge",
         "attempts/captured",
         "attempts/instance",
-        "attempts/lane",
-        "attempts/lane_classes",
+        "attempts/evaluator",
+        "attempts/evaluator_classes",
         "attempts/machine_judge",
         "build",
         "compiled/requirement",
         "inputs/health",
         "inputs/validate",
-        "online/lanes",
+        "online/evaluators",
         "online/monitor",
         "records/ledger",
     )

@@ -114,7 +114,7 @@ EQUIVALENT = {
     ),
     "outages.py dropped operand: `self._spec.signals[name].stale_after or 0` => "
     "`self._spec.signals[name].stale_after`": "the bound is only told of what has one",
-    "starts.py constant: `self.eyed = False` => `self.eyed = (True)`": (
+    "starts.py constant: `self.looking = False` => `self.looking = (True)`": (
         "it is asked for when an attempt has begun, which sets it"
     ),
     "starts.py and/or: `not self.episodic or (not self.hidden and values[self.trigger] == TRUE and "
@@ -148,7 +148,7 @@ EQUIVALENT = {
     "generated.py off by one: `self._reached - 1` => `self._reached`": (
         "a sample at the instant that time has come to takes the way of every monitor"
     ),
-    "unit.py dropped operand: `self.eyed and triggers & 1` => `self.eyed`": (
+    "unit.py dropped operand: `self.looking and triggers & 1` => `self.looking`": (
         "a trigger that has not changed is only looked at once more"
     ),
     "schedule.py off by one: `t + 1` => `t`": (

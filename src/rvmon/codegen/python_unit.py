@@ -7,7 +7,7 @@ import math
 import operator
 from typing import Any, TypeVar
 
-from rvmon.codegen.python_lane import lane_source
+from rvmon.codegen.python_evaluator import evaluator_source
 from rvmon.codegen.python_source import unit_source
 from rvmon.plan.plan import Plan
 from rvmon.runtime.bulk import BulkRule
@@ -54,14 +54,14 @@ def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]
     return _made(unit_source(plan, arriving), Unit)
 
 
-def lane_class(plan: Plan, base: type[Made]) -> type[Made]:
+def evaluator_class(plan: Plan, base: type[Made]) -> type[Made]:
     """A class that evaluates the state formulas of a plan.
 
     Args:
         plan: has the formulas, and no rules.
         base: what it derives from.
     """
-    return _made(lane_source(plan), base)
+    return _made(evaluator_source(plan), base)
 
 
 def _made(source: str, base: type[Made]) -> type[Made]:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import Machine, Token
 from rvmon.explain.example import Example
-from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.table import next_cut
 from rvmon.runtime.values import NEVER
@@ -51,18 +51,18 @@ def play(
         end: the instant at which the run ends, ticks, at or after the last sample.
     """
     ledger = Ledger()
-    lanes = Lanes(compiled.checked, requirements, "auto", None, ledger)
+    evaluators = Evaluators(compiled.checked, requirements, "auto", None, ledger)
     for sample in samples:
-        lanes.through(sample.t - 1)
-        lanes.sample(sample.t, sample.values)
-    lanes.through(end)
-    for judge in lanes.judges:
+        evaluators.through(sample.t - 1)
+        evaluators.sample(sample.t, sample.values)
+    evaluators.through(end)
+    for judge in evaluators.judges:
         judge.pass_to(end)
     ledger.flush()
     decided = tuple(sorted({(a.requirement, a.verdict) for a in ledger.attempts}))
-    situation = (decided, *_situation(lanes, end))
-    cut = min((*_cuts(lanes, end), NEVER))
-    lanes.finish(end, end)
+    situation = (decided, *_situation(evaluators, end))
+    cut = min((*_cuts(evaluators, end), NEVER))
+    evaluators.finish(end, end)
     ledger.flush()
     ids = [one.requirement.id for one in requirements]
     report = report_of(ids, ledger.attempts, origin=samples[0].t, end=end)
@@ -70,10 +70,10 @@ def play(
     return Played(example, situation, cut)
 
 
-def _cuts(lanes: Lanes, end: int) -> Iterator[int]:
-    for lane in lanes.all:
-        yield lane.next_change()
-    for judge in lanes.judges:
+def _cuts(evaluators: Evaluators, end: int) -> Iterator[int]:
+    for evaluator in evaluators.all:
+        yield evaluator.next_change()
+    for judge in evaluators.judges:
         for attempt in judge.attempts:
             if isinstance(judge, MachineJudge):
                 for token in _tokens(attempt.token, attempt.better):
@@ -86,10 +86,10 @@ def _tokens(*tokens: Token | None) -> Iterator[Token]:
     return (token for token in tokens if token is not None and token[0] > PASSED)
 
 
-def _situation(lanes: Lanes, end: int) -> Iterator[object]:
-    for lane in lanes.all:
-        yield from _lane(lane, end)
-    for judge in lanes.judges:
+def _situation(evaluators: Evaluators, end: int) -> Iterator[object]:
+    for evaluator in evaluators.all:
+        yield from _evaluator(evaluator, end)
+    for judge in evaluators.judges:
         yield tuple(judge.captured.items()) if judge.attempts else ()
         if isinstance(judge, NetworkJudge):
             yield judge.situation(end)
@@ -107,20 +107,20 @@ def _standings(judge: MachineJudge, end: int) -> object:
     )
 
 
-def _lane(lane: Lane, end: int) -> Iterator[object]:
-    yield tuple(lane.v)
-    yield lane.next_change() - end
+def _evaluator(evaluator: Evaluator, end: int) -> Iterator[object]:
+    yield tuple(evaluator.v)
+    yield evaluator.next_change() - end
     yield tuple(
-        lane.since[operand] - end
-        for place in lane.graph.stateful
-        for operand in lane.graph.operands[place]
+        evaluator.since[operand] - end
+        for place in evaluator.graph.stateful
+        for operand in evaluator.graph.operands[place]
     )
-    for value, seen, stale_at in zip(lane.s, lane.h, lane.stale_at, strict=True):
+    for value, seen, stale_at in zip(evaluator.s, evaluator.h, evaluator.stale_at, strict=True):
         if stale_at < NEVER:
             yield value, stale_at - end
         if seen is not None:
             yield value, seen.updates and seen.at - end, seen.before, seen.before_at - seen.at
-    for rule in lane.starters:
+    for rule in evaluator.starters:
         if rule.trigger >= 0:
             yield (rule.before, rule.running)
 

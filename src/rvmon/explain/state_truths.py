@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from rvmon.explain.spans import FOREVER, Spans, union
 from rvmon.formula.state import FALSE, TRUE, State
+from rvmon.monitor.attempts.evaluator import Evaluator
+from rvmon.monitor.attempts.evaluator_classes import generated
 from rvmon.monitor.attempts.instance import Instance, seen_by
-from rvmon.monitor.attempts.lane import Lane
-from rvmon.monitor.attempts.lane_classes import generated
 from rvmon.plan.graph import graph_of
 from rvmon.plan.outages import Outages
 from rvmon.plan.planning import uses_of
@@ -26,8 +26,8 @@ class Truth:
     may: Spans
 
 
-class _Log(Lane):
-    """A lane that remembers when its values changed.
+class _Log(Evaluator):
+    """An evaluator that remembers when its values changed.
 
     Attributes:
         history: per node, the instants from which on it had a value, and that value.
@@ -36,7 +36,7 @@ class _Log(Lane):
     history: Sequence[list[tuple[int, int]]]
 
     def visit(self, t: int) -> None:
-        """See `Lane`."""
+        """See `Evaluator`."""
         first = self.origin is None
         before = list(self.v)
         super().visit(t)
@@ -67,17 +67,17 @@ def state_truths(
     """
     graph = graph_of(roots)
     uses = uses_of([graph], ())
-    lane = generated(spec, graph, uses, uses, _Log)(Outages(spec, names), captured)
-    lane.history = [[] for _ in graph.nodes]
+    evaluator = generated(spec, graph, uses, uses, _Log)(Outages(spec, names), captured)
+    evaluator.history = [[] for _ in graph.nodes]
     ignoring, read = spec.ignoring, graph.by_name.keys()
     for sample in samples:
         values = {name: sample.values[name] for name in read & sample.values.keys()}
-        lane.through(sample.t - 1)
-        lane.sample(sample.t, seen_by(instance, updates_in(values, ignoring)))
-    lane.through(end)
+        evaluator.through(sample.t - 1)
+        evaluator.sample(sample.t, seen_by(instance, updates_in(values, ignoring)))
+    evaluator.through(end)
     found = {}
     for root in roots:
-        entries = lane.history[graph.index[root]]
+        entries = evaluator.history[graph.index[root]]
         stops = [*(t - 1 for t, _ in entries[1:]), end][: len(entries)]
         spans = [(t, stop, value) for (t, value), stop in zip(entries, stops, strict=True)]
         sure = union((t, stop) for t, stop, value in spans if value == TRUE)

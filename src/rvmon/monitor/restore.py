@@ -58,7 +58,7 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
         sources=document["sources"],
         keep=document["keep"],
     )
-    put_back(document, monitor.options, monitor.lanes, monitor)
+    put_back(document, monitor.options, monitor.evaluators, monitor)
     for instant in (monitor._last, monitor._reached, monitor._torn):
         if instant is not None:
             whole_ticks(instant)

@@ -26,7 +26,7 @@ def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     return Plan(spec, tuple(rules), graph, spec.gap, *names, uses_of([graph], ()))
 
 
-def plan_of_lane(
+def plan_of_evaluator(
     spec: CheckedSpec, graph: Graph, names: Iterable[str], uses: Mapping[str, Uses]
 ) -> Plan:
     """The plan of what only evaluates state formulas: somebody else judges.

@@ -22,7 +22,7 @@ class Schedule:
         restless: the rules to be asked at the next position whatever changes.
         repeating: those that start an attempt at the next position if nothing changes.
         asked: of what `triggers` may hold, what somebody asks for.
-        eyed: the rules that have to see their triggers first.
+        looking: the rules that have to see their triggers first.
         failing: those whose episode runs on after a failure.
         resume_at: the next position at which one of them may go on though nothing changes.
         awaited: the next position at which samples that were taken will show.
@@ -33,7 +33,7 @@ class Schedule:
     """
 
     STATE: tuple[str, ...] = (
-        *("rules", "position", "restless", "repeating", "asked", "eyed", "failing"),
+        *("rules", "position", "restless", "repeating", "asked", "looking", "failing"),
         *("resume_at", "awaited", "dues", "due_at", "active"),
     )
 
@@ -46,7 +46,7 @@ class Schedule:
     restless: int
     repeating: int
     asked: int
-    eyed: int
+    looking: int
     failing: int
     resume_at: int
     awaited: int
@@ -69,7 +69,7 @@ class Schedule:
     def set_up(self, rules: Sequence[Rule]) -> None:
         """Begin with rules that have no attempts."""
         self.rules = list(rules)
-        self.restless = self.repeating = self.eyed = self.failing = self.active = 0
+        self.restless = self.repeating = self.looking = self.failing = self.active = 0
         self.asked = (1 << len(self.rules)) - 1
         self.resume_at = self.awaited = NEVER
         self.dues = []
@@ -78,8 +78,8 @@ class Schedule:
     def conclude(self, t: int, letters: int, triggers: int) -> None:
         """Have the position judged by those whom it concerns."""
         self.awaited = NEVER
-        if triggers & self.eyed:
-            self.look(triggers & self.eyed)
+        if triggers & self.looking:
+            self.look(triggers & self.looking)
         letters = (letters | self.restless) & self.active
         dues, due_at = self.dues, self.due_at
         while dues and dues[0][0] <= t:
@@ -132,13 +132,13 @@ class Schedule:
         self.note(rule)
         if rule.episodic:
             bit = 1 << rule.index
-            self.eyed = self.eyed | bit if rule.eyed else self.eyed & ~bit
+            self.looking = self.looking | bit if rule.looking else self.looking & ~bit
 
-    def look(self, eyed: int) -> None:
+    def look(self, looking: int) -> None:
         """Have requirements see their triggers before their attempts do."""
-        while eyed:
-            bit = eyed & -eyed
-            eyed ^= bit
+        while looking:
+            bit = looking & -looking
+            looking ^= bit
             self.rules[bit.bit_length() - 1].look()
 
     def go_on(self, t: int, again: int) -> None:

@@ -26,7 +26,7 @@ class Starts:
         current: the instant of the trigger of the attempt that runs in an episode, or `None`.
         failed_at: the instant at which that failed, the episode running on.
         clouded: whether the trigger was unknown while it ran.
-        eyed: whether it has to see the trigger before its attempts do.
+        looking: whether it has to see the trigger before its attempts do.
 
     Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, After a failure).
     """
@@ -39,9 +39,9 @@ class Starts:
         "clouded",
         "current",
         "episodic",
-        "eyed",
         "failed_at",
         "hidden",
+        "looking",
         "pulse",
         "running",
         "trigger",
@@ -50,7 +50,7 @@ class Starts:
     )
 
     STATE: tuple[str, ...] = (
-        *("attempts", "before", "running", "current", "failed_at", "clouded", "eyed"),
+        *("attempts", "before", "running", "current", "failed_at", "clouded", "looking"),
     )
 
     def __init__(
@@ -78,7 +78,7 @@ class Starts:
         self.current: int | None = None
         self.failed_at: int | None = None
         self.clouded = False
-        self.eyed = False
+        self.looking = False
 
     def starts(self, truth: int) -> bool:
         """Whether an attempt starts at a position where the trigger has this truth.
@@ -138,7 +138,7 @@ class Starts:
             self.current = triggered
             self.failed_at = None
             self.clouded = not plain and self.values[self.trigger] == UNKNOWN
-            self.eyed = not (self.hidden or plain)
+            self.looking = not (self.hidden or plain)
 
     def look(self) -> None:
         """See the trigger before the attempts do: it may make one sure, or void."""

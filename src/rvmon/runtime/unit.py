@@ -35,8 +35,8 @@ class Unit(Nodes, Schedule):
         "began",
         "due_at",
         "dues",
-        "eyed",
         "failing",
+        "looking",
         "machines",
         "news",
         "repeating",
@@ -122,8 +122,8 @@ class Unit(Nodes, Schedule):
     def conclude_calmly(self, t: int, letters: int, triggers: int) -> None:
         """As `conclude`, where all requirements are episodes that only letters decide."""
         rules = self.rules
-        if triggers & self.eyed:
-            self.look(triggers & self.eyed)
+        if triggers & self.looking:
+            self.look(triggers & self.looking)
         letters &= self.active
         while letters:
             bit = letters & -letters
@@ -150,7 +150,7 @@ class Unit(Nodes, Schedule):
     def conclude_alone(self, t: int, letters: int, triggers: int) -> None:
         """As `conclude_calmly`, where there is but one requirement."""
         (rule,) = self.rules
-        if self.eyed and triggers & 1:
+        if self.looking and triggers & 1:
             rule.look()
         if letters and self.active:
             rule.visit(t)

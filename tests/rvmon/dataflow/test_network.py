@@ -149,7 +149,7 @@ def test_memory_is_bounded_by_the_window():
     """However long the run, no more is kept than changed within the reach of the formula."""
     monitor = spec_of(RESPAWNED).monitor()
     monitor.step(0, {"a": True, "b": True})
-    [judge] = monitor._lanes.judges
+    [judge] = monitor._evaluators.judges
     sizes = []
     for k in range(1, 400):
         monitor.step(k * 0.5, {"b": k % 2 == 0})

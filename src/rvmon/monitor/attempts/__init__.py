@@ -1,1 +1,1 @@
-"""Open attempts: what judges them, in lanes that are driven through time."""
+"""Open attempts: what judges them, in evaluators that are driven through time."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open, doubt_in, leaves_in
-from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.numbers import events_of, reader
 from rvmon.spec.checked.formula import Numeric
@@ -19,7 +19,7 @@ class CapturedAttempt:
     """Compares what an attempt has captured with what it may have captured.
 
     Args:
-        parent: the lane in which it was triggered.
+        parent: the evaluator in which it was triggered.
         compiled: its requirement.
         captured: its values.
         trigger: place of the trigger in the parent's flow: where that is FALSE, it is over.
@@ -30,23 +30,23 @@ class CapturedAttempt:
 
     def __init__(
         self,
-        parent: Lane,
+        parent: Evaluator,
         compiled: CompiledRequirement,
         captured: Captured,
         trigger: int,
         doubt: int | None,
     ) -> None:
         self._parent = parent
-        self._lane = parent
+        self._evaluator = parent
         self._own = captured
         self._captures = compiled.requirement.captures
         self._leaves = leaves_in(parent.graph, compiled)
         self._trigger = trigger
         self._doubt = doubt
 
-    def follow(self, lane: Lane) -> None:
-        """Take the lane that is its own."""
-        self._lane = lane
+    def follow(self, evaluator: Evaluator) -> None:
+        """Take the evaluator that is its own."""
+        self._evaluator = evaluator
         self._parent.watched.append(self)
 
     @property
@@ -56,27 +56,27 @@ class CapturedAttempt:
         return (doubt is None or self._parent.v[doubt] == UNKNOWN) and not self._is_same
 
     def keeps(self, t: int) -> bool:
-        """See `rvmon.monitor.attempts.lane.WatchedAttempt`."""
-        lane = self._lane
+        """See `rvmon.monitor.attempts.evaluator.WatchedAttempt`."""
+        evaluator = self._evaluator
         trigger = self._parent.v[self._trigger]
-        if lane.is_idle or trigger == FALSE:
-            lane.blurs = False
-        elif lane.blurs and not lane.is_cut and self.may_begin_otherwise:
-            lane.cut_at(t)
-        if lane.cut == t:
+        if evaluator.is_idle or trigger == FALSE:
+            evaluator.blurs = False
+        elif evaluator.blurs and not evaluator.is_cut and self.may_begin_otherwise:
+            evaluator.cut_at(t)
+        if evaluator.cut == t:
             doubt = doubt_in(self._parent, self._leaves, t)
             for _, attempt in self._attempts:
                 attempt.doubt = attempt.doubt or doubt
-        for judge, attempt in self._attempts if lane.is_cut else ():
+        for judge, attempt in self._attempts if evaluator.is_cut else ():
             attempt.void = True
-            # Its own lane can no longer see whether it is over.
+            # Its own evaluator can no longer see whether it is over.
             clouded = attempt.clouded or judge.clouded or trigger == UNKNOWN
             attempt.clouded = trigger != FALSE and clouded
-        return lane.blurs or (lane.is_cut and trigger != FALSE)
+        return evaluator.blurs or (evaluator.is_cut and trigger != FALSE)
 
     @property
     def _attempts(self) -> Iterator[tuple[AttemptJudge, Open]]:
-        return ((judge, attempt) for judge in self._lane.judges for attempt in judge.attempts)
+        return ((judge, attempt) for judge in self._evaluator.judges for attempt in judge.attempts)
 
     @property
     def _is_same(self) -> bool:
@@ -89,10 +89,10 @@ class CapturedAttempt:
         )
 
 
-def captured_value(value: Numeric, lane: Lane, captured: Captured) -> Scalar:
-    """The value of an expression at the position of a lane; of several payloads, of the last."""
+def captured_value(value: Numeric, evaluator: Evaluator, captured: Captured) -> Scalar:
+    """The value of an expression at an evaluator's position; of several payloads, of the last."""
     payloads: dict[str, Payload] = {}
     for event in events_of(value):
-        found = lane.payloads_of(event)
+        found = evaluator.payloads_of(event)
         payloads[event] = (found[-1] if found else None) or {}
-    return reader(value, lane, captured)(payloads)
+    return reader(value, evaluator, captured)(payloads)

@@ -13,7 +13,7 @@ Shape = tuple[
     list[tuple[str, list[tuple[int, Scalar, int]]]],
     list[tuple[str, str, dict[str, Scalar], Scalar, bool]],
 ]
-"""Per requirement its instances: rank, value, first instant; per lane its requirement,
+"""Per requirement its instances: rank, value, first instant; per evaluator its requirement,
 which of its judges it has, captured values, the value of its instance, and whether attempts start
 in it."""
 

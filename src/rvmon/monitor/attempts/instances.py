@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator, Mapping
 from heapq import heappop, heappush
 
 from rvmon.errors import TraceError
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.instance import Instance, seen_by
 from rvmon.monitor.attempts.keyed import MOST_OPEN, Keyed
-from rvmon.monitor.attempts.lane import Lane
 from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.time import format_ticks
 
-_Entry = tuple[Keyed, Scalar, Lane]
+_Entry = tuple[Keyed, Scalar, Evaluator]
 
 
 class Instances:
@@ -33,16 +33,16 @@ class Instances:
         self._is_held = is_held
         self._alarms: list[tuple[int, int, Keyed, Scalar]] = []
         """When open instances are to be looked at; `_alarm_of` says which entries still hold."""
-        self._alarm_of: dict[Lane, int] = {}
+        self._alarm_of: dict[Evaluator, int] = {}
         self._alarms_set = 0
 
-    def entries(self) -> Iterator[tuple[Lane, Instance]]:
-        """The lanes there are now, those of no value first, with their instances."""
+    def entries(self) -> Iterator[tuple[Evaluator, Instance]]:
+        """The evaluators there are now, those of no value first, with their instances."""
         for keyed in self.keyed.values():
             yield keyed.template, keyed.doubted
         for keyed in self.keyed.values():
-            for value, lane in keyed.open.items():
-                yield lane, keyed.known[value]
+            for value, evaluator in keyed.open.items():
+                yield evaluator, keyed.known[value]
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`; what nothing happens in follows when it is looked at."""
@@ -62,50 +62,50 @@ class Instances:
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Give a sample to those that it concerns, and to those in which something happens now."""
-        asked = {lane: (keyed, value) for keyed, value, lane in self._rung(t)}
+        asked = {evaluator: (keyed, value) for keyed, value, evaluator in self._rung(t)}
         for keyed in self.keyed.values():
             keyed.template.sample(t, seen_by(keyed.doubted, values))
             asked |= {keyed.open[value]: (keyed, value) for value in keyed.concerned(values)}
-        for lane, (keyed, value) in asked.items():
-            lane.sample(t, seen_by(keyed.known[value], values))
-            self._see_to(keyed, value, lane)
+        for evaluator, (keyed, value) in asked.items():
+            evaluator.sample(t, seen_by(keyed.known[value], values))
+            self._see_to(keyed, value, evaluator)
 
     def _rung(self, limit: int) -> list[_Entry]:
         """The open instances in which something happens up to an instant."""
         found = []
         while self._alarms and self._alarms[0][0] <= limit:
             at, _, keyed, value = heappop(self._alarms)
-            lane = keyed.open.get(value)
-            if lane is not None and self._alarm_of.get(lane) == at:
-                del self._alarm_of[lane]
-                found.append((keyed, value, lane))
+            evaluator = keyed.open.get(value)
+            if evaluator is not None and self._alarm_of.get(evaluator) == at:
+                del self._alarm_of[evaluator]
+                found.append((keyed, value, evaluator))
         return found
 
-    def _see_to(self, keyed: Keyed, value: Scalar, lane: Lane) -> None:
+    def _see_to(self, keyed: Keyed, value: Scalar, evaluator: Evaluator) -> None:
         """Let go of an open instance if it is over, after something was done to it."""
-        if self._forgets and keyed.is_over(lane) and not self._is_held(keyed.known[value]):
+        if self._forgets and keyed.is_over(evaluator) and not self._is_held(keyed.known[value]):
             keyed.close(value)
-            self._alarm_of.pop(lane, None)
+            self._alarm_of.pop(evaluator, None)
         else:
-            self._set_alarm(keyed, value, lane, lane.alarm)
+            self._set_alarm(keyed, value, evaluator, evaluator.alarm)
 
-    def _set_alarm(self, keyed: Keyed, value: Scalar, lane: Lane, alarm: int) -> None:
-        if self._alarm_of.get(lane) != alarm:
-            self._alarm_of[lane] = alarm
+    def _set_alarm(self, keyed: Keyed, value: Scalar, evaluator: Evaluator, alarm: int) -> None:
+        if self._alarm_of.get(evaluator) != alarm:
+            self._alarm_of[evaluator] = alarm
             if alarm < NEVER:
                 self._alarms_set += 1
                 heappush(self._alarms, (alarm, self._alarms_set, keyed, value))
 
-    def opened(self, keyed: Keyed, value: Scalar, lane: Lane) -> None:
-        """Take the lane of an instance, which is looked at next."""
-        keyed.opened(value, lane)
-        self._set_alarm(keyed, value, lane, -NEVER)
+    def opened(self, keyed: Keyed, value: Scalar, evaluator: Evaluator) -> None:
+        """Take the evaluator of an instance, which is looked at next."""
+        keyed.opened(value, evaluator)
+        self._set_alarm(keyed, value, evaluator, -NEVER)
 
     def let_go(self) -> None:
         """Let go of all instances that are over, after attempts were taken away."""
         for keyed in self.keyed.values():
-            for value, lane in tuple(keyed.open.items()):
-                self._see_to(keyed, value, lane)
+            for value, evaluator in tuple(keyed.open.items()):
+                self._see_to(keyed, value, evaluator)
 
     def admit(self, t: int, values: Mapping[str, Value]) -> None:
         """See that there is room for the instances that a sample asks for.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk
-from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -43,31 +43,31 @@ def judge_of(
 
 
 class CapturingRule(Rule):
-    """Starts the attempts of a requirement with captured values, each in a lane of its own.
+    """Starts the attempts of a requirement with captured values, each in an evaluator of its own.
 
     Args:
         compiled: the requirement, or what judges its attempts in doubt.
-        lane: gives the truth of its trigger.
-        start: makes the lane, and starts the attempt.
+        evaluator: gives the truth of its trigger.
+        start: makes the evaluator, and starts the attempt.
         hidden: whether these are the attempts in doubt.
     """
 
     def __init__(
-        self, compiled: CompiledRequirement, lane: Lane, start: Start, *, hidden: bool
+        self, compiled: CompiledRequirement, evaluator: Evaluator, start: Start, *, hidden: bool
     ) -> None:
         trigger = compiled.obligation.trigger
         super().__init__(
             0,
             None,
             None,
-            -1 if trigger is None else lane.graph.index[trigger],
+            -1 if trigger is None else evaluator.graph.index[trigger],
             compiled.requirement.pulse,
             hidden or compiled.requirement.mode is Mode.WHENEVER,
             hidden,
             -1,
             -1,
-            lane.gap,
-            lane.values,
+            evaluator.gap,
+            evaluator.values,
             None,
         )
         self._start = start

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from rvmon.formula.state import Leaf, State, StateOp
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.instance import Instance, values_in
-from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import Graph
 from rvmon.plan.leaves import captured_names
@@ -121,13 +121,13 @@ class Keyed:
     Args:
         compiled: the requirement.
         each: of it.
-        template: the lane of the instance of no value.
+        template: the evaluator of the instance of no value.
         instance: that instance.
         is_timed: whether only what changes is looked at; else each sample concerns all.
 
     Attributes:
         known: the values that occurred, but for those that were forgotten.
-        open: the lanes of those that are not over.
+        open: the evaluators of those that are not over.
         reach: what they depend on.
     """
 
@@ -135,7 +135,7 @@ class Keyed:
         self,
         compiled: CompiledRequirement,
         each: ForEach,
-        template: Lane,
+        template: Evaluator,
         instance: Instance,
         *,
         is_timed: bool,
@@ -145,7 +145,7 @@ class Keyed:
         self.template = template
         self.doubted = instance
         self.known: dict[Scalar, Instance] = {}
-        self.open: dict[Scalar, Lane] = {}
+        self.open: dict[Scalar, Evaluator] = {}
         self.reach = reach_of(compiled, each)
         self._last_rank = 0
         self._over: dict[Scalar, None] = {}
@@ -163,7 +163,7 @@ class Keyed:
             self._last_rank = max(self._last_rank, one.rank)
 
     def values_to_open(self, values: Mapping[str, Value]) -> list[Scalar]:
-        """The values of which a sample asks for the instance, and that have no lane.
+        """The values of which a sample asks for the instance, and that have no evaluator.
 
         An occurrence of unknown value may be of any that is known.
         """
@@ -172,10 +172,10 @@ class Keyed:
             occurring |= self._over
         return [one for one in occurring if one is not None and one not in self.open]
 
-    def opened(self, value: Scalar, lane: Lane) -> None:
-        """Take the lane of an instance."""
+    def opened(self, value: Scalar, evaluator: Evaluator) -> None:
+        """Take the evaluator of an instance."""
         self._over.pop(value, None)
-        self.open[value] = lane
+        self.open[value] = evaluator
 
     def instance(self, value: Scalar, t: int) -> Instance:
         """The instance of a value that occurs at `t`."""
@@ -195,17 +195,17 @@ class Keyed:
                 found.update(dict.fromkeys(values_in(field, values)))
         return list(self.open) if None in found else [one for one in found if one in self.open]
 
-    def is_over(self, lane: Lane) -> bool:
+    def is_over(self, evaluator: Evaluator) -> bool:
         """Whether an instance stands as one would that is made anew when its value occurs next."""
         return (
             self.reach.begins
             and self.reach.is_fresh
-            and lane.is_quiet
-            and lane.stands_like(self.template, self.reach.varying)
+            and evaluator.is_quiet
+            and evaluator.stands_like(self.template, self.reach.varying)
         )
 
     def close(self, value: Scalar) -> None:
-        """Let go of the lane of an instance that is over; its value is remembered for a while."""
+        """Let go of an instance that is over; its value is remembered for a while."""
         del self.open[value]
         self._over[value] = None
         if len(self._over) > MOST_KNOWN:

@@ -12,7 +12,7 @@ from rvmon.errors import SnapshotError
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
@@ -57,8 +57,10 @@ class CompiledMonitor(Monitor):
         else:
             self.step, self.step_ns = self._take_at, self._take
 
-    def _make_lanes(self) -> Lanes:
-        return Lanes(self.options.compiled.checked, (), "auto", self.options.sources, self._ledger)
+    def _make_evaluators(self) -> Evaluators:
+        return Evaluators(
+            self.options.compiled.checked, (), "auto", self.options.sources, self._ledger
+        )
 
     def _begin(self) -> None:
         super()._begin()

@@ -104,8 +104,8 @@ class CompiledRequirement:
         self.obligation = obligation
         self.alphabet: Alphabet = alphabet_of(obligation.owed)
         self._owed = factory.next(obligation.owed)
-        self.lanes: dict[object, Any] = {}
-        """What was generated for its runs; see `rvmon.monitor.attempts.lane_classes`."""
+        self.evaluators: dict[object, Any] = {}
+        """What was generated for its runs; see `rvmon.monitor.attempts.evaluator_classes`."""
 
     @cached_property
     def _built(self) -> Automaton | DoesNotCloseError:

@@ -14,7 +14,7 @@ from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
-from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor, Step
 from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.online.unit_clerks import JudgeClerk, UnitClerk, UnitStanding
@@ -67,8 +67,8 @@ class Forms:
         self.machines += [None for _ in self.plan.hidden_of]
 
 
-class GeneratedLanes(Lanes):
-    """Lanes of which one is generated code; the others are for what that cannot judge.
+class GeneratedEvaluators(Evaluators):
+    """Evaluators of which one is generated code; the others are for what that cannot judge.
 
     Args:
         forms: what was generated.
@@ -80,7 +80,7 @@ class GeneratedLanes(Lanes):
         other: takes the samples that need a closer look.
     """
 
-    STATE = ("outages", "unit", "_counts", *Lanes.STATE)
+    STATE = ("outages", "unit", "_counts", *Evaluators.STATE)
 
     def __init__(
         self,
@@ -139,16 +139,16 @@ class GeneratedLanes(Lanes):
 
     @property
     def arrivals(self) -> Arrivals:
-        """See `Lanes`."""
+        """See `Evaluators`."""
         return arrivals_of(self.unit)
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
-        """The judges of all lanes."""
+        """The judges of all evaluators."""
         return [*(self._judge_now(rule) for rule in self.unit.rules), *super().judges]
 
     def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
-        """See `Lanes`."""
+        """See `Evaluators`."""
         own = [
             (rule.compiled.requirement.id, rule, rule.running_attempt)
             if isinstance(rule, AttemptJudge)
@@ -164,7 +164,7 @@ class GeneratedLanes(Lanes):
         return self._clerks[rule.index].judge_now(rule)
 
     def take_along(self, t: int) -> None:
-        """See `Lanes`."""
+        """See `Evaluators`."""
         for rule in self.unit.rules:
             if rule.slides:
                 rule.pass_to(t)
@@ -201,7 +201,7 @@ class GeneratedLanes(Lanes):
         super().finish(end, reached)
 
     def undetermined(self) -> list[str]:
-        """See `Lanes`."""
+        """See `Evaluators`."""
         own = [
             one.compiled.requirement.id
             for index, one in enumerate(self._clerks)
@@ -249,8 +249,8 @@ class GeneratedMonitor(Monitor):
         if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
             self.step_ns = self._unit.step
 
-    def _make_lanes(self) -> Lanes:
-        self._unit_lanes = GeneratedLanes(
+    def _make_evaluators(self) -> Evaluators:
+        self._unit_evaluators = GeneratedEvaluators(
             self._forms,
             self._unit,
             self.options.compiled,
@@ -259,11 +259,11 @@ class GeneratedMonitor(Monitor):
             self._ledger,
             self._take,
         )
-        return self._unit_lanes
+        return self._unit_evaluators
 
     def _attend(self) -> None:
         attends = self._listeners or self.options.keep is not None
-        self._unit_lanes.flush = self._hear if attends else self._unit_lanes._flush
+        self._unit_evaluators.flush = self._hear if attends else self._unit_evaluators._flush
 
     def _begin(self) -> None:
         super()._begin()

@@ -12,7 +12,7 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.health import HealthLog
 from rvmon.monitor.inputs.intake import Intake
 from rvmon.monitor.inputs.validate import Validator
-from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.listeners import Callback, Listeners
 from rvmon.monitor.online.one_call import OneCall
 from rvmon.monitor.online.options import Options
@@ -54,7 +54,7 @@ class Monitor:
     step_ns: Step
 
     STATE: tuple[str, ...] = (
-        *("_ledger", "_kept", "_lanes"),
+        *("_ledger", "_kept", "_evaluators"),
         *("_intake", "_health", "_last", "_reached", "_torn"),
     )
 
@@ -89,7 +89,7 @@ class Monitor:
 
     def _begin(self) -> None:
         self._ledger = Ledger()
-        self._lanes = self._make_lanes()
+        self._evaluators = self._make_evaluators()
         self._kept = Kept(self._ledger, self.options.keep)
         delay = self.options.compiled.checked.max_delay or 0
         holds_back = delay or self.options.settle == "next"
@@ -104,8 +104,8 @@ class Monitor:
     def _attend(self) -> None:
         """Have what is decided heard of, if it is to be told or bounded."""
 
-    def _make_lanes(self) -> Lanes:
-        return Lanes(
+    def _make_evaluators(self) -> Evaluators:
+        return Evaluators(
             self.options.compiled.checked,
             self.options.requirements,
             self.options.engine,
@@ -148,7 +148,7 @@ class Monitor:
     def _flush(self) -> Sequence[Attempt]:
         """What was decided since the last call."""
         decided = self._ledger.flush()
-        self._kept.bound(self._lanes)
+        self._kept.bound(self._evaluators)
         return decided
 
     def on_decided(self, callback: Callback) -> Callable[[], None]:
@@ -188,14 +188,14 @@ class Monitor:
         return self._listeners.add(callback, self._attend, failures_only=True)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
-        self._lanes.through(t - 1)
+        self._evaluators.through(t - 1)
         try:
-            self._lanes.instances.admit(t, values)
+            self._evaluators.instances.admit(t, values)
         except TraceError:
             self._pass_to(t)
             raise
         self._health.note(t, values)
-        self._lanes.sample(t, values)
+        self._evaluators.sample(t, values)
         self._last = self._reached = t
 
     def _settled(self, samples: Sequence[Sample], floor: int) -> Sequence[Attempt]:
@@ -225,8 +225,8 @@ class Monitor:
 
     def _pass_to(self, t: int) -> None:
         if self._reached is None or t > self._reached:
-            self._lanes.through(t - 1)
-            self._lanes.reach(t)
+            self._evaluators.through(t - 1)
+            self._evaluators.reach(t)
             self._reached = t
 
     def _taken_time(self, t: int) -> int:
@@ -270,17 +270,17 @@ class Monitor:
         end = self._end(t_ns)
         if end is not None:
             reached = end if self._reached is None else max(end, self._reached)
-            self._lanes.through(end)
-            self._lanes.finish(end, reached)
+            self._evaluators.through(end)
+            self._evaluators.finish(end, reached)
         decided = self._ledger.close()
         self._kept.trim()
         report = report_of(
             self._names,
             self._ledger.attempts,
             dropped=self._kept.dropped,
-            incomplete=self._lanes.undetermined(),
+            incomplete=self._evaluators.undetermined(),
             health=self._health.report(
-                self.options.requirements, self._lanes.arrivals, self._intake
+                self.options.requirements, self._evaluators.arrivals, self._intake
             ),
             origin=self._health.began or 0,
             end=end,
@@ -335,9 +335,9 @@ class Monitor:
         return max(known)
 
     @property
-    def lanes(self) -> Lanes:
+    def evaluators(self) -> Evaluators:
         """What judges the run."""
-        return self._lanes
+        return self._evaluators
 
     def snapshot(self) -> bytes:
         """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
@@ -366,8 +366,8 @@ class Monitor:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
         if self._torn is not None:
             self._flush()  # what the torn call has decided is not lost
-        self._kept.tidy(self._lanes)
-        return snapshot(self.options, self._lanes, self)
+        self._kept.tidy(self._evaluators)
+        return snapshot(self.options, self._evaluators, self)
 
     @property
     def open(self) -> Sequence[Attempt]:
@@ -379,10 +379,10 @@ class Monitor:
             return []
         known = self._reached == self._last
         now = 2 * self._reached + known
-        self._lanes.take_along(self._reached - (not known))
+        self._evaluators.take_along(self._reached - (not known))
         return [
             self._ledger.open_record(judge, attempt, now)
-            for judge in self._lanes.judges
+            for judge in self._evaluators.judges
             for attempt in judge.attempts
         ] + [*self._ledger.void_records]
 
@@ -394,5 +394,5 @@ class Monitor:
     def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:
             return None
-        found = min(lane.next_decision for lane in self._lanes.all)
+        found = min(evaluator.next_decision for evaluator in self._evaluators.all)
         return max(found, self._reached + 1) if found < NEVER else None

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.monitor.attempts.attempt_judge import Open
-from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict, fold
@@ -54,11 +54,11 @@ class Kept:
         self._seen_to = len(attempts)
         return {name: fold(self._seen.get(name, ())) for name in requirements}
 
-    def bound(self, lanes: Lanes) -> None:
+    def bound(self, evaluators: Evaluators) -> None:
         """Drop what is too much, now and then; to be called after each flush of the ledger.
 
         Args:
-            lanes: have the open attempts.
+            evaluators: have the open attempts.
         """
         if self._keep is None:
             return
@@ -66,19 +66,19 @@ class Kept:
         self._calls += 1
         if self._calls + self._size > self._limit:
             self._calls = 0
-            self.tidy(lanes)
-            there = sum(len(holder.attempts) for _, holder, _ in lanes.holders())
+            self.tidy(evaluators)
+            there = sum(len(holder.attempts) for _, holder, _ in evaluators.holders())
             self._limit = 2 * self._size + there + _PATIENCE
 
     @property
     def _size(self) -> int:
         return len(self._ledger.attempts) + len(self._ledger.void)
 
-    def tidy(self, lanes: Lanes) -> None:
+    def tidy(self, evaluators: Evaluators) -> None:
         """Drop all that is too much; see `bound`."""
         if self._keep is not None:
             self.trim()
-            self._forget_lost(lanes)
+            self._forget_lost(evaluators)
 
     def trim(self) -> None:
         """Drop the records that are too many; when the run is over, there are no others."""
@@ -110,10 +110,10 @@ class Kept:
         found.sort(key=lambda entry: entry[0])
         return [what for _, what in found[:surplus]]
 
-    def _forget_lost(self, lanes: Lanes) -> None:
+    def _forget_lost(self, evaluators: Evaluators) -> None:
         """Drop the oldest of the open attempts that can only stay undecided."""
         lost: dict[str, list[tuple[int, Open]]] = defaultdict(list)
-        for name, holder, running in lanes.holders():
+        for name, holder, running in evaluators.holders():
             own = (one for one in holder.attempts if one is not running and _is_lost(one))
             lost[name] += [(attempt.triggered, attempt) for attempt in own]
         gone = {
@@ -121,11 +121,11 @@ class Kept:
             for name, found in lost.items()
             for attempt in self._oldest(name, Verdict.INCONCLUSIVE, found)
         }
-        for _, holder, _ in lanes.holders() if gone else ():
+        for _, holder, _ in evaluators.holders() if gone else ():
             if any(id(one) in gone for one in holder.attempts):
                 holder.attempts = [one for one in holder.attempts if id(one) not in gone]
         if gone:
-            lanes.instances.let_go()
+            evaluators.instances.let_go()
 
 
 def _is_lost(attempt: Open) -> bool:

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 from rvmon.automaton.progression import Progression
 from rvmon.errors import SnapshotError
 from rvmon.monitor.attempts.machine_judge import MachineJudge
+from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.freeze import Freezer, Thawer
-from rvmon.monitor.online.lanes import Lanes
 from rvmon.monitor.online.options import Options
 from rvmon.verdict.verdict import LAW
 
@@ -34,12 +34,12 @@ _UNSAID = ("span", "source", "text", "title", "doc")
 """Fields of a specification that do not change what is judged."""
 
 
-def snapshot(options: Options, lanes: Lanes, run: object) -> bytes:
+def snapshot(options: Options, evaluators: Evaluators, run: object) -> bytes:
     """The bytes of a run.
 
     Args:
         options: of its monitor.
-        lanes: what judges it.
+        evaluators: what judges it.
         run: has the state.
     """
     document = {
@@ -51,10 +51,12 @@ def snapshot(options: Options, lanes: Lanes, run: object) -> bytes:
         "sources": None if options.sources is None else sorted(options.sources),
         "keep": options.keep,
         "machines": _machines(options),
-        "locations": {name: machine.table() for name, _, machine in _progressing(options, lanes)},
+        "locations": {
+            name: machine.table() for name, _, machine in _progressing(options, evaluators)
+        },
     }
     freezer = Freezer(_plans(options.compiled))
-    document["lanes"] = freezer.freeze(lanes.shape())
+    document["evaluators"] = freezer.freeze(evaluators.shape())
     document["state"] = freezer.freeze(run)
     body = json.dumps(document, separators=(",", ":")).encode()
     return b"%s %s\n%s" % (_KIND, hashlib.sha256(body).hexdigest().encode(), body)
@@ -84,13 +86,15 @@ def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
     return document
 
 
-def put_back(document: Mapping[str, Any], options: Options, lanes: Lanes, run: object) -> None:
+def put_back(
+    document: Mapping[str, Any], options: Options, evaluators: Evaluators, run: object
+) -> None:
     """Give a fresh run the state that a snapshot holds.
 
     Args:
         document: from `document_of`.
         options: of the fresh monitor, as the document says them.
-        lanes: what judges it.
+        evaluators: what judges it.
         run: takes the state.
 
     Raises:
@@ -99,10 +103,10 @@ def put_back(document: Mapping[str, Any], options: Options, lanes: Lanes, run: o
     if document["machines"] != _machines(options):
         raise SnapshotError("the snapshot was made with other automata: was rvmon changed?")
     thawer = Thawer(_plans(options.compiled))
-    lanes.rebuild(thawer.thaw(document["lanes"]))
+    evaluators.rebuild(thawer.thaw(document["evaluators"]))
     thawer.into(run, document["state"])
     moved: dict[str, list[int]] = {}
-    for name, judge, machine in _progressing(options, lanes):
+    for name, judge, machine in _progressing(options, evaluators):
         if name not in moved:
             moved[name] = machine.learn(document["locations"][name])
         for attempt in judge.attempts:
@@ -174,11 +178,13 @@ def _said(value: Any) -> Iterator[str]:
         yield repr(value)
 
 
-def _progressing(options: Options, lanes: Lanes) -> Iterator[tuple[str, MachineJudge, Progression]]:
+def _progressing(
+    options: Options, evaluators: Evaluators
+) -> Iterator[tuple[str, MachineJudge, Progression]]:
     """The judges whose locations are numbered as they are met, and the name of what they judge."""
     names = {id(one): name for name, one in _judged(options.compiled)}
-    for lane in lanes.all:
-        for judge in lane.judges:
+    for evaluator in evaluators.all:
+        for judge in evaluator.judges:
             if isinstance(judge, MachineJudge) and isinstance(judge.machine, Progression):
                 yield names[id(judge.compiled)], judge, judge.machine
 

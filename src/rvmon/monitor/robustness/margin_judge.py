@@ -14,7 +14,7 @@ from rvmon.dataflow.steps import INFINITE, Step, add
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
-from rvmon.monitor.attempts.lane import Lane
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.robustness.values import Robustness
 from rvmon.plan.leaves import reads
@@ -64,7 +64,7 @@ class MarginJudge(AttemptJudge):
         self,
         compiled: CompiledRequirement,
         plan: Plan,
-        flow: Lane,
+        flow: Evaluator,
         clerk: Gauger,
         captured: Mapping[str, Scalar],
         spec: CheckedSpec,
@@ -74,7 +74,7 @@ class MarginJudge(AttemptJudge):
         super().__init__(compiled, None, flow, clerk, captured)
         self.trigger = self.again = -1  # the other judge starts them
         self.watches = True
-        self._lane = flow
+        self._evaluator = flow
         self.restless = True
         self.gauger = clerk
         self.every = every
@@ -102,11 +102,11 @@ class MarginJudge(AttemptJudge):
         if isinstance(core, Constant):
             fixed = OF_TRUTH[TRUE if core.value else FALSE]
             return (lambda: fixed), None
-        lane, state = self._lane, core.proposition
-        place = lane.graph.index[state]
+        evaluator, state = self._evaluator, core.proposition
+        place = evaluator.graph.index[state]
 
         def truth() -> int:
-            return lane.v[place]
+            return evaluator.v[place]
 
         if core.sense is Sense.KNOWN_FALSE:
             return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
@@ -114,9 +114,9 @@ class MarginJudge(AttemptJudge):
         if state.leaf is None:
             read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
         else:
-            read = margin_reader(state.leaf, truth, lane, self.captured, spec)
+            read = margin_reader(state.leaf, truth, evaluator, self.captured, spec)
             about = reads(state.leaf)
-            if about.momentary and not about.names & lane.absent:
+            if about.momentary and not about.names & evaluator.absent:
                 later = OF_TRUTH[FALSE]
         if core.sense is Sense.TRUE:
             return read, later

@@ -16,13 +16,13 @@ from rvmon.dataflow.steps import INFINITE
 from rvmon.errors import UnknownNameError
 from rvmon.formula.expand import expanded
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.instance import Instance
-from rvmon.monitor.attempts.lane import Lane
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
-from rvmon.monitor.online.lane_maker import Captured
-from rvmon.monitor.online.lanes import Lanes
+from rvmon.monitor.online.evaluator_maker import Captured
+from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.records.ledger import Ledger, verdict_at_end
 from rvmon.monitor.robustness.margin_judge import MarginJudge
@@ -115,10 +115,10 @@ class _Run(Monitor):
         self._streams = streams
         super().__init__(compiled, requirements, "auto", settle, sources, None)
 
-    def _make_lanes(self) -> Lanes:
+    def _make_evaluators(self) -> Evaluators:
         self._gauged = _Gauged()
         self._ledger = self._gauged
-        return _MeasuringLanes(
+        return _MeasuringEvaluators(
             self.options.compiled.checked,
             self.options.requirements,
             self.options.sources,
@@ -136,7 +136,7 @@ class _Run(Monitor):
 
     @property
     def _measuring(self) -> list[MarginJudge]:
-        return [judge for judge in self._lanes.judges if isinstance(judge, MarginJudge)]
+        return [judge for judge in self._evaluators.judges if isinstance(judge, MarginJudge)]
 
     def open_figures(self) -> Sequence[Measured]:
         """What is known of the open attempts."""
@@ -154,8 +154,8 @@ class _Run(Monitor):
         return made
 
 
-class _MeasuringLanes(Lanes):
-    """Lanes in which another judge, beside each of the usual ones, measures its attempts."""
+class _MeasuringEvaluators(Evaluators):
+    """Evaluators in which another judge, beside each of the usual ones, measures its attempts."""
 
     forgets = False
 
@@ -175,14 +175,14 @@ class _MeasuringLanes(Lanes):
     def _judges(
         self,
         compiled: CompiledRequirement,
-        lane: Lane,
+        evaluator: Evaluator,
         captured: Captured,
         instance: Instance | None,
         *,
         started_elsewhere: bool = False,
     ) -> Sequence[AttemptJudge]:
         judges = super()._judges(
-            compiled, lane, captured, instance, started_elsewhere=started_elsewhere
+            compiled, evaluator, captured, instance, started_elsewhere=started_elsewhere
         )
         requirement = compiled.requirement
         if compiled not in self._plans:
@@ -192,7 +192,7 @@ class _MeasuringLanes(Lanes):
         beside = MarginJudge(
             compiled,
             self._plans[compiled],
-            lane,
+            evaluator,
             self._gauged,
             captured,
             self.spec,
@@ -202,12 +202,12 @@ class _MeasuringLanes(Lanes):
         return [*judges, beside]
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
-        """See `Lanes`."""
+        """See `Evaluators`."""
         self._gauged.heard = t
         super().sample(t, values)
 
     def finish(self, end: int, reached: int) -> None:
-        """See `Lanes`; the positions that were not settled are measured as well."""
+        """See `Evaluators`; the positions that were not settled are measured as well."""
         super().finish(end, reached)
         for judge in self.judges:
             if isinstance(judge, MarginJudge) and judge.every:

@@ -70,11 +70,11 @@ def test_what_is_over_changes_no_record(name, time, engine):
     "name", ["another event with the key", "a signal", "what was before", "stretches"]
 )
 def test_what_is_kept_is_what_is_open(name, time):
-    """However many keys go by, no more lanes are kept than attempts may be open."""
+    """However many keys go by, no more evaluators are kept than attempts may be open."""
     monitor = rvmon.loads(text_of(OWED[name], time)).monitor(keep=5)
     for number in range(300):
         monitor.step(number, {"order": {"id": number}, "ok": number % 7 != 0})
-        assert len(monitor.lanes.all) < 12
+        assert len(monitor.evaluators.all) < 12
     assert len(monitor.snapshot()) < 100_000
 
 
@@ -120,7 +120,7 @@ def test_only_the_latest_that_are_over_are_remembered(monkeypatch):
     sizes = []
     for number in range(1200):
         monitor.step(10 * number, {"order": {"id": number}})
-        sizes.append(len(monitor.lanes.all))
+        sizes.append(len(monitor.evaluators.all))
     assert max(sizes[600:]) <= max(sizes[:600])
     assert len(monitor.snapshot()) < 20_000
 

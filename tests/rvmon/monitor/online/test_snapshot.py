@@ -137,7 +137,10 @@ def test_forged_bytes_are_refused():
         {**document, "state": ["object", "os", "system"]},
         {**document, "state": ["kept"]},
         {**document, "engine": "none"},
-        {**document, "lanes": ["tuple", ["list"], ["list", ["tuple", "D2", ["dict"], 7, True]]]},
+        {
+            **document,
+            "evaluators": ["tuple", ["list"], ["list", ["tuple", "D2", ["dict"], 7, True]]],
+        },
         {name: value for name, value in document.items() if name != "only"},
     ]
     for one in forged:
@@ -253,7 +256,7 @@ def test_a_run_that_was_torn_at_its_first_step_is_restored():
     def tear(*_):
         raise Torn
 
-    monitor.lanes.sample = tear
+    monitor.evaluators.sample = tear
     with pytest.raises(Torn):
         monitor.step(*SAMPLES[0])
     report = spec.restore(monitor.snapshot()).finish()

@@ -1,4 +1,4 @@
-"""The classes of lanes, generated once for all runs of a specification."""
+"""The classes of evaluators, generated once for all runs of a specification."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
 from rvmon.codegen.python_nodes import keeps_stretches
-from rvmon.codegen.python_unit import lane_class
-from rvmon.monitor.attempts.lane import Lane
+from rvmon.codegen.python_unit import evaluator_class
+from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import Graph, graph_of
 from rvmon.plan.plan import Uses
-from rvmon.plan.planning import plan_of_lane, uses_of
+from rvmon.plan.planning import plan_of_evaluator, uses_of
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 
-Made = TypeVar("Made", bound=Lane)
+Made = TypeVar("Made", bound=Evaluator)
 
 
-def class_of_all(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> type[Lane]:
-    """The class of the lane that requirements without `for each` share.
+def class_of_all(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> type[Evaluator]:
+    """The class of the evaluator that requirements without `for each` share.
 
     It sees when each signal that some requirement reads had its first value, and what is stale.
 
@@ -28,31 +28,31 @@ def class_of_all(spec: CheckedSpec, requirements: Sequence[CompiledRequirement])
         requirements: all that are judged.
     """
     key = tuple(one.rank for one in requirements)
-    cached = requirements[0].lanes if requirements else {}
+    cached = requirements[0].evaluators if requirements else {}
     if key not in cached:
         shared = [one for one in requirements if one.requirement.for_each is None]
         graph = graph_of(node for one in shared for node in one.shared_graph.nodes)
         names = {name for one in requirements for name in one.reads}
         names |= {name for name, signal in spec.signals.items() if signal.stale_after is not None}
         uses = _uses_of([graph], shared)
-        cached[key] = generated(spec, graph, {*names, *uses}, uses, Lane)
-    made: type[Lane] = cached[key]
+        cached[key] = generated(spec, graph, {*names, *uses}, uses, Evaluator)
+    made: type[Evaluator] = cached[key]
     return made
 
 
-def class_of(compiled: CompiledRequirement, *, starts: bool) -> type[Lane]:
-    """The class of the lanes of a requirement's instances, or of its captured attempts.
+def class_of(compiled: CompiledRequirement, *, starts: bool) -> type[Evaluator]:
+    """The class of the evaluators of a requirement's instances, or of its captured attempts.
 
     Args:
         compiled: the requirement, or what judges its attempts in doubt.
         starts: whether attempts start in it.
     """
     key = "instances" if starts else "attempts"
-    if key not in compiled.lanes:
+    if key not in compiled.evaluators:
         graph = compiled.shared_graph if starts else compiled.consequent_graph
         uses = _uses_of([graph], [compiled] if starts else [])
-        compiled.lanes[key] = generated(compiled.spec, graph, uses, uses, Lane)
-    made: type[Lane] = compiled.lanes[key]
+        compiled.evaluators[key] = generated(compiled.spec, graph, uses, uses, Evaluator)
+    made: type[Evaluator] = compiled.evaluators[key]
     return made
 
 
@@ -63,7 +63,7 @@ def generated(
     uses: Mapping[str, Uses],
     base: type[Made],
 ) -> type[Made]:
-    """A class of lanes.
+    """A class of evaluators.
 
     Args:
         spec: declares the names.
@@ -72,8 +72,8 @@ def generated(
         uses: what is asked of them.
         base: what it derives from.
     """
-    plan = plan_of_lane(spec, graph, names, uses)
-    made = lane_class(plan, base)
+    plan = plan_of_evaluator(spec, graph, names, uses)
+    made = evaluator_class(plan, base)
     lasting = [(n, state) for n, state in enumerate(graph.nodes) if keeps_stretches(state)]
     made.graph = graph
     made.SPARSE = sum(1 << place for place, _ in lasting)

@@ -1,4 +1,4 @@
-"""Lanes with the rules that requirements have in them."""
+"""Evaluators with the rules that requirements have in them."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge
 from rvmon.monitor.attempts.captured import CapturedAttempt
+from rvmon.monitor.attempts.evaluator import Evaluator
+from rvmon.monitor.attempts.evaluator_classes import class_of
 from rvmon.monitor.attempts.instance import Instance
 from rvmon.monitor.attempts.judges import CapturingRule, judge_of
-from rvmon.monitor.attempts.lane import Lane
-from rvmon.monitor.attempts.lane_classes import class_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.outages import Outages
@@ -20,8 +20,8 @@ from rvmon.trace.sample import Scalar
 Captured = Mapping[str, Scalar]
 
 
-class LaneMaker:
-    """Makes lanes, and gives them rules.
+class EvaluatorMaker:
+    """Makes evaluators, and gives them rules.
 
     Args:
         spec: gives the names and the time model.
@@ -45,14 +45,16 @@ class LaneMaker:
         self.ledger = ledger
         self._by_id = {compiled.requirement.id: compiled for compiled in requirements}
 
-    def _lane(self, compiled: CompiledRequirement, captured: Captured, *, starts: bool) -> Lane:
+    def _evaluator(
+        self, compiled: CompiledRequirement, captured: Captured, *, starts: bool
+    ) -> Evaluator:
         made = class_of(compiled, starts=starts)
         return made(Outages(self.spec, self.sources), captured, compiled)
 
     def _judges(
         self,
         compiled: CompiledRequirement,
-        lane: Lane,
+        evaluator: Evaluator,
         captured: Captured,
         instance: Instance | None,
         *,
@@ -62,7 +64,7 @@ class LaneMaker:
         judge = judge_of(
             compiled,
             self.engine,
-            lane,
+            evaluator,
             self.ledger,
             captured,
             rank=0 if instance is None else instance.rank,
@@ -72,20 +74,22 @@ class LaneMaker:
         )
         return [judge]
 
-    def _seat(
+    def _drive(
         self,
-        lane: Lane,
+        evaluator: Evaluator,
         requirements: Sequence[CompiledRequirement],
         captured: Captured,
         instance: Instance | None,
     ) -> None:
-        """Give requirements triggers in a lane, and judges, unless attempts bring theirs."""
+        """Give requirements triggers in an evaluator, and judges, unless attempts bring theirs."""
         groups = [
-            self._rules(lane, kind, captured, instance)
+            self._rules(evaluator, kind, captured, instance)
             for compiled in requirements
             for kind in self._kinds(compiled, instance)
         ]
-        lane.seat([rule for group in groups for rule in group], [group[0] for group in groups])
+        evaluator.drive(
+            [rule for group in groups for rule in group], [group[0] for group in groups]
+        )
 
     def _kinds(
         self, compiled: CompiledRequirement, instance: Instance | None
@@ -98,48 +102,50 @@ class LaneMaker:
             kinds = [compiled.doubted]
         return [kind for kind in kinds if kind is not None]
 
-    def _seat_attempt(
+    def _drive_attempt(
         self,
-        lane: Lane,
+        evaluator: Evaluator,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
     ) -> None:
-        """Give a captured attempt its judge; it was triggered in another lane."""
-        lane.seat(self._judges(compiled, lane, captured, instance, started_elsewhere=True), ())
+        """Give a captured attempt its judge; it was triggered in another evaluator."""
+        evaluator.drive(
+            self._judges(compiled, evaluator, captured, instance, started_elsewhere=True), ()
+        )
 
     def _rules(
         self,
-        lane: Lane,
+        evaluator: Evaluator,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
     ) -> Sequence[Rule]:
         """What starts attempts, first, and what judges."""
         if not compiled.requirement.captures:
-            return self._judges(compiled, lane, captured, instance)
+            return self._judges(compiled, evaluator, captured, instance)
 
         def start(t: int, triggered: int) -> None:
-            self._start_captured(lane, compiled, captured, instance, t, triggered)
+            self._start_captured(evaluator, compiled, captured, instance, t, triggered)
 
         hidden = compiled is not self._by_id[compiled.requirement.id]
-        return [CapturingRule(compiled, lane, start, hidden=hidden)]
+        return [CapturingRule(compiled, evaluator, start, hidden=hidden)]
 
     def _start_captured(
         self,
-        parent: Lane,
+        parent: Evaluator,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
         t: int,
         triggered: int,
     ) -> None:
-        """Start an attempt in a lane of its own, at the position `t` of the lane that it is of."""
+        """Start an attempt in an evaluator of its own, at the position `t` of its parent."""
         raise NotImplementedError
 
     def _compared(
         self,
-        parent: Lane,
+        parent: Evaluator,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,

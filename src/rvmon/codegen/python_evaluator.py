@@ -11,7 +11,7 @@ from rvmon.codegen.python_visit import indented
 from rvmon.plan.plan import Plan
 
 
-def lane_source(plan: Plan) -> str:
+def evaluator_source(plan: Plan) -> str:
     """The source of a class `Generated(Base)`, of a `Base` that derives from `Nodes`.
 
     Args:

@@ -25,8 +25,8 @@ from tests.tools.build import (
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
-from rvmon.monitor.attempts.lane import Lane
-from rvmon.monitor.attempts.lane_classes import generated
+from rvmon.monitor.attempts.evaluator import Evaluator
+from rvmon.monitor.attempts.evaluator_classes import generated
 from rvmon.plan.graph import graph_of
 from rvmon.plan.outages import Outages
 from rvmon.plan.planning import uses_of
@@ -34,27 +34,27 @@ from rvmon.runtime.past import Since
 from rvmon.runtime.values import NEVER
 
 
-def lane_of(formula, stale=None, names=None):
-    """A lane in which only the formula is evaluated, and the formula's place."""
+def evaluator_of(formula, stale=None, names=None):
+    """An evaluator in which only the formula is evaluated, and the formula's place."""
     found = requirement(eventually(q), upon=formula)
     state = lower(found, Factory()).trigger
     spec, graph = spec_of(found, stale=stale), graph_of([state])
     uses = uses_of([graph], ())
-    lane = generated(spec, graph, uses, uses, Lane)(Outages(spec, names), {})
-    return lane, graph.index[state]
+    evaluator = generated(spec, graph, uses, uses, Evaluator)(Outages(spec, names), {})
+    return evaluator, graph.index[state]
 
 
 def word(formula, end, stale=None, names=None, **rows):
-    """The truth at each tick, evaluated only where the lane says that something changes."""
-    lane, place = lane_of(formula, stale=stale, names=names)
+    """The truth at each tick, evaluated only where the evaluator says that something changes."""
+    evaluator, place = evaluator_of(formula, stale=stale, names=names)
     samples = {sample.t: sample.values for sample in timeline(**rows)}
     letters = []
     for t in range(end):
         if t in samples:
-            lane.sample(t, samples[t])
-        elif t == lane.next_position():
-            lane.visit(t)
-        letters.append("f?t"[lane.v[place]])
+            evaluator.sample(t, samples[t])
+        elif t == evaluator.next_position():
+            evaluator.visit(t)
+        letters.append("f?t"[evaluator.v[place]])
     return "".join(letters)
 
 
@@ -88,16 +88,16 @@ def test_staleness_is_a_change_by_time_alone():
 def test_what_has_no_source_is_unknown_throughout():
     """An event that cannot arrive is not false but unknown, and nothing waits for it."""
     assert word(e, 3, names=frozenset("p"), p="1") == "???"
-    lane, _ = lane_of(e, names=frozenset("p"))
-    lane.visit(0)
-    assert lane.next_position() == NEVER
+    evaluator, _ = evaluator_of(e, names=frozenset("p"))
+    evaluator.visit(0)
+    assert evaluator.next_position() == NEVER
 
 
 def test_nothing_is_due_when_nothing_changes():
     """Held values and settled windows leave nothing to wake up for."""
-    lane, _ = lane_of(two(p, "and", once(q, 0, 5)))
-    lane.sample(0, {"p": True, "q": False})
-    assert lane.next_position() == NEVER
+    evaluator, _ = evaluator_of(two(p, "and", once(q, 0, 5)))
+    evaluator.sample(0, {"p": True, "q": False})
+    assert evaluator.next_position() == NEVER
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 1_000), (700, 1_000), (999, 1_000), (5, None)])

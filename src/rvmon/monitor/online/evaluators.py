@@ -1,4 +1,4 @@
-"""The lanes of one run: made, fed, and added to as instances and captures need them."""
+"""The evaluators of one run: made, fed, and added to as instances and captures need them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.captured import captured_value
+from rvmon.monitor.attempts.evaluator import Evaluator
+from rvmon.monitor.attempts.evaluator_classes import class_of_all
 from rvmon.monitor.attempts.instance import Instance, Shape, seen_by, values_in
 from rvmon.monitor.attempts.instances import Instances
 from rvmon.monitor.attempts.keyed import Keyed
-from rvmon.monitor.attempts.lane import Lane
-from rvmon.monitor.attempts.lane_classes import class_of_all
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
-from rvmon.monitor.online.lane_maker import Captured, LaneMaker
+from rvmon.monitor.online.evaluator_maker import Captured, EvaluatorMaker
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.outages import Outages
 from rvmon.runtime.rule import Rule
@@ -22,8 +22,8 @@ from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar, Value
 
 
-class Lanes(LaneMaker):
-    """All lanes of one run.
+class Evaluators(EvaluatorMaker):
+    """All evaluators of one run.
 
     Args:
         spec: gives the names and the time model.
@@ -33,8 +33,8 @@ class Lanes(LaneMaker):
         ledger: takes the records.
 
     Attributes:
-        main: the lane of all requirements without `for each`; its inputs are those of the run.
-        instances: the lanes of those with it, an instance each.
+        main: the evaluator of all requirements without `for each`; its inputs are those of the run.
+        instances: the evaluators of those with it, an instance each.
         forgets: whether instances are let go of that are over.
     """
 
@@ -56,8 +56,8 @@ class Lanes(LaneMaker):
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
         self._shared = [one for one in requirements if one.requirement.for_each is None]
         self.main = class_of_all(spec, requirements)(Outages(spec, sources), {})
-        self._seat(self.main, self._shared, {}, None)
-        self._captured: list[tuple[Lane, Instance | None]] = []
+        self._drive(self.main, self._shared, {}, None)
+        self._captured: list[tuple[Evaluator, Instance | None]] = []
         for compiled in requirements:
             if compiled.requirement.for_each is not None:
                 self.instances.keyed[compiled.requirement.id] = self._make_keyed(compiled)
@@ -68,16 +68,16 @@ class Lanes(LaneMaker):
         return any(one is instance for _, one in self._captured)
 
     @property
-    def _entries(self) -> Iterator[tuple[Lane, Instance | None]]:
-        """The lanes there are now, with their instances; those of captured attempts last."""
+    def _entries(self) -> Iterator[tuple[Evaluator, Instance | None]]:
+        """The evaluators there are now, with their instances; those of captured attempts last."""
         yield self.main, None
         yield from self.instances.entries()
         yield from self._captured
 
     @property
-    def all(self) -> Sequence[Lane]:
-        """The lanes there are now."""
-        return [lane for lane, _ in self._entries]
+    def all(self) -> Sequence[Evaluator]:
+        """The evaluators there are now."""
+        return [evaluator for evaluator, _ in self._entries]
 
     @property
     def arrivals(self) -> Arrivals:
@@ -86,25 +86,25 @@ class Lanes(LaneMaker):
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
-        """The judges of all lanes."""
-        return [judge for lane in self.all for judge in lane.judges]
+        """The judges of all evaluators."""
+        return [judge for evaluator in self.all for judge in evaluator.judges]
 
     def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
         """What has open attempts: of which requirement, and the attempt of an episode that runs."""
         return [
             (judge.compiled.requirement.id, judge, judge.running_attempt)
-            for lane in self.all
-            for judge in lane.judges
+            for evaluator in self.all
+            for judge in evaluator.judges
         ]
 
     def take_along(self, t: int) -> None:
         """Take clocks along to `t` that move while attempts loop, as when somebody looks."""
-        for judge in [judge for lane in self.all for judge in lane.judges]:
+        for judge in [judge for evaluator in self.all for judge in evaluator.judges]:
             if judge.slides:
                 judge.pass_to(t)
 
     def through(self, limit: int) -> None:
-        """Let time pass up to `limit` in all lanes, also those that are made on the way."""
+        """Let time pass up to `limit` in all evaluators, also those that are made on the way."""
         self.main.through(limit)
         self.instances.through(limit)
         index = 0
@@ -113,14 +113,14 @@ class Lanes(LaneMaker):
             index += 1
 
     def reach(self, t: int) -> None:
-        """Let time come to `t`, of which no position is known, in all lanes."""
+        """Let time come to `t`, of which no position is known, in all evaluators."""
         self.main.reach(t)
         self.instances.reach(t)
-        for lane, _ in self._captured:
-            lane.reach(t)
+        for evaluator, _ in self._captured:
+            evaluator.reach(t)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
-        """Give a sample to the lanes that it concerns; time has come to `t − 1` before."""
+        """Give a sample to the evaluators that it concerns; time has come to `t − 1` before."""
         for keyed in self.instances.keyed.values():
             self._open_instances(keyed, t, values)
         if self._history is not None:
@@ -128,8 +128,8 @@ class Lanes(LaneMaker):
         captured = tuple(self._captured)
         self.main.sample(t, values)
         self.instances.sample(t, values)
-        for lane, instance in captured:
-            lane.sample(t, seen_by(instance, values))
+        for evaluator, instance in captured:
+            evaluator.sample(t, seen_by(instance, values))
         if self._captured:
             self._captured = [entry for entry in self._captured if not entry[0].is_idle]
 
@@ -142,15 +142,15 @@ class Lanes(LaneMaker):
         """
         for judge in self.judges:
             judge.pass_to(end)
-        for lane, instance in tuple(self._entries):
-            for rule in lane.starters if lane.opens_at < NEVER else ():
-                if rule.trigger < 0 and lane.origin is not None:
-                    position = lane.stand_at_last(end)
+        for evaluator, instance in tuple(self._entries):
+            for rule in evaluator.starters if evaluator.opens_at < NEVER else ():
+                if rule.trigger < 0 and evaluator.origin is not None:
+                    position = evaluator.stand_at_last(end)
                     # A value that came after the last tick of a clock has not occurred at any.
                     if instance is None or instance.first <= position:
                         rule.begin(position, end)
-        for lane in self.all:
-            for judge in lane.judges:
+        for evaluator in self.all:
+            for judge in evaluator.judges:
                 judge.settle_flags()
         for judge in self.judges:
             judge.reach(reached)
@@ -160,19 +160,19 @@ class Lanes(LaneMaker):
     # Snapshots.
 
     def shape(self) -> Shape:
-        """What instances and captured attempts there are: what `rebuild` makes lanes for."""
+        """What instances and captured attempts there are: what `rebuild` makes evaluators for."""
         instances = [
             (name, [(one.rank, one.value, one.first) for one in keyed.instances()])
             for name, keyed in self.instances.keyed.items()
         ]
         templates = {keyed.template for keyed in self.instances.keyed.values()}
-        lanes = [
-            (*self._kind(lane.made_for), dict(lane.captured), _value(instance), starts)
-            for lane, instance in self._entries
-            for starts in (bool(lane.starters),)
-            if lane.made_for is not None and lane not in templates
+        evaluators = [
+            (*self._kind(evaluator.made_for), dict(evaluator.captured), _value(instance), starts)
+            for evaluator, instance in self._entries
+            for starts in (bool(evaluator.starters),)
+            if evaluator.made_for is not None and evaluator not in templates
         ]
-        return instances, lanes
+        return instances, evaluators
 
     def _kind(self, compiled: CompiledRequirement) -> tuple[str, str]:
         """The requirement, and which of its judges it is."""
@@ -181,122 +181,125 @@ class Lanes(LaneMaker):
         return name, next(kind for kind, one in found.items() if one is compiled)
 
     def rebuild(self, shape: Shape) -> None:
-        """Make the lanes that another run had; what they hold is to be set afterwards.
+        """Make the evaluators that another run had; what they hold is to be set afterwards.
 
         Args:
             shape: of the other run.
         """
-        instances, lanes = shape
+        instances, evaluators = shape
         for name, found in instances:
             keyed = self.instances.keyed[name]
             source = keyed.each.value
             keyed.take(Instance(rank, source, value, first) for rank, value, first in found)
-        for name, kind, captured, value, starts in lanes:
+        for name, kind, captured, value, starts in evaluators:
             compiled = self._by_id[name].judges[kind]
             own = self.instances.keyed.get(name)
             instance = None if own is None else own.doubted if value is None else own.known[value]
-            lane = self._lane(compiled, captured, starts=starts)
+            evaluator = self._evaluator(compiled, captured, starts=starts)
             if starts and own is not None:
-                self._seat(lane, [compiled], captured, instance)
-                self.instances.opened(own, value, lane)
+                self._drive(evaluator, [compiled], captured, instance)
+                self.instances.opened(own, value, evaluator)
             else:
-                self._seat_attempt(lane, compiled, captured, instance)
+                self._drive_attempt(evaluator, compiled, captured, instance)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
                 parent = next(parents, self.main)
                 if compared := self._compared(parent, compiled, captured, instance):
-                    compared.follow(lane)
-                self._captured.append((lane, instance))
+                    compared.follow(evaluator)
+                self._captured.append((evaluator, instance))
 
-    # Making lanes.
+    # Making evaluators.
 
     def undetermined(self) -> list[str]:
         """The requirements whose trigger was never true or false."""
         asked = [(self.main, one) for one in self._shared]
         # What comes after the last tick of a clock has occurred at no position.
         asked += [
-            (lane, lane.made_for)
-            for lane, instance in self.instances.entries()
-            if lane.made_for and (instance.value is None or instance.first <= lane.position)
+            (evaluator, evaluator.made_for)
+            for evaluator, instance in self.instances.entries()
+            if evaluator.made_for
+            and (instance.value is None or instance.first <= evaluator.position)
         ]
-        determined = {one.requirement.id for lane, one in asked if lane.is_determined(one)}
+        determined = {
+            one.requirement.id for evaluator, one in asked if evaluator.is_determined(one)
+        }
         return [name for name in self._by_id if name not in determined]
 
     def _start_captured(
         self,
-        parent: Lane,
+        parent: Evaluator,
         compiled: CompiledRequirement,
         captured: Captured,
         instance: Instance | None,
         t: int,
         triggered: int,
     ) -> None:
-        """See `LaneMaker`; its captured values are constants in it."""
+        """See `EvaluatorMaker`; its captured values are constants in it."""
         own = dict(captured)
         for capture in compiled.requirement.captures:
             own[capture.name] = captured_value(capture.value, parent, own)
         compared = self._compared(parent, compiled, own, instance)
-        lane = self._lane(compiled, own, starts=False)
-        self._seat_attempt(lane, compiled, own, instance)
+        evaluator = self._evaluator(compiled, own, starts=False)
+        self._drive_attempt(evaluator, compiled, own, instance)
         replays = compiled.looks_back_beyond(parent.graph)
         if not replays:
-            lane.clerk = parent.clerk.copy()
-            parent.fork(lane)
+            evaluator.clerk = parent.clerk.copy()
+            parent.fork(evaluator)
         if compared is not None and compared.may_begin_otherwise:
-            lane.cut_at(t)
+            evaluator.cut_at(t)
         if replays:
-            self._replay(lane, instance)
-            lane.through(t)
+            self._replay(evaluator, instance)
+            evaluator.through(t)
         if compared is not None:
-            compared.follow(lane)
-        lane.begin(lane.judges[0], t, triggered)
-        self._captured.append((lane, instance))
+            compared.follow(evaluator)
+        evaluator.begin(evaluator.judges[0], t, triggered)
+        self._captured.append((evaluator, instance))
         if compared is not None:
             compared.keeps(t)
 
-    def _replay(self, lane: Lane, instance: Instance | None) -> None:
-        """Let a new lane see the samples so far."""
+    def _replay(self, evaluator: Evaluator, instance: Instance | None) -> None:
+        """Let a new evaluator see the samples so far."""
         for t, values in self._history or ():
-            lane.through(t - 1)
-            lane.sample(t, seen_by(instance, values))
+            evaluator.through(t - 1)
+            evaluator.sample(t, seen_by(instance, values))
 
     def _open_instances(self, keyed: Keyed, t: int, values: Mapping[str, Value]) -> None:
-        """Make the lanes that a sample asks for."""
+        """Make the evaluators that a sample asks for."""
         for value in keyed.values_to_open(values):
             instance = keyed.instance(value, t)
-            self.instances.opened(keyed, value, self._instance_lane(keyed, instance, t))
+            self.instances.opened(keyed, value, self._instance_evaluator(keyed, instance, t))
         if keyed.template.opens_at == NEVER and None in values_in(keyed.each.value, values):
             keyed.template.open(t)
 
     def _make_keyed(self, compiled: CompiledRequirement) -> Keyed:
-        """A lane for the occurrences whose value is not known; nothing starts in it before one."""
+        """An evaluator of occurrences whose value is not known; nothing starts in it before one."""
         each = compiled.requirement.for_each
         if each is None:
             raise AssertionError("it has no instances")
         captured = {each.name: None}
         instance = Instance(0, each.value, None, 0)
-        lane = self._lane(compiled, captured, starts=True)
-        self._seat(lane, [compiled], captured, instance)
+        evaluator = self._evaluator(compiled, captured, starts=True)
+        self._drive(evaluator, [compiled], captured, instance)
         # Without a source, whatever occurs is unknown, from the first position on.
-        if each.value.event not in lane.absent:
-            lane.opens_at = NEVER
-        return Keyed(compiled, each, lane, instance, is_timed=self.gap is not None)
+        if each.value.event not in evaluator.absent:
+            evaluator.opens_at = NEVER
+        return Keyed(compiled, each, evaluator, instance, is_timed=self.gap is not None)
 
-    def _instance_lane(self, keyed: Keyed, instance: Instance, t: int) -> Lane:
-        """A lane for an instance, as of just before the sample at `t`."""
+    def _instance_evaluator(self, keyed: Keyed, instance: Instance, t: int) -> Evaluator:
+        """An evaluator for an instance, as of just before the sample at `t`."""
         compiled, reach = keyed.compiled, keyed.reach
         captured = {keyed.each.name: instance.value}
-        lane = self._lane(compiled, captured, starts=True)
-        self._seat(lane, [compiled], captured, instance)
+        evaluator = self._evaluator(compiled, captured, starts=True)
+        self._drive(evaluator, [compiled], captured, instance)
         if reach.is_fresh:
-            lane.clerk = keyed.template.clerk.copy()
-            keyed.template.twin(lane, reach.varying, reach.own)
+            evaluator.clerk = keyed.template.clerk.copy()
+            keyed.template.twin(evaluator, reach.varying, reach.own)
         # No attempt starts before the value has occurred.
-        lane.opens_at = NEVER
+        evaluator.opens_at = NEVER
         if not reach.is_fresh:
-            self._replay(lane, instance)
-            lane.through(t - 1)
-        lane.open(t)
-        return lane
+            self._replay(evaluator, instance)
+            evaluator.through(t - 1)
+        evaluator.open(t)
+        return evaluator
 
     def _needs_history(self, compiled: CompiledRequirement) -> bool:
         """Whether an instance or a captured attempt has to look at what was before it."""

@@ -1,7 +1,7 @@
 """State formulas with the judges that read them, driven through time.
 
-All requirements without captured values share one lane. Each instance of a `for each`, and each
-attempt of a requirement with `let`, has a lane of its own, because its propositions are its own.
+All requirements without captured values share one evaluator. Each instance of a `for each`, and
+each attempt of a requirement with `let`, has one of its own, because its propositions are its own.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from rvmon.trace.time import TIME_LIMIT
 
 
 class WatchedAttempt(Protocol):
-    """A captured attempt as the lane sees it in which it was triggered."""
+    """A captured attempt as the evaluator sees it in which it was triggered."""
 
     def keeps(self, t: int) -> bool:
         """Look at the position `t`: whether to look at the next as well."""
 
 
-class Lane(Nodes, Schedule):
+class Evaluator(Nodes, Schedule):
     """Generated state formulas and the requirements that read them.
 
     It stands as `rvmon.plan.standing.Standing` for its judges.
@@ -44,8 +44,8 @@ class Lane(Nodes, Schedule):
 
     Attributes:
         judges: of its rules, those that have attempts, in the order of the file.
-        starters: of its rules, those of which attempts start in it; where attempts have lanes of
-            their own, what makes them.
+        starters: of its rules, those of which attempts start in it; where attempts have evaluators
+            of their own, what makes them.
         opens_at: nothing starts in it before this instant; `NEVER`: nothing does.
         waiting: samples whose position has not come yet.
         watched: the captured attempts that were triggered in this one.
@@ -62,7 +62,7 @@ class Lane(Nodes, Schedule):
 
     graph: Graph
     """The formulas."""
-    TAKE: Mapping[str, Callable[[Lane, int, Reported], int]]
+    TAKE: Mapping[str, Callable[[Evaluator, int, Reported], int]]
     """By name, what takes a value; returns the nodes that may change with it."""
     SPARSE: int
     """The nodes that have to see every sample where samples are far apart."""
@@ -86,9 +86,9 @@ class Lane(Nodes, Schedule):
         self.cut = NEVER
         self.begun: int | None = None
         self.waiting: list[tuple[int, Mapping[str, Reported]]] = []
-        self.seat((), ())
+        self.drive((), ())
 
-    def seat(self, rules: Sequence[Rule], starters: Sequence[Rule]) -> None:
+    def drive(self, rules: Sequence[Rule], starters: Sequence[Rule]) -> None:
         """Have rules driven.
 
         Args:
@@ -152,17 +152,17 @@ class Lane(Nodes, Schedule):
         """The last two updates of a signal."""
         found = self.h[self.SIGNALS.index(signal)]
         if found is None:
-            raise AssertionError("nobody asked for it when the lane was generated")
+            raise AssertionError("nobody asked for it when the evaluator was generated")
         return found
 
     def payloads_of(self, event: str) -> Sequence[Payload | None]:
         """What occurs of an event at the position; `None` is unknown."""
         return (None,) if event in self.absent else self.p[self.EVENTS.index(event)]
 
-    # Making further lanes.
+    # Making further evaluators.
 
-    def twin(self, made: Lane, varying: Iterable[int], own: Iterable[int]) -> None:
-        """Have a lane of the same class, with other captured values, go on as this one will.
+    def twin(self, made: Evaluator, varying: Iterable[int], own: Iterable[int]) -> None:
+        """Have an evaluator of the same class, with other captured values, go on as this one will.
 
         Args:
             made: has seen nothing.
@@ -177,8 +177,8 @@ class Lane(Nodes, Schedule):
             for place in own:
                 made.since[place] = self.position
 
-    def fork(self, made: Lane) -> None:
-        """Have a lane of other formulas begin at this position, of which it sees what occurs.
+    def fork(self, made: Evaluator) -> None:
+        """Have an evaluator of other formulas begin at this position, of which it sees what occurs.
 
         It must not remember anything but by nodes that this one has, too.
         """
@@ -192,11 +192,11 @@ class Lane(Nodes, Schedule):
         dirty = made.KEPT & (made.momentary | ~_bits(place for place, _ in shared))
         _, _, made.fading = made.evaluate(self.position, dirty)
 
-    def stands_like(self, other: Lane, varying: Container[int]) -> bool:
-        """Whether a lane of the same class, at this instant too, goes on as this one will.
+    def stands_like(self, other: Evaluator, varying: Container[int]) -> bool:
+        """Whether an evaluator of the same class, at this instant too, goes on as this one will.
 
         Args:
-            other: that lane.
+            other: that evaluator.
             varying: the nodes that depend on captured values.
         """
         pairs = zip(self.v, other.v, strict=True)
