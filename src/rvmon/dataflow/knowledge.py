@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Self, assert_never
 
-from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window
+from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, stamp
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.ranges import Range, Ranges, around, cut, drop, overlapping
@@ -42,7 +42,7 @@ class Knowledge:
         carried: per `since`, what it is just before that.
     """
 
-    def __init__(self, plan: Plan, gap: int | None) -> None:
+    def __init__(self, plan: NetworkPlan, gap: int | None) -> None:
         count = len(plan.nodes)
         self.plan = plan
         self.positions = Positions(gap)

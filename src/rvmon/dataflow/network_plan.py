@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.dataflow.nodes import Junction, Leaf, Node, Plan, Shift, Sweep, Window
+from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import (
     And,
     Constant,
@@ -23,7 +23,7 @@ from rvmon.formula.core import (
 )
 
 
-def plan_of(owed: Core, gap: int | None) -> Plan:
+def plan_of(owed: Core, gap: int | None) -> NetworkPlan:
     """The network of what an attempt owes.
 
     Args:
@@ -37,7 +37,7 @@ def plan_of(owed: Core, gap: int | None) -> Plan:
     inner = tuple((place, node) for place, node in enumerate(nodes) if not isinstance(node, Leaf))
     looks_back = any(isinstance(core, Since | Previous) for core in planning.places)
     settles = sum(_settles(node) for node in nodes) * planning.gap + 2 * planning.gap
-    return Plan(nodes, planning.places, leaves, inner, looks_back, settles)
+    return NetworkPlan(nodes, planning.places, leaves, inner, looks_back, settles)
 
 
 def _settles(node: Node) -> int:

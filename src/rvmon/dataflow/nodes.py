@@ -79,7 +79,7 @@ Node = Leaf | Junction | Window | Sweep | Shift
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class NetworkPlan:
     """A network before it has seen anything.
 
     Attributes:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from copy import copy
 
 from rvmon.dataflow.margin_nodes import Horizon, Operator, Rest, operator_of
-from rvmon.dataflow.nodes import Junction, Plan, Sweep, Window, operands_of
+from rvmon.dataflow.nodes import Junction, NetworkPlan, Sweep, Window, operands_of
 from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.positions import Positions
 from rvmon.dataflow.steps import Step, Steps
@@ -29,7 +29,7 @@ class Gauge:
     Memory: what is not settled; see `rvmon.dataflow.margin_nodes`.
     """
 
-    def __init__(self, plan: Plan, gap: int | None) -> None:
+    def __init__(self, plan: NetworkPlan, gap: int | None) -> None:
         self.plan = plan
         self.horizon = Horizon(Positions(gap))
         thin = _asked_alone(plan)
@@ -119,7 +119,7 @@ class Gauge:
         return found
 
 
-def _asked_alone(plan: Plan) -> set[int]:
+def _asked_alone(plan: NetworkPlan) -> set[int]:
     """The nodes whose value matters only at the positions that the formula is asked for at."""
     alone, elsewhere = {len(plan.nodes) - 1}, set[int]()
     for place in range(len(plan.nodes) - 1, -1, -1):

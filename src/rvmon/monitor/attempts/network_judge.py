@@ -11,7 +11,7 @@ from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.dataflow.at_end import held_at_end
 from rvmon.dataflow.network import FOREVER, Network
-from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import Pieces, stamp
 from rvmon.dataflow.ranges import Range, merged
 from rvmon.dataflow.sweep import Carried
@@ -75,7 +75,7 @@ class NetworkJudge(AttemptJudge):
         **kind: Any,
     ) -> None:
         super().__init__(compiled, None, flow, clerk, captured, **kind)
-        self.plan: Plan = compiled.network_plan
+        self.plan: NetworkPlan = compiled.network_plan
         self.worse: Network | None = None
         self.better: Network | None = None
         self._letters: tuple[list[bool], list[bool]] | None = None

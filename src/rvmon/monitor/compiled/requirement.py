@@ -17,7 +17,7 @@ from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.dataflow.network_plan import plan_of
-from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
@@ -199,7 +199,7 @@ class CompiledRequirement:
         return Progression(self._owed, self.alphabet, self.requirement.id)
 
     @cached_property
-    def network_plan(self) -> Plan:
+    def network_plan(self) -> NetworkPlan:
         """The nodes of its delay network."""
         return plan_of(self.obligation.owed, self.gap)
 

@@ -17,7 +17,7 @@ from enum import Enum
 from typing import Any
 
 from rvmon.dataflow.network import Network
-from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.positions import Positions
 from rvmon.errors import SnapshotError
 from rvmon.monitor.attempts.attempt_judge import Open
@@ -71,7 +71,7 @@ class Freezer:
         plans: the plans of networks by a name that they have in every process.
     """
 
-    def __init__(self, plans: Mapping[str, Plan]) -> None:
+    def __init__(self, plans: Mapping[str, NetworkPlan]) -> None:
         self._plans = {id(plan): name for name, plan in plans.items()}
         self._numbers: dict[int, int] = {}
         self._alive: list[object] = []
@@ -95,7 +95,7 @@ class Freezer:
             return [name, *(self.freeze(one) for one in value)]
         if isinstance(value, array):
             return ["array", value.typecode, *value.tolist()]
-        if isinstance(value, Plan):
+        if isinstance(value, NetworkPlan):
             return ["plan", self._plans[id(value)]]
         return self._object(value)
 
@@ -118,7 +118,7 @@ class Thawer:
         plans: as for `Freezer`.
     """
 
-    def __init__(self, plans: Mapping[str, Plan]) -> None:
+    def __init__(self, plans: Mapping[str, NetworkPlan]) -> None:
         self._plans = plans
         self._objects: list[object] = []
 

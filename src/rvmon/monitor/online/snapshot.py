@@ -23,7 +23,7 @@ from rvmon.monitor.online.options import Options
 from rvmon.verdict.verdict import LAW
 
 if TYPE_CHECKING:
-    from rvmon.dataflow.nodes import Plan
+    from rvmon.dataflow.nodes import NetworkPlan
     from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.monitor.compiled.specification import CompiledSpec
     from rvmon.spec.checked.specification import CheckedSpec
@@ -204,7 +204,7 @@ def _machine(compiled: CompiledRequirement, engine: str) -> str:
     return hashlib.sha256(said.encode()).hexdigest()
 
 
-def _plans(compiled: CompiledSpec) -> Mapping[str, Plan]:
+def _plans(compiled: CompiledSpec) -> Mapping[str, NetworkPlan]:
     """The plans of networks."""
     return {name: one.network_plan for name, one in _judged(compiled)}
 

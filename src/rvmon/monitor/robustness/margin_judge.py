@@ -7,7 +7,7 @@ from typing import Protocol
 
 from rvmon.dataflow.margin_nodes import Rest
 from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
-from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.robust import Gauge
 from rvmon.dataflow.steps import INFINITE, Step, add
@@ -63,7 +63,7 @@ class MarginJudge(AttemptJudge):
     def __init__(
         self,
         compiled: CompiledRequirement,
-        plan: Plan,
+        plan: NetworkPlan,
         flow: Evaluator,
         clerk: Gauger,
         captured: Mapping[str, Scalar],

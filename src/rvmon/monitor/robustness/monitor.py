@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary
 
 from rvmon.automaton.machine import Token
 from rvmon.dataflow.network_plan import plan_of
-from rvmon.dataflow.nodes import Plan
+from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.steps import INFINITE
 from rvmon.errors import UnknownNameError
 from rvmon.formula.expand import expanded
@@ -169,7 +169,7 @@ class _MeasuringEvaluators(Evaluators):
     ) -> None:
         self._gauged = gauged
         self._streams = streams
-        self._plans: dict[CompiledRequirement, Plan] = {}
+        self._plans: dict[CompiledRequirement, NetworkPlan] = {}
         super().__init__(spec, requirements, "auto", sources, gauged)
 
     def _judges(
