@@ -17,7 +17,7 @@ from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, decimals, instants, truth_values, whole_numbers
 from rvmon.readers.held import held_values
 from rvmon.readers.line_chunks import BLOCK, whole_lines
-from rvmon.readers.plain import Seam, expect_plain_columns
+from rvmon.readers.plain import Seam, expect_plain_columns, is_short_of_memory
 from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:
@@ -68,20 +68,11 @@ def csv_blocks(
 def _arrow_reader(path: str | Path) -> Callable[..., Block | None] | None:
     """What reads large files on all cores, if it is installed."""
     with suppress(OSError, ImportError):
-        if os.path.getsize(path) >= LARGE and not _is_short_of_memory():
+        if os.path.getsize(path) >= LARGE and not is_short_of_memory():
             from rvmon.readers.csv_arrow import arrow_block
 
             return arrow_block
     return None
-
-
-def _is_short_of_memory() -> bool:
-    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses."""
-    try:
-        import resource
-    except ImportError:
-        return False
-    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
 
 
 def _plain_layout(header: bytes, schema: Schema) -> Layout:

@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.columns import values_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
-from rvmon.readers.plain import Seam, expect_plain_columns
+from rvmon.readers.plain import Seam, expect_plain_columns, is_short_of_memory
 from rvmon.readers.tables import arrow_cells
 from rvmon.readers.values import shorten
 from rvmon.trace.sample import Value
@@ -65,7 +65,8 @@ def _batches(path: str | Path, layout: Layout) -> Iterator[list[Any]]:
 
     places = [layout.time, *(column.index for column in layout.columns)]
     names = [layout.header[place] for place in places]
-    batches = file.iter_batches(ROWS, columns=names)
+    threads = not is_short_of_memory()
+    batches = file.iter_batches(ROWS, columns=names, use_threads=threads)
     while True:
         try:
             batch = next(batches)

@@ -50,3 +50,15 @@ class Seam:
         self._last = int(times[-1])
         self.held |= {name: block.columns[name][-1] for name in self._signals}
         return block
+
+
+def is_short_of_memory() -> bool:
+    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses.
+
+    A thread of it that gets none may end the process.
+    """
+    try:
+        import resource
+    except ImportError:
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
