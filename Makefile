@@ -16,7 +16,7 @@ demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; result
 test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the seconds of each folder
 	@$(TESTED)
 
-quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, 1 minute on 2 cores
+quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, half a minute on 2 cores
 	@$(TESTED) -m "not (browser or campaign or compiler or law or process or slow)" tests
 
 check: $(VENV)/.dev  ## lint, types, layers

@@ -148,6 +148,7 @@ def opened(path, flags, *more, real=os.open, **where):
     return full() if flags & os.O_CREAT else real(path, flags, *more, **where)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("call", "fails"), [("open", opened), ("fsync", full), ("replace", full)])
 def test_a_full_disk_costs_only_what_would_be_kept(folder, tmp_path, monkeypatch, call, fails):
     """A spec judges as ever, at whichever step the disk is full; nothing is left behind."""

@@ -51,6 +51,7 @@ def test_postures_follow_the_witness():
     assert 0 in postures(bad).values()
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_tests():
     """Tests follow from the seed alone, and differ between seeds."""
     assert model_based(4, seed=5) == model_based(4, seed=5)

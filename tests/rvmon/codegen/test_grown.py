@@ -44,6 +44,7 @@ def run(spec, engine, samples, at=None):
     return told, monitor.finish(20.0)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("formula", FORMULAS)
 @pytest.mark.parametrize("at", [None, 3, 6, 12])
 def test_birth_changes_nothing_else(formula, at, monkeypatch):
@@ -147,6 +148,7 @@ MANY = "".join(
 )
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("requirements", [MANY, MANY[: MANY.index("requirement R4")]])
 def test_many_requirements_wait_for_a_signal_that_is_born_late(requirements):
     """Some of many are followed before all signals are born: only what is the same by then is."""

@@ -133,6 +133,7 @@ def count_steps(monkeypatch, case):
     return report, count
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("seed", range(25))
 def test_the_length_of_a_tick_is_of_no_account(seed, monkeypatch):
     """A million times longer: the same attempts, at the same instants, in as many steps."""

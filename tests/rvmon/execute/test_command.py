@@ -32,6 +32,7 @@ def test_a_command_says_how_it_ended():
     assert (done.returncode, done.stdout, done.stderr) == (7, "said\n", "more\n")
 
 
+@pytest.mark.slow
 def test_a_command_that_takes_too_long_is_ended(tmp_path, all_have_ended):
     """With all that it began."""
     told = tmp_path / "told"

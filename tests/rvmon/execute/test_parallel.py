@@ -71,6 +71,7 @@ def test_results_come_in_the_order_of_the_tasks(jobs, size):
     assert list(execute(range(size), doing(str), jobs=jobs)) == [*map(str, range(size))]
 
 
+@pytest.mark.slow
 @JOBS
 def test_slow_and_quick_tasks_keep_their_order(jobs):
     """Where many quick ones are followed by a slow one, what it was given goes to others."""

@@ -15,6 +15,7 @@ from rvmon.timed.search.verify import verify
 MODELS = Path(__file__).parents[3] / "examples" / "models"
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("seed", range(60))
 def test_random_networks_come_back(seed):
     """Automata, variables and channels are the same, and so are the queries UPPAAL knows."""

@@ -166,6 +166,7 @@ def test_wide_floats_are_refused(engine):
     assert "`x`: expected a number" in told(rvmon.loads(BOUND), table, "t", engine)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [3, 3000])
 def test_infinite_numbers_are_values(rows):
     """Sums over a column may be beyond the doubles or no number: nothing warns of that."""

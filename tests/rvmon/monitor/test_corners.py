@@ -136,6 +136,7 @@ CASES = {
 }
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", TimeModel)
 @pytest.mark.parametrize("engine", ["auto", "progression"])
 @pytest.mark.parametrize("name", CASES)

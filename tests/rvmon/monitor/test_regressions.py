@@ -150,6 +150,7 @@ CASES = {
 }
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("form", ALL)
 @pytest.mark.parametrize("name", CASES)
 def test_forms_agree_with_the_law(name, form):
@@ -215,6 +216,7 @@ def test_no_source_and_many(form, count):
     assert not disagreements(case, Maker(form), online=True)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("form", ALL)
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
 @pytest.mark.parametrize("sources", ["g", "h", "gh", ""])

@@ -246,6 +246,7 @@ def told(spec: rvmon.Spec, path: Path) -> rvmon.Report | str:
         return str(error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
 )

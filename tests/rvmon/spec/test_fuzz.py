@@ -79,6 +79,7 @@ def test_mutated_specifications(seed):
     assert format_text(laid_out) == laid_out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

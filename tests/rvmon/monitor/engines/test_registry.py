@@ -98,6 +98,7 @@ def test_a_refusal_has_a_reason_a_mend_and_an_engine_that_takes_it(form, engine)
         assert engine_named(refusal.engine).refuses(one) is None
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("form", FORMS)
 def test_all_engines_say_what_the_law_says(form):
     """Verdicts and instants of each engine that does not refuse, in streams and recordings."""

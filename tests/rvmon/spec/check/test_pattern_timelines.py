@@ -56,6 +56,7 @@ requirement R {call} {SCOPES[scope]}
 """)[0]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("call", "scope", "verdict", "words"), ALL)
 def test_timeline(call, scope, verdict, words):
     """The verdict is the one that stands before the colon."""

@@ -73,6 +73,7 @@ def test_canonical_form():
     assert format_text(CANONICAL) == CANONICAL
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("seed", range(120))
 def test_laws(seed):
     """Of random specifications in random writing meaning and comments are kept."""

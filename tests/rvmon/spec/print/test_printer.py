@@ -13,6 +13,7 @@ from rvmon.spec.syntax.units import unit_table
 from rvmon.testing.generate.spec import Profile, random_spec
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("seed", range(150))
 def test_parse_after_print_is_identity(seed):
     """Random specifications survive being printed and read."""

@@ -76,6 +76,7 @@ def test_bounds_are_clopper_and_pearsons(successes, runs):
     assert high == 1 if successes == runs else at_most == pytest.approx(0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "query", "message"),
     [
