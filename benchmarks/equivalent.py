@@ -24,7 +24,7 @@ EQUIVALENT = {
     "`self.plan.uses[next(iter(names))].history`": (
         "leaves are worked out once more than needed; those with a history are marked anyway"
     ),
-    "python_visit.py off by one: `(state.high or 0) - state.low + 1` => "
+    "python_nodes.py off by one: `(state.high or 0) - state.low + 1` => "
     "`(state.high or 0) - state.low`": "samples are looked at that could have been passed over",
     "past.py dropped operand: `before is None or isinstance(before, str) or isinstance(now, str)` "
     "=> `before is None or isinstance(before, str)`": (

@@ -136,6 +136,18 @@ def keeps_stretches(state: State) -> bool:
     return state.op is StateOp.SINCE and state.low > 0 and state.high is not None
 
 
+def sparse_nodes(plan: Plan) -> int:
+    """The nodes that have to see every sample where samples are far apart, a bit for each."""
+    nodes = enumerate(plan.graph.nodes)
+    return 0 if plan.gap is not None else bits(tuple(n for n, s in nodes if keeps_stretches(s)))
+
+
+def sparse_span(plan: Plan) -> int:
+    """So far apart samples can be without leaving a hole in a stretch of time."""
+    lasting = filter(keeps_stretches, plan.graph.nodes)
+    return min(((state.high or 0) - state.low + 1 for state in lasting), default=NEVER)
+
+
 def _is_latch(state: State) -> bool:
     return state.op is StateOp.SINCE and state.low == 0 and state.high is None
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from rvmon.codegen.python_nodes import NodeWriter, Roles, bits, keeps_stretches
+from rvmon.codegen.python_nodes import NodeWriter, Roles, bits, sparse_nodes, sparse_span
 from rvmon.plan.plan import Plan
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import Mode
@@ -71,21 +71,11 @@ class VisitWriter:
 
     def sparse(self) -> int:
         """The nodes that have to see every sample where samples are far apart."""
-        graph = self.plan.graph
-        if self.plan.gap is not None:
-            return 0
-        return bits(
-            tuple(place for place, state in enumerate(graph.nodes) if keeps_stretches(state))
-        )
+        return sparse_nodes(self.plan)
 
     def span(self) -> int:
         """So far apart samples can be without leaving a hole in a stretch of time."""
-        spans = [
-            (state.high or 0) - state.low + 1
-            for state in self.plan.graph.nodes
-            if keeps_stretches(state)
-        ]
-        return min(spans, default=NEVER)
+        return sparse_span(self.plan)
 
     def lines(self) -> Iterator[str]:
         """The method `visit`."""

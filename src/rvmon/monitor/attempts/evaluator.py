@@ -299,7 +299,7 @@ class Evaluator(Nodes, Schedule):
             self.enter(t)
         before = self.before = self.position if self.GAP is None else t - self.GAP
         dirty = self.dirty | self.fading | self.ring(t)
-        if self.GAP is None and t - before > self.SPAN:
+        if t - before > self.SPAN:
             dirty |= self.SPARSE
         letters, triggers, self.fading = self.evaluate(t, dirty)
         if every:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
-from rvmon.codegen.python_nodes import keeps_stretches
+from rvmon.codegen.python_nodes import sparse_nodes, sparse_span
 from rvmon.codegen.python_unit import evaluator_class
 from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import Graph, graph_of
 from rvmon.plan.plan import Uses
 from rvmon.plan.planning import plan_of_evaluator, uses_of
-from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 
 Made = TypeVar("Made", bound=Evaluator)
@@ -74,11 +73,7 @@ def generated(
     """
     plan = plan_of_evaluator(spec, graph, names, uses)
     made = evaluator_class(plan, base)
-    lasting = [(n, state) for n, state in enumerate(graph.nodes) if keeps_stretches(state)]
-    made.graph = graph
-    made.SPARSE = sum(1 << place for place, _ in lasting)
-    spans = ((state.high or 0) - state.low + 1 for _, state in lasting)
-    made.SPAN = min(spans, default=NEVER)
+    made.graph, made.SPARSE, made.SPAN = graph, sparse_nodes(plan), sparse_span(plan)
     return made
 
 
