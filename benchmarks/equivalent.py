@@ -73,7 +73,7 @@ EQUIVALENT = {
     "python_nodes.py dropped operand: `right == '2' or left == '0'` => `left == '0'`": (
         "the greater of true and anything is written out"
     ),
-    "python_visit.py dropped operand: `state.high or 0` => `0`": (
+    "python_nodes.py dropped operand: `state.high or 0` => `0`": (
         "samples are looked at that could have been passed over"
     ),
     "c_nodes.py off by one: `mask >> place % GROUP & 1` => `mask >> place % GROUP`": (
