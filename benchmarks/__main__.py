@@ -34,7 +34,7 @@ from benchmarks import suite
 from rvmon.testing.peers.client import PeerError
 
 OUT = Path(__file__).with_name("RESULTS.md")
-SECTIONS = ("online", "robot", "many", "bound", "batch", "process", "open", "differences")
+SECTIONS = ("online", "robot", "many", "bound", "unsteady", "batch", "process", "open", "differences")
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +89,8 @@ def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
         yield from suite.many(size.rows // 2, size.counts)
     if "bound" in sections:
         yield from suite.bounds(size.longest)
+    if "unsteady" in sections:
+        yield from suite.unsteady(size.rows)
     if "batch" in sections:
         yield from suite.batches(size.columns)
 

@@ -32,7 +32,12 @@ from rvmon.testing.peers.ways import Cell
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
-CONTEST_OF = {"reelay": "reelay-discrete", "rtamt": "rtamt-discrete", "mstlo": "mstlo-delayed"}
+CONTEST_OF = {
+    "reelay": "reelay-discrete",
+    "rtamt": "rtamt-discrete",
+    "mstlo": "mstlo-delayed",
+    "sentil": "sentil",
+}
 """Who is asked for the verdicts of which contender; the native reelay is the same program."""
 
 STEPPED = {"rtamt": RTAMT_STEPPED}

@@ -111,13 +111,14 @@ _COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evalu
 def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
     """All that take part in a section, ours first: with columns in memory, or row by row."""
     here = Path(sys.executable)
-    forms = {"batch": _COLUMNS, "online": _STEPS, "robot": _STEPS}.get(section, _STEPS[1:])
+    forms = {"batch": _COLUMNS, "many": _STEPS[1:], "bound": _STEPS[1:]}.get(section, _STEPS)
     for label, kind, engine in forms:
         yield Worker(label, Peer(here, OURS), _ours(kind, engine))
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _up_to(100, _past(dialects.REELAY_DISCRETE))),
         ("rtamt", "rtamt", "rtamt", _up_to(10, _past(dialects.RTAMT_DISCRETE))),
-        ("mstlo", "mstlo-python", "mstlo", _up_to(100, _future)),
+        ("mstlo", "mstlo-python", "mstlo", _up_to(100, _future_of_mstlo)),
+        ("sentil", "sentil", "sentil", _future_of_sentil),
     )
     for label, package, worker, request in peers:
         if package in environment.versions and (section != "batch" or label == "reelay"):
@@ -164,10 +165,19 @@ def _up_to(most: int, request: Request) -> Request:
     return limited
 
 
-def _future(workload: Workload, rows: int) -> dict[str, Any]:
+def _future_of_mstlo(workload: Workload, rows: int) -> dict[str, Any]:
+    return _rows(workload, rows, _future(workload, dialects.MSTLO), "DelayedQualitative")
+
+
+def _future_of_sentil(workload: Workload, rows: int) -> dict[str, Any]:
+    formulas = [f"always[0, inf]({f})" for f in _future(workload, dialects.SENTIL)]
+    return _rows(workload, rows, formulas, "discrete")
+
+
+def _future(workload: Workload, dialect: Dialect) -> list[str]:
     if workload.form != "future":
         raise UntranslatableError("only future forms are measured")
-    return _rows(workload, rows, _translated(workload, dialects.MSTLO), "DelayedQualitative")
+    return _translated(workload, dialect)
 
 
 def _translated(workload: Workload, dialect: Dialect) -> list[str]:

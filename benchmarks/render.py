@@ -16,6 +16,7 @@ TITLES = {
     "robot": "Online, one step per row: a robot's requirements",
     "many": "Many monitors on one stream of 20 signals",
     "bound": "A deadline from 10 to 100,000 rows",
+    "unsteady": "Values that change and cross at every row",
     "batch": "Columns in memory",
     "process": "Whole processes, from the file to the verdict",
 }

@@ -6,10 +6,10 @@ import random
 from collections.abc import Iterator, Sequence
 
 from benchmarks.workload import Workload
-from tests.tools.build import eventually, no, two
+from tests.tools.build import always, compared, eventually, no, two
 
 from benchmarks import robot, timescales
-from rvmon.spec.checked.formula import Formula, SignalAtom
+from rvmon.spec.checked.formula import Formula, SignalAtom, SignalValue
 
 SIGNALS = 20
 """Of the stream that many monitors read."""
@@ -88,6 +88,35 @@ def bounds(
         future = two(p, "->", eventually(s, 0, high))
         yield Workload("bound", f"bound {high}", "past", (past,), columns)
         yield Workload("bound", f"bound {high}", "future", (future,), columns)
+
+
+def unsteady(rows: int) -> Iterator[Workload]:
+    """Forms that people write, over values that are drawn anew and cross at every row."""
+    rng = random.Random("unsteady")
+    x: list[bool | float] = [rng.uniform(0, 10) for _ in range(rows)]
+    stop = [rng.uniform(0, 10 if row % 400 == 0 else 5) for row in range(rows)]
+    speed = [rng.uniform(0, 0.01 if row // 230 % 2 else 0.02) for row in range(rows)]
+    at_rest = eventually(always(compared(SignalValue("v"), "<=", 0.01), 0, 200), 0, 30)
+    for name, formula, columns in (
+        ("respond", two(_over(5), "->", eventually(_under(5), 0, 100)), {"x": x}),
+        ("soon", eventually(_over(5), 0, 10), {"x": x}),
+        ("recur", always(eventually(_over(5), 0, 10), 0, 100), {"x": x}),
+        ("settle", two(_over(8), "->", eventually(always(_under(6), 0, 30), 0, 50)), {"x": x}),
+        (
+            "stop",
+            two(compared(SignalValue("s"), ">", 5), "->", at_rest),
+            {"s": stop, "v": speed},
+        ),
+    ):
+        yield Workload("unsteady", name, "future", (formula,), columns, 1_000_000_000)
+
+
+def _over(value: float) -> Formula:
+    return compared(SignalValue("x"), ">", value)
+
+
+def _under(value: float) -> Formula:
+    return compared(SignalValue("x"), "<", value)
 
 
 def batches(rows: int) -> Iterator[Workload]:

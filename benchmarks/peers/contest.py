@@ -54,6 +54,7 @@ _SHAPES = {
     "rtamt-dense": _BOTH,
     "mstlo-delayed": _FUTURE,
     "mstlo-robustness": _FUTURE,
+    "sentil": replace(_BOTH, step=True),
 }
 
 CONTESTS = {name: Contest(WAYS[name], shape) for name, shape in _SHAPES.items()}

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any
 
 WORKER = Path(__file__).with_name("worker.py")
-SHIPPED = ("reelay", "rtamt", "mstlo")
+SHIPPED = ("reelay", "rtamt", "mstlo", "sentil")
 """Peers whose module stands beside the worker."""
 
 

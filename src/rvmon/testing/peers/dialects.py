@@ -289,6 +289,19 @@ MSTLO = Dialect(
     weakened=True,
 )
 
+SENTIL = Dialect(
+    "sentil",
+    _half,
+    _plain_compare,
+    _STL_WORDS,
+    {**_STL_UNARY, UnaryOp.NEXT: "(next({0}))"},
+    _STL_BINARY,
+    lambda low, high: f"[{low}, {'inf' if high is None else high}]",
+    unbounded=True,
+    split=True,
+)
+"""The instant of the right operand of an `until` is not the left one's, as in ours."""
+
 LTLF = Dialect(
     "ltlf2dfa",
     lambda name: name,

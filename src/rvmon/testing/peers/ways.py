@@ -45,6 +45,7 @@ _HELD, _SAMPLED = TimeModel.HELD, TimeModel.SAMPLED
 _REELAY = ("reelay", "reelay")
 _RTAMT = ("rtamt", "rtamt")
 _MSTLO = ("mstlo-python", "mstlo")
+_SENTIL = ("sentil", "sentil")
 
 WAYS = {
     way.name: way
@@ -71,6 +72,7 @@ WAYS = {
         Way("rtamt-dense", *_RTAMT, "dense", dialects.RTAMT_DENSE, _HELD, sign=True),
         Way("mstlo-delayed", *_MSTLO, "DelayedQualitative", dialects.MSTLO, _HELD),
         Way("mstlo-robustness", *_MSTLO, "DelayedQuantitative", dialects.MSTLO, _HELD, sign=True),
+        Way("sentil", *_SENTIL, "discrete", dialects.SENTIL, _SAMPLED, sign=True),
     )
 }
 
