@@ -34,7 +34,17 @@ from benchmarks import suite
 from rvmon.testing.peers.client import PeerError
 
 OUT = Path(__file__).with_name("RESULTS.md")
-SECTIONS = ("online", "robot", "many", "bound", "unsteady", "batch", "process", "open", "differences")
+SECTIONS = (
+    "online",
+    "robot",
+    "many",
+    "bound",
+    "unsteady",
+    "batch",
+    "process",
+    "open",
+    "differences",
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,8 +24,12 @@ class Peer:
         return {"values": list(self._sentil.parse(formula).robustness_signal(trace))}
 
     def load(
-        self, formulas: list[str], kind: str, columns: dict[str, list[Any]], rows: int
-    ) -> dict[str, Any]:  # noqa: ARG002 - see `judge`
+        self,
+        formulas: list[str],
+        kind: str,  # noqa: ARG002 - see `judge`
+        columns: dict[str, list[Any]],
+        rows: int,
+    ) -> dict[str, Any]:
         """Keep what is to be passed over."""
         self._formulas = formulas
         self._columns = columns

@@ -1,0 +1,1 @@
+"""What runs were seen to do, against what they should show: models, hits, databases of them."""

@@ -1,0 +1,97 @@
+"""What one run hit, and what several did together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from rvmon.coverage.model import Group, Item, Model
+from rvmon.spec.checked.goals import BinKind
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """How often an item was hit in one run, or in several.
+
+    Attributes:
+        count: at least 1.
+        first: the instant of the first hit in ticks, where that is known.
+    """
+
+    count: int
+    first: int | None = None
+
+
+Hits = Mapping[str, Mapping[str, Hit]]
+"""By group and item; what was not hit is left out. A group or item that is no part of the model is
+an error of whoever made them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """How much of something is covered.
+
+    Attributes:
+        items: that have a goal.
+        covered: of these, that were hit as often as their goals ask for.
+    """
+
+    items: int
+    covered: int
+
+
+def merged(several: Iterable[Hits]) -> dict[str, dict[str, Hit]]:
+    """The hits of several runs together: counts add up; an instant says nothing any more.
+
+    >>> one = {"gaze": {"yes": Hit(2, 5)}}
+    >>> merged([one, {"gaze": {"yes": Hit(1, 3), "no": Hit(1)}}])["gaze"]["yes"].count
+    3
+    """
+    found: dict[str, dict[str, Hit]] = {}
+    for hits in several:
+        for group, items in hits.items():
+            own = found.setdefault(group, {})
+            for item, hit in items.items():
+                own[item] = Hit(hit.count + (own[item].count if item in own else 0))
+    return found
+
+
+def count_of(hits: Hits, group: str, item: str) -> int:
+    """How often an item was hit."""
+    hit = hits.get(group, {}).get(item)
+    return 0 if hit is None else hit.count
+
+
+def is_covered(hits: Hits, group: Group, item: Item) -> bool:
+    """Whether an item was hit as often as its goal asks for."""
+    return count_of(hits, group.name, item.name) >= item.goal
+
+
+def score(hits: Hits, group: Group) -> Score:
+    """How much of a group is covered; what is ignored or illegal has no goal."""
+    wanted = [item for item in group.items.values() if item.kind is BinKind.GOAL]
+    return Score(len(wanted), sum(is_covered(hits, group, item) for item in wanted))
+
+
+def share(hits: Hits, model: Model) -> float:
+    """The share of a model that is covered: the mean of its groups by their weights.
+
+    Returns:
+        From 0 to 1; 1 if nothing is wanted.
+    """
+    scores = [(group.weight, score(hits, group)) for group in model.groups.values()]
+    weighed = [(weight, one) for weight, one in scores if one.items]
+    whole = sum(weight for weight, _ in weighed)
+    if not whole:
+        return 1.0
+    return sum(weight * one.covered / one.items for weight, one in weighed) / whole
+
+
+def illegal(hits: Hits, model: Model) -> list[tuple[Group, Item, Hit]]:
+    """What was hit and must not be."""
+    return [
+        (group, item, hits[group.name][item.name])
+        for group in model.groups.values()
+        for item in group.items.values()
+        if item.kind is BinKind.ILLEGAL and count_of(hits, group.name, item.name)
+    ]

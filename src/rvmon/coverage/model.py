@@ -1,0 +1,96 @@
+"""What is to be covered, as data: groups of items, each with a goal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from rvmon.spec.checked.goals import BinKind
+
+
+class Subject(StrEnum):
+    """What the items of a group are."""
+
+    COVERPOINT = "coverpoint"
+    CROSS = "cross"
+    GOAL = "cover goal"
+    REQUIREMENT = "requirement"
+    STATES = "states"
+    TRANSITIONS = "transitions"
+    STATEMENTS = "statements"
+    BRANCHES = "branches"
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One thing that may be hit: a bin, a combination of bins, a state, a line.
+
+    Attributes:
+        name: unique in its group.
+        kind: what a hit means: progress, nothing, or an error.
+        goal: hits that it needs.
+    """
+
+    name: str
+    kind: BinKind = BinKind.GOAL
+    goal: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """The items of one subject.
+
+    Attributes:
+        name: unique in its model.
+        subject: what they are.
+        items: by name, in order.
+        weight: of the group in the total; 0: it is shown, and counts for nothing.
+        axes: of a cross, the bins of each of its coverpoints by that one's name.
+    """
+
+    name: str
+    subject: Subject
+    items: Mapping[str, Item]
+    weight: int = 1
+    axes: Mapping[str, Sequence[str]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """All that runs of a system should show.
+
+    Attributes:
+        groups: by name, in order.
+    """
+
+    groups: Mapping[str, Group]
+
+
+def group_of(name: str, subject: Subject, items: Sequence[Item], weight: int = 1) -> Group:
+    """A group without axes.
+
+    Raises:
+        ValueError: two items have one name.
+    """
+    named = {item.name: item for item in items}
+    if len(named) < len(items):
+        raise ValueError(f"two items of `{name}` have one name")
+    return Group(name, subject, named, weight)
+
+
+def model_of(groups: Sequence[Group]) -> Model:
+    """A model of some groups.
+
+    Raises:
+        ValueError: two groups have one name.
+
+    >>> gaze = group_of("gaze", Subject.COVERPOINT, [Item("yes"), Item("no", goal=3)])
+    >>> [*model_of([gaze]).groups]
+    ['gaze']
+    """
+    named = {group.name: group for group in groups}
+    if len(named) < len(groups):
+        double = next(one.name for one in groups if named[one.name] is not one)
+        raise ValueError(f"two groups of one name: `{double}`")
+    return Model(named)
