@@ -1,0 +1,59 @@
+"""What a specification asks of runs, as a coverage model: coverpoints, crosses, cover goals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+
+from rvmon.coverage.model import Group, Item, Model, Subject, model_of
+from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
+from rvmon.spec.checked.specification import CheckedSpec
+
+SHOWN = "shown"
+"""The only item of a cover goal."""
+
+
+def combination_name(bins: Sequence[str]) -> str:
+    """What a combination of bins, one of each coverpoint, is called.
+
+    >>> combination_name(["yes", "touch"])
+    'yes × touch'
+    """
+    return " × ".join(bins)
+
+
+def coverage_model(spec: CheckedSpec) -> Model:
+    """The coverage model of a specification.
+
+    Args:
+        spec: a coverpoint, a cross and a goal of it never share a name.
+    """
+    points = [_of_point(point) for point in spec.coverpoints.values()]
+    crosses = [_of_cross(cross, spec) for cross in spec.crosses.values()]
+    goals = [Group(name, Subject.GOAL, {SHOWN: Item(SHOWN)}) for name in spec.covers]
+    return model_of([*points, *crosses, *goals])
+
+
+def _of_point(point: Coverpoint) -> Group:
+    items = {bin_.name: Item(bin_.name, bin_.kind, point.goal) for bin_ in point.bins}
+    return Group(point.name, Subject.COVERPOINT, items, point.weight)
+
+
+def _of_cross(cross: Cross, spec: CheckedSpec) -> Group:
+    """A combination with a bin that counts for nothing does so itself, as with one that is illegal.
+
+    An illegal bin is told of by its coverpoint.
+    """
+    points = [spec.coverpoints[name] for name in cross.points]
+    items = {}
+    for bins in product(*(point.bins for point in points)):
+        names = tuple(bin_.name for bin_ in bins)
+        kind = BinKind.GOAL
+        if names in cross.illegal:
+            kind = BinKind.ILLEGAL
+        elif names in cross.ignored or any(bin_.kind is not BinKind.GOAL for bin_ in bins):
+            kind = BinKind.IGNORE
+        name = combination_name(names)
+        items[name] = Item(name, kind, cross.goal)
+    axes = {point.name: tuple(bin_.name for bin_ in point.bins) for point in points}
+    return Group(cross.name, Subject.CROSS, items, cross.weight, axes)
