@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from rvmon.coverage.hits import Hits
-from rvmon.coverage.model import Model
+from rvmon.coverage.model import model_of
+from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.coverage.watcher import Bins, Watcher
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -16,73 +17,135 @@ from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.outages import Outages
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
 
 
+class SpecCoverage:
+    """The coverage model of a specification, ready to watch any number of runs.
+
+    Args:
+        spec: has coverpoints, crosses, cover goals and requirements.
+        requirements: whether the latter two are watched as well as the bins, which costs more than
+            to judge them: each is also judged without each of its parts.
+
+    Attributes:
+        model: what may be hit.
+    """
+
+    def __init__(self, spec: CheckedSpec, *, requirements: bool = True) -> None:
+        self.bins = Bins(spec)
+        self.requirements = WatchedRequirements(spec) if requirements else None
+        groups = [*self.bins.groups]
+        if self.requirements is not None:
+            groups += self.requirements.groups
+        self.model = model_of(groups)
+
+    def monitor(
+        self, *, settle: str = "now", sources: frozenset[str] | None = None
+    ) -> CoverageMonitor:
+        """What watches one run, sample by sample.
+
+        Args:
+            settle: `now` or `next`, as for `rvmon.session.Spec.monitor`.
+            sources: the names that can arrive; `None`: all.
+
+        Raises:
+            UnknownNameError: there is no such way to settle.
+        """
+        if settle not in WAYS_TO_SETTLE:
+            ways = ", ".join(WAYS_TO_SETTLE)
+            raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
+        return CoverageMonitor(self, settle, sources)
+
+    def of(self, recording: Recording, end: int | None = None) -> Hits:
+        r"""What a recording hits.
+
+        Args:
+            recording: read to its end.
+            end: of the trace in ticks, if that was later; default its own.
+
+        >>> from rvmon import loads
+        >>> spec = loads("signal x : real\ncoverpoint size = x {low: [0, 1), high: [1, inf)}\n")
+        >>> hits = spec.coverage({"t": [0, 1, 2], "x": [0.5, 3.0, 0.2]})
+        >>> {item: hit.count for item, hit in hits["size"].items()}
+        {'low': 2, 'high': 1}
+        """
+        monitor = self.monitor(sources=recording.names)
+        for sample in recording:
+            monitor.step_ns(sample.t, sample.values)
+        return monitor.finish_ns(recording.end if end is None else end)
+
+
 class CoverageMonitor:
-    """Watches a stream of samples; made by `Spec.coverage_monitor`.
+    """Watches a stream of samples; made by `SpecCoverage.monitor`.
 
     Times are as for `rvmon.monitor.Monitor`: seconds, or ticks in the methods that end in `_ns`; so
     are the errors.
 
-    Attributes:
-        model: what may be hit.
-
     Args:
-        bins: of the specification.
-        settle: `now` or `next`, as for a monitor.
+        coverage: of the specification.
+        settle: when a sample is taken for complete.
         sources: the names that can arrive; `None`: all.
-
-    Raises:
-        UnknownNameError: there is no such way to settle.
     """
 
-    def __init__(
-        self, bins: Bins, *, settle: str = "now", sources: frozenset[str] | None = None
-    ) -> None:
-        if settle not in WAYS_TO_SETTLE:
-            ways = ", ".join(WAYS_TO_SETTLE)
-            raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
-        self.model: Model = bins.model
-        self._run = _Run(bins, settle, sources)
+    def __init__(self, coverage: SpecCoverage, settle: str, sources: frozenset[str] | None) -> None:
+        self._watched = coverage.requirements
+        self._bins = _BinRun(coverage.bins, settle, sources)
+        self._requirements = None if self._watched is None else self._watched.run(settle, sources)
+        # What refuses more comes first: a sample that one refuses none has taken.
+        self._runs: list[Monitor] = [self._bins]
+        if self._requirements is not None:
+            self._runs.insert(0, self._requirements)
 
     def step(self, t: float, values: Mapping[str, Any]) -> None:
         """Take one sample (seconds); see `step_ns`."""
-        self._run.step(t, values)
+        for run in self._runs:
+            run.step(t, values)
 
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> None:
         """Take one sample, as a monitor does."""
-        self._run.step_ns(t_ns, values)
+        for run in self._runs:
+            run.step_ns(t_ns, values)
 
     def advance(self, t: float) -> None:
         """Say that no sample before `t` (seconds) will come."""
-        self._run.advance(t)
+        self.advance_ns(ticks_of_seconds(t))
 
     def advance_ns(self, t_ns: int) -> None:
         """Say that no sample before `t_ns` will come."""
-        self._run.advance_ns(t_ns)
+        for run in self._runs:
+            run.advance_ns(t_ns)
 
     def reset(self) -> None:
         """Forget the run; the next sample starts another."""
-        self._run.reset()
+        for run in self._runs:
+            run.reset()
 
     @property
     def hits(self) -> Hits:
-        """What was hit so far, by group and item; of what was held back nothing is told."""
-        return self._run.hits
+        """The bins and combinations hit so far; what requirements show is known at the end."""
+        return self._bins.hits
 
     def finish(self, t: float | None = None) -> Hits:
         """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
         return self.finish_ns(None if t is None else ticks_of_seconds(t))
 
     def finish_ns(self, t_ns: int | None = None) -> Hits:
-        """End the run, at `t_ns` if that is later than all so far; returns what it hit."""
-        self._run.finish_ns(t_ns)
-        return self._run.hits
+        """End the run, at `t_ns` if that is later than all so far; returns all that it hit."""
+        self._bins.finish_ns(t_ns)
+        hits = dict(self._bins.hits)
+        if self._requirements is not None and self._watched is not None:
+            report = self._requirements.finish_ns(t_ns)
+            hits |= {
+                name: found
+                for name, found in self._watched.hits(self._requirements, report)
+                if found
+            }
+        return hits
 
 
-class _Run(Monitor):
+class _BinRun(Monitor):
     """Takes samples as every monitor does, and judges nothing."""
 
     def __init__(self, bins: Bins, settle: str, sources: frozenset[str] | None) -> None:
@@ -111,24 +174,3 @@ class _Watching(Evaluators):
     ) -> None:
         super().__init__(spec, (), "auto", sources, ledger)
         self.main = watcher
-
-
-def coverage_of(
-    bins: Bins,
-    samples: Iterable[Sample],
-    *,
-    sources: frozenset[str] | None = None,
-    end: int | None = None,
-) -> Hits:
-    """What a trace hits.
-
-    Args:
-        bins: of the specification.
-        samples: of the trace.
-        sources: the names that can arrive; `None`: all.
-        end: the end of the trace, if it ended after its last sample.
-    """
-    monitor = CoverageMonitor(bins, sources=sources)
-    for sample in samples:
-        monitor.step_ns(sample.t, sample.values)
-    return monitor.finish_ns(end)

@@ -1,16 +1,13 @@
-"""What a specification asks of runs, as a coverage model: coverpoints, crosses, cover goals."""
+"""What a specification asks of runs, as a coverage model: coverpoints and crosses."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 
-from rvmon.coverage.model import Group, Item, Model, Subject, model_of
+from rvmon.coverage.model import Group, Item, Subject
 from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec
-
-SHOWN = "shown"
-"""The only item of a cover goal."""
 
 
 def combination_name(bins: Sequence[str]) -> str:
@@ -22,16 +19,16 @@ def combination_name(bins: Sequence[str]) -> str:
     return " × ".join(bins)
 
 
-def coverage_model(spec: CheckedSpec) -> Model:
-    """The coverage model of a specification.
+def bin_groups(spec: CheckedSpec) -> Iterator[Group]:
+    """The coverpoints and crosses of a specification as groups of a model.
 
     Args:
-        spec: a coverpoint, a cross and a goal of it never share a name.
+        spec: a coverpoint and a cross of it never share a name.
     """
-    points = [_of_point(point) for point in spec.coverpoints.values()]
-    crosses = [_of_cross(cross, spec) for cross in spec.crosses.values()]
-    goals = [Group(name, Subject.GOAL, {SHOWN: Item(SHOWN)}) for name in spec.covers]
-    return model_of([*points, *crosses, *goals])
+    for point in spec.coverpoints.values():
+        yield _of_point(point)
+    for cross in spec.crosses.values():
+        yield _of_cross(cross, spec)
 
 
 def _of_point(point: Coverpoint) -> Group:

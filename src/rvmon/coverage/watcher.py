@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 from rvmon.coverage.model import Group
-from rvmon.coverage.of_spec import coverage_model
+from rvmon.coverage.of_spec import bin_groups
 from rvmon.coverage.watched import Occasion, Watched, WatchedBin
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
@@ -49,11 +49,14 @@ class Bins:
 
     Args:
         spec: has them.
+
+    Attributes:
+        groups: what may be hit.
     """
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
-        self.model = coverage_model(spec)
+        self.groups = [*bin_groups(spec)]
         reader = Reader(Factory(), spec.period)
 
         def state(formula: Formula) -> State:
@@ -97,11 +100,10 @@ class Bins:
             own = self._axes[name]
             items: dict[tuple[str, ...], str] = {(one.name,): one.name for one in own}
             yield Watched(name, [own], items, self._occasions.get(name))
+        groups = {group.name: group for group in self.groups}
         for name, cross in self.spec.crosses.items():
             axes = [self._axes[point] for point in cross.points]
-            yield Watched(
-                name, axes, _combinations(self.model.groups[name]), self._occasions.get(name)
-            )
+            yield Watched(name, axes, _combinations(groups[name]), self._occasions.get(name))
 
 
 def _combinations(group: Group) -> Mapping[tuple[str, ...], str]:
