@@ -24,6 +24,7 @@ BUDGETS = {
     "tests/rvmon/cli": 40,
     "tests/rvmon/coverage": 10,
     "tests/rvmon/codegen": 110,
+    "tests/rvmon/coverage": 12,
     "tests/rvmon/dataflow": 6,
     "tests/rvmon/diagnostics": 1,
     "tests/rvmon/execute": 20,
