@@ -5,8 +5,8 @@ from __future__ import annotations
 import random
 from collections import Counter
 
+from rvmon.coverage.model import combination
 from rvmon.coverage.monitor import SpecCoverage
-from rvmon.coverage.of_spec import combination_name
 from rvmon.testing.case import Case
 from rvmon.testing.generate.coverage import with_random_coverage
 from rvmon.testing.generate.spec import Profile
@@ -22,14 +22,14 @@ def by_law(case: Case) -> Counted:
     """What the definition says, as `by_monitor` tells it."""
     word = word_of(case.spec, case.samples, end=case.end, advances=case.advances, names=case.names)
     return {
-        name: {combination_name(bins): found for bins, found in own.items()}
+        name: {combination(bins): found for bins, found in own.items()}
         for name, own in hits_on(case.spec, word).items()
     }
 
 
 def by_monitor(case: Case, coverage: SpecCoverage) -> Counted:
     """What a monitor finds: how often, and when first."""
-    monitor = coverage.monitor(sources=case.names)
+    monitor = coverage.monitor(sources=case.names, requirements=False)
     for one in case.actions:
         if isinstance(one, Sample):
             monitor.step_ns(one.t, one.values)
@@ -46,7 +46,7 @@ def judge(seed: str, each: int, tally: Counter[str]) -> list[str]:
     """Compare on the traces of one specification; returns what differs."""
     rng = random.Random(seed)
     spec = with_random_coverage(rng, Profile(requirements=1, captures=False, for_each=False))
-    coverage = SpecCoverage(spec, requirements=False)
+    coverage = SpecCoverage(spec)
     wrong = []
     for place in range(each):
         case = random_trace(rng, spec, TraceProfile(long=10))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
 from rvmon.coverage.hits import Hits
-from rvmon.coverage.model import model_of
+from rvmon.coverage.model import Model, model_of
 from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.coverage.watcher import Bins, Watcher
 from rvmon.errors import UnknownNameError
@@ -26,29 +27,49 @@ class SpecCoverage:
 
     Args:
         spec: has coverpoints, crosses, cover goals and requirements.
-        requirements: whether the latter two are watched as well as the bins, which costs more than
-            to judge them: each is also judged without each of its parts.
-
-    Attributes:
-        model: what may be hit.
     """
 
-    def __init__(self, spec: CheckedSpec, *, requirements: bool = True) -> None:
-        self.bins = Bins(spec)
-        self.requirements = WatchedRequirements(spec) if requirements else None
-        groups = [*self.bins.groups]
-        if self.requirements is not None:
-            groups += self.requirements.groups
-        self.model = model_of(groups)
+    def __init__(self, spec: CheckedSpec) -> None:
+        self.spec = spec
+
+    def __reduce__(self) -> tuple[type[SpecCoverage], tuple[CheckedSpec]]:
+        # What was generated here stays here.
+        return SpecCoverage, (self.spec,)
+
+    @cached_property
+    def bins(self) -> Bins:
+        """Its coverpoints and crosses."""
+        return Bins(self.spec)
+
+    @cached_property
+    def requirements(self) -> WatchedRequirements:
+        """Its requirements and cover goals."""
+        return WatchedRequirements(self.spec)
+
+    @cached_property
+    def bin_model(self) -> Model:
+        """What may be hit of coverpoints and crosses."""
+        return model_of(self.bins.groups)
+
+    @cached_property
+    def model(self) -> Model:
+        """What may be hit."""
+        return model_of([*self.bins.groups, *self.requirements.groups])
 
     def monitor(
-        self, *, settle: str = "now", sources: frozenset[str] | None = None
+        self,
+        *,
+        settle: str = "now",
+        sources: frozenset[str] | None = None,
+        requirements: bool = True,
     ) -> CoverageMonitor:
         """What watches one run, sample by sample.
 
         Args:
             settle: `now` or `next`, as for `rvmon.session.Spec.monitor`.
             sources: the names that can arrive; `None`: all.
+            requirements: whether requirements and cover goals are watched as well as bins, which
+                costs more than to judge them: each is also judged without each of its parts.
 
         Raises:
             UnknownNameError: there is no such way to settle.
@@ -56,14 +77,18 @@ class SpecCoverage:
         if settle not in WAYS_TO_SETTLE:
             ways = ", ".join(WAYS_TO_SETTLE)
             raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
-        return CoverageMonitor(self, settle, sources)
+        watched = self.requirements if requirements else None
+        return CoverageMonitor(self.bins, watched, settle, sources)
 
-    def of(self, recording: Recording, end: int | None = None) -> Hits:
+    def of(
+        self, recording: Recording, end: int | None = None, *, requirements: bool = True
+    ) -> Hits:
         r"""What a recording hits.
 
         Args:
             recording: read to its end.
-            end: of the trace in ticks, if that was later; default its own.
+            end: of the trace in ticks, before or behind its own; what comes later is not seen.
+            requirements: as for `monitor`.
 
         >>> from rvmon import loads
         >>> spec = loads("signal x : real\ncoverpoint size = x {low: [0, 1), high: [1, inf)}\n")
@@ -71,9 +96,10 @@ class SpecCoverage:
         >>> {item: hit.count for item, hit in hits["size"].items()}
         {'low': 2, 'high': 1}
         """
-        monitor = self.monitor(sources=recording.names)
+        monitor = self.monitor(sources=recording.names, requirements=requirements)
         for sample in recording:
-            monitor.step_ns(sample.t, sample.values)
+            if end is None or sample.t <= end:
+                monitor.step_ns(sample.t, sample.values)
         return monitor.finish_ns(recording.end if end is None else end)
 
 
@@ -84,14 +110,21 @@ class CoverageMonitor:
     are the errors.
 
     Args:
-        coverage: of the specification.
+        bins: are watched.
+        requirements: the same; `None`: they are not.
         settle: when a sample is taken for complete.
         sources: the names that can arrive; `None`: all.
     """
 
-    def __init__(self, coverage: SpecCoverage, settle: str, sources: frozenset[str] | None) -> None:
-        self._watched = coverage.requirements
-        self._bins = _BinRun(coverage.bins, settle, sources)
+    def __init__(
+        self,
+        bins: Bins,
+        requirements: WatchedRequirements | None,
+        settle: str,
+        sources: frozenset[str] | None,
+    ) -> None:
+        self._watched = requirements
+        self._bins = _BinRun(bins, settle, sources)
         self._requirements = None if self._watched is None else self._watched.run(settle, sources)
         # What refuses more comes first: a sample that one refuses none has taken.
         self._runs: list[Monitor] = [self._bins]

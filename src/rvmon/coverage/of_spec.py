@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import product
 
-from rvmon.coverage.model import Group, Item, Subject
+from rvmon.coverage.model import Group, Item, Subject, combination
 from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec
-
-
-def combination_name(bins: Sequence[str]) -> str:
-    """What a combination of bins, one of each coverpoint, is called.
-
-    >>> combination_name(["yes", "touch"])
-    'yes × touch'
-    """
-    return " × ".join(bins)
 
 
 def bin_groups(spec: CheckedSpec) -> Iterator[Group]:
@@ -50,7 +41,7 @@ def _of_cross(cross: Cross, spec: CheckedSpec) -> Group:
             kind = BinKind.ILLEGAL
         elif names in cross.ignored or any(bin_.kind is not BinKind.GOAL for bin_ in bins):
             kind = BinKind.IGNORE
-        name = combination_name(names)
+        name = combination(names)
         items[name] = Item(name, kind, cross.goal)
     axes = {point.name: tuple(bin_.name for bin_ in point.bins) for point in points}
     return Group(cross.name, Subject.CROSS, items, cross.weight, axes)
