@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import percentage
 from rvmon.cli.options import add_format
-from rvmon.cli.say import say, say_json
+from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "campaign of this one",
     )
     add_format(parser)
+    parser.add_argument("--report", metavar="FILE", help="write a page to look at")
     parser.add_argument(
         "--merge", metavar="OUT", help="write all that the databases hold into this one"
     )
@@ -82,6 +83,8 @@ def run(arguments: argparse.Namespace) -> int:
     name = ", ".join(arguments.databases)
     summary = Summary(name, coverage, earlier, arguments.compare or "")
     groups = _groups(coverage, arguments.bins)
+    if arguments.report is not None:
+        _write_page(summary, arguments.report)
     if arguments.format == "json":
         import msgspec
 
@@ -151,11 +154,25 @@ def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Gro
         print_tests(summary, console)
 
 
+def _write_page(summary: Summary, path: str) -> None:
+    from rvmon.report.coverage_page import coverage_page
+    from rvmon.writing import write_whole
+
+    try:
+        write_whole(path, coverage_page(summary))
+    except OSError as error:
+        raise RvmonError(
+            f"cannot write {path}: {error.strerror or error}: name a file in a folder that is there"
+        ) from None
+
+
 def _code(summary: Summary, arguments: argparse.Namespace) -> int:
     """1 if what was asked for is not reached."""
     wrong = (arguments.strict or arguments.require is not None) and bool(summary.illegal)
     if arguments.require is not None:
-        wrong |= summary.share < arguments.require
+        wrong |= summary.is_void or summary.share < arguments.require
+        if summary.is_void:
+            warn("--require: nothing is to be covered: no model was declared, or all weights are 0")
     if arguments.strict:
         wrong |= bool(summary.not_fine)
         wrong |= summary.comparison is not None and bool(summary.comparison.lost)

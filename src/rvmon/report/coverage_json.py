@@ -68,7 +68,7 @@ def _group(summary: Summary, name: str) -> dict[str, Any]:
                 "first": _first(summary, place),
                 "reasons": summary.coverage.reasons.get((name, item.name), ()),
             }
-            for place, item in enumerate(group.items.values(), summary.starts[name])
+            for place, item in summary.places(group)
         ],
     }
 
@@ -79,8 +79,11 @@ def _first(summary: Summary, place: int) -> dict[str, Any] | None:
     if entry < 0:
         return None
     instant = int(summary.totals.instants[place])
-    record = summary.coverage.entries[entry].record
-    return {"test": entry, "name": record.name, "at": None if instant == UNKNOWN else instant}
+    return {
+        "test": entry,
+        "name": summary.record(entry).name,
+        "at": None if instant == UNKNOWN else instant,
+    }
 
 
 def _items(summary: Summary, places: Iterable[int]) -> list[tuple[str, str]]:

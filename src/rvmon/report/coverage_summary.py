@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 from rvmon.coverage.answers import Comparison, Goals, Step, Totals
 from rvmon.coverage.compare import compare
 from rvmon.coverage.hits import Score
+from rvmon.coverage.model import Group, Item
 from rvmon.coverage.questions import (
+    by_strategy,
     campaigns,
     goals_of,
     growth,
+    hitters,
     holes,
     illegal_hits,
     scores,
@@ -21,15 +24,15 @@ from rvmon.coverage.questions import (
     unique,
 )
 from rvmon.coverage.ranking import ranking
-from rvmon.coverage.record import UNKNOWN, Coverage, Ending, Entry, TestRecord
+from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
 from rvmon.report.percent import percent_text
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 
-UNNAMED = "no strategy"
-"""How tests are called that none made."""
+LISTED = 5
+"""Tests that are named of those that hit an item."""
 
 
 class Summary:
@@ -74,6 +77,12 @@ class Summary:
         """The share that is covered in all, from 0 to 1."""
         return share_of(self.coverage, self.scores)
 
+    @property
+    def is_void(self) -> bool:
+        """Whether there is nothing to cover, so that a share says nothing."""
+        groups = self.coverage.model.groups
+        return not any(one.items for name, one in self.scores.items() if groups[name].weight)
+
     @cached_property
     def holes(self) -> Sequence[int]:
         """Items that were hit too rarely."""
@@ -105,9 +114,25 @@ class Summary:
         return None if self._earlier is None else compare(self._earlier, self.coverage)
 
     @cached_property
-    def not_fine(self) -> Sequence[Entry]:
+    def hitters(self) -> Mapping[int, Sequence[int]]:
+        """The first tests that hit each item."""
+        return hitters(self.coverage, LISTED)
+
+    @cached_property
+    def strategies(self) -> Mapping[str, Sequence[int]]:
+        """The tests of each strategy, in order."""
+        return by_strategy(self.coverage)
+
+    @cached_property
+    def alone(self) -> Mapping[str, Sequence[Step]]:
+        """What the tests of each strategy add to each other, without those of the others."""
+        return {name: growth(self.coverage, order) for name, order in self.strategies.items()}
+
+    @cached_property
+    def not_fine(self) -> Sequence[int]:
         """Tests that failed a requirement or did not complete."""
-        return [one for one in self.coverage.entries if not_fine(one.record)]
+        entries = self.coverage.entries
+        return [place for place, entry in enumerate(entries) if not_fine(entry.record)]
 
     @cached_property
     def campaigns(self) -> Sequence[str]:
@@ -129,7 +154,7 @@ class Summary:
         tests: Counter[str] = Counter()
         names: dict[str, str] = {}
         for entry in self.coverage.entries:
-            strategy = entry.record.strategy or UNNAMED
+            strategy = strategy_name(entry.record.strategy)
             tests[strategy] += 1
             for name, verdict in entry.record.verdicts.items():
                 names[name] = ""
@@ -137,6 +162,14 @@ class Summary:
                 own[verdict] += 1
         groups = tuple(RunGroup(name, count, counts.get(name, {})) for name, count in tests.items())
         return VerdictTable("", names, groups)
+
+    def record(self, place: int) -> TestRecord:
+        """A test."""
+        return self.coverage.entries[place].record
+
+    def places(self, group: Group) -> Iterator[tuple[int, Item]]:
+        """The items of a group with their places."""
+        return enumerate(group.items.values(), self.starts[group.name])
 
     def item_name(self, place: int) -> str:
         """An item for people, with its group."""
@@ -157,7 +190,7 @@ class Summary:
         first = int(self.totals.first[place])
         if first < 0:
             return ""
-        name = self.coverage.entries[first].record.name
+        name = self.record(first).name
         instant = int(self.totals.instants[place])
         return name if instant == UNKNOWN else f"{name} at {format_ticks(instant)}"
 
@@ -178,6 +211,11 @@ def name_of(item: tuple[str, str]) -> str:
     'gaze: yes'
     """
     return f"{item[0]}: {item[1]}"
+
+
+def strategy_name(strategy: str) -> str:
+    """A strategy for people."""
+    return strategy or "no strategy"
 
 
 def counted(count: int, noun: str) -> str:

@@ -53,7 +53,7 @@ def print_overview(summary: Summary, console: Console) -> None:
         [f"{summary.item_name(place)}  {summary.hit_text(place)}" for place in summary.illegal],
         style="bold red",
     )
-    records = [entry.record for entry in summary.not_fine]
+    records = [summary.record(place) for place in summary.not_fine]
     _print_list(
         console,
         "not fine:",
@@ -123,7 +123,7 @@ def print_tests(summary: Summary, console: Console) -> None:
     console.print(table)
     console.print("alone: items that no other test covers", style="dim")
     order = summary.ranking
-    names = [summary.coverage.entries[step.entry].record.name for step in order]
+    names = [summary.record(step.entry).name for step in order]
     of = counted(len(summary.coverage.entries), "test")
     console.print(f"{len(order):,} of {of} cover as much: {_first_of(names)}")
 
@@ -138,9 +138,10 @@ def _groups(summary: Summary, console: Console) -> Table:
     if wide:
         table.add_column("what")
     table.add_column("covered", justify="right")
-    table.add_column("share", share_text(summary.share), justify="right", no_wrap=True)
+    total = "–" if summary.is_void else share_text(summary.share)
+    table.add_column("share", total, justify="right", no_wrap=True)
     if wide:
-        table.add_column("", _bar(summary.share, console), no_wrap=True)
+        table.add_column("", "" if summary.is_void else _bar(summary.share, console), no_wrap=True)
     for group in summary.coverage.model.groups.values():
         score = summary.scores[group.name]
         name = group.name if group.weight else f"{group.name} (not in the total)"
@@ -177,7 +178,6 @@ def _grid(summary: Summary, group: Group) -> Table:
     """A cross: the bins of the last axis from left to right, of the others downwards."""
     from rich import box
     from rich.table import Table
-    from rich.text import Text
 
     *down, (across, columns) = group.axes.items()
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -187,16 +187,15 @@ def _grid(summary: Summary, group: Group) -> Table:
         table.add_column(across)
     for name in columns:
         table.add_column(name, justify="right", no_wrap=True)
-    places = {name: place for place, name in enumerate(group.items, summary.starts[group.name])}
+    places = {item.name: place for place, item in summary.places(group)}
     last: Sequence[str] = ()
     for bins in product(*(names for _, names in down)):
         # A bin of an outer axis stands once, above those that it goes together with.
         heads = ["" if last[: i + 1] == bins[: i + 1] else name for i, name in enumerate(bins[:-1])]
         row: list[str | Text] = [*heads, *bins[-1:]] if down else [""]
         for name in columns:
-            item = group.items.get(combination([*bins, name]))
-            place = None if item is None else places[item.name]
-            row.append(Text("") if place is None else _cell(summary, group, place))
+            place = places.get(combination([*bins, name]))
+            row.append("" if place is None else _cell(summary, group, place))
         table.add_row(*row)
         last = bins
     return table
@@ -227,7 +226,7 @@ def _bins(summary: Summary, group: Group) -> Table:
     table.add_column("hits", justify="right", no_wrap=True)
     table.add_column("tests", justify="right", no_wrap=True)
     table.add_column("first")
-    for place, item in enumerate(group.items.values(), summary.starts[group.name]):
+    for place, item in summary.places(group):
         tests = int(summary.totals.tests[place])
         name = item.name if item.kind is BinKind.GOAL else f"{item.name} ({item.kind})"
         table.add_row(

@@ -1,6 +1,7 @@
 """`rvmon cover` as a person uses it."""
 
 import json
+from pathlib import Path
 
 import pytest
 from tests.tools.covered import door_model, dump, fill, hits_of
@@ -231,11 +232,27 @@ def test_names_steer_no_terminal(tmp_path, capsys):
         assert not STEERING.search(capsys.readouterr().out)
 
 
+def test_a_page_is_written(door, capsys):
+    """Beside what is printed; a place that is none is named."""
+    assert main(["cover", door, "--report", "door.html"]) == 0
+    assert "46 % covered" in Path("door.html").read_text(encoding="utf-8")
+    assert main(["cover", door, "--report", "none/door.html"]) == 2
+    assert "cannot write none/door.html: No such file" in capsys.readouterr().err
+
+
 def test_an_empty_database_is_shown(tmp_path, capsys):
     """Nothing was recorded yet."""
     path = str(tmp_path / "a.cov")
     Database.open(path).close()
-    code, lines = shown(capsys, path, "--holes", "--bins", "--tests", "--require", "100%")
+    code, lines = shown(capsys, path, "--holes", "--bins", "--tests")
     assert code == 0
     assert lines[0] == f"{path} 0 tests"
     assert "no holes" in lines
+
+
+def test_nothing_reaches_no_share(tmp_path, capsys):
+    """A gate does not pass because nobody said what is to be covered."""
+    path = str(tmp_path / "a.cov")
+    Database.open(path).close()
+    assert main(["cover", path, "--require", "0%"]) == 1
+    assert "nothing is to be covered" in capsys.readouterr().err
