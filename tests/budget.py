@@ -33,7 +33,7 @@ BUDGETS = {
     "tests/rvmon/laws": 75,
     "tests/rvmon/monitor": 180,
     "tests/rvmon/readers": 25,
-    "tests/rvmon/report": 10,
+    "tests/rvmon/report": 12,
     "tests/rvmon/spec": 35,
     "tests/rvmon/testing": 15,
     "tests/rvmon/timed": 45,

@@ -14,7 +14,7 @@ from handover.collector.statements import StatementCoverage
 from rvmon.report.markup import Child, e, page
 from rvmon.report.percent import percent_text
 from rvmon.report.style import MARKS
-from rvmon.report.table_html import table_html
+from rvmon.report.table_html import legend, table_html
 from rvmon.verdict.verdict import Verdict
 
 
@@ -44,7 +44,7 @@ def report_page(
         if figures.known:
             body.append(_known(robot, figures, tests))
     body.append(
-        e("footer", None, e("p", None, "Run it again: ", e("code", None, command)), _legend())
+        e("footer", None, e("p", None, "Run it again: ", e("code", None, command)), legend())
     )
     return page("Simulated handovers", body, styles=["base.css", "report.css"], scripts=[])
 
@@ -176,16 +176,3 @@ def _verdict_cell(one: KnownAnswer, requirement: str) -> ET.Element:
     if expected is not None and expected != verdict:
         text += f" ≠ {expected}"
     return e("td", {"data-verdict": verdict.value}, text)
-
-
-def _legend() -> ET.Element:
-    words = {
-        Verdict.PASS: "passed",
-        Verdict.FAIL: "failed",
-        Verdict.NOT_TRIGGERED: "not triggered",
-        Verdict.INCONCLUSIVE: "inconclusive",
-    }
-    parts: list[Child] = []
-    for verdict, word in words.items():
-        parts += [e("b", {"data-verdict": verdict.value}, verdict.value), f" {word}   "]
-    return e("p", {"class": "soft"}, "Number of tests: ", *parts)

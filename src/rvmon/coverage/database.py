@@ -197,11 +197,31 @@ def read(paths: Sequence[str | Path]) -> Coverage:
     if len(paths) == 1:
         with Database(connect(paths[0], create=False), paths[0]) as database:
             return database.coverage()
-    with Database.in_memory() as together:
+    with _together(paths) as database:
+        return database.coverage()
+
+
+def merge(paths: Iterable[str | Path], out: str | Path) -> None:
+    """Write all that some files hold into one; what that one holds already stays.
+
+    Raises:
+        CoverageError: as `read`, or the file cannot be written; nothing is written then.
+    """
+    with _together(paths) as database, Database.open(out) as target:
+        target.merge(database)
+
+
+def _together(paths: Iterable[str | Path]) -> Database:
+    """A database in memory with all that some files hold."""
+    together = Database.in_memory()
+    try:
         for path in paths:
             with Database(connect(path, create=False), path) as database:
                 together.merge(database)
-        return together.coverage()
+    except BaseException:
+        together.close()
+        raise
+    return together
 
 
 class _Items:
