@@ -12,10 +12,11 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 
-from handover.checker import Checker, spec_path
+from handover.checker import spec_path
 from handover.driver import run_test
 from handover.generator.model_based import model_based
-from handover.generator.template import PolicyName
+from rvmon.cdv.checker import Checker
+from rvmon.cdv.template import PolicyName
 from rvmon.loading import load
 
 POLICIES: tuple[PolicyName, ...] = ("likely", "shortest", "fastest")

@@ -13,8 +13,9 @@ import sys
 import time
 from collections.abc import Sequence
 
-from handover.campaign.execute import execute
-from handover.campaign.plan import Plan, plan
+from handover.campaign.campaign import handover_campaign
+from rvmon.cdv.execute import execute
+from rvmon.cdv.plan import Plan, plan
 
 STRATEGIES = ("pseudorandom", "constrained")
 ROBOTS = ("legacy", "correct")
@@ -29,7 +30,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     options = parser.parse_args(argv)
     plans = {
         monitors: plan(
-            ROBOTS, STRATEGIES, tests=options.tests, seed=options.seed, monitors=monitors
+            handover_campaign(ROBOTS, monitors=monitors),
+            STRATEGIES,
+            tests=options.tests,
+            seed=options.seed,
         )
         for monitors in (True, False)
     }
@@ -38,7 +42,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for _ in range(options.repeats):
         for monitors, chosen in plans.items():
             processor[monitors].append(processor_seconds(chosen))
-            wall[monitors].append(execute(chosen, unfitted=False).seconds)
+            wall[monitors].append(execute(chosen, controls=False).seconds)
     tests = len(plans[True].jobs())
     print(f"{tests} tests, least of {options.repeats} repetitions")
     for name, seconds in (("one process, processor", processor), ("all cores, wall", wall)):
@@ -53,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def processor_seconds(chosen: Plan) -> float:
     """Processor time of a campaign in this process."""
     start = time.process_time()
-    execute(chosen, jobs=1, unfitted=False)
+    execute(chosen, jobs=1, controls=False)
     return time.process_time() - start
 
 

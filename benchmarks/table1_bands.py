@@ -12,16 +12,18 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from statistics import fmean, quantiles
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from handover.campaign.execute import execute
-from handover.campaign.outcome import Outcome
+from handover.campaign.campaign import handover_campaign
 from handover.campaign.paper import FITTED, paper_table
-from handover.campaign.plan import plan
+from rvmon.cdv.execute import execute
+from rvmon.cdv.outcome import Played
+from rvmon.cdv.plan import plan
 from rvmon.verdict.verdict import Verdict
 
 STRATEGIES = ("pseudorandom", "constrained")
@@ -41,24 +43,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     fitted: list[dict[Cell, int]] = []
     unfitted: list[dict[Cell, int]] = []
     for seed in range(options.first, options.first + options.seeds):
-        chosen = plan(("legacy",), STRATEGIES, tests=options.tests, seed=seed)
+        campaign = handover_campaign(("legacy",))
+        chosen = plan(campaign, STRATEGIES, tests=options.tests, seed=seed)
         results = execute(chosen, jobs=options.jobs)
         if results.cut_short:
             print(f"{results.cut_short} in campaign {seed}", file=sys.stderr)
             return 130
-        again = {one.job.test.name: one for one in results.unfitted}
-        fitted.append(count(results.outcomes))
-        unfitted.append(count([again.get(one.job.test.name, one) for one in results.outcomes]))
+        fitted.append(count(results.played))
+        without = [replace(one, outcome=one.control or one.outcome) for one in results.played]
+        unfitted.append(count(without))
         print(f"campaign {seed}: {results.seconds:.1f} s", file=sys.stderr)
     show(fitted, unfitted, options.tests)
     return 0
 
 
-def count(outcomes: Sequence[Outcome]) -> dict[Cell, int]:
+def count(played: Sequence[Played]) -> dict[Cell, int]:
     """The number of tests in each cell."""
     cells: dict[Cell, int] = {}
-    for one in outcomes:
-        for requirement, verdict in one.verdicts.items():
+    for one in played:
+        for requirement, verdict in one.outcome.verdicts.items():
             cell = one.job.test.strategy, requirement, verdict
             cells[cell] = cells.get(cell, 0) + 1
     return cells

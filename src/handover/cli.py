@@ -1,8 +1,8 @@
 """The command `handover`: campaigns of simulated handovers, and replays of single tests.
 
-Exit codes: 0 the campaign completed (a replay: no requirement failed), 1 with `--strict` a
-requirement failed, was inconclusive or never triggered (a replay: one failed), 2 wrong input,
-3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
+Exit codes: 0 the campaign completed (a replay: no requirement failed), 1 with `--strict` a test
+did not end as it should, or a requirement was never triggered (a replay: one failed), 2 wrong
+input, 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 """
 
 from __future__ import annotations
@@ -10,10 +10,18 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 from rvmon import __version__
 from rvmon.cli import guarded
-from rvmon.cli.numbers import positive
+from rvmon.cli.campaign import (
+    INTERRUPTED,
+    add_campaign_options,
+    add_judging_options,
+    add_replay_options,
+    judged_by,
+    names_of,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -53,21 +61,12 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         help="of pseudorandom, constrained, model-based, model-based-shortest, "
         "model-based-fastest, directed (default: the first two)",
     )
-    parser.add_argument(
-        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
-    )
+    add_campaign_options(parser)
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
-    parser.add_argument("--spec", metavar="FILE", help="judge by these requirements")
+    add_judging_options(parser)
     parser.add_argument("--no-monitors", action="store_true", help="judge nothing: only play")
     parser.add_argument("--strict", action="store_true", help="exit with 1 unless all is well")
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
-    _add_common(parser)
-    parser.set_defaults(run=_run, command="run")
+    parser.set_defaults(run=_run)
 
 
 def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -78,21 +77,8 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "against the correct one, and write tables and pages.",
         epilog="example: handover demo --out out/demo",
     )
-    parser.add_argument(
-        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
-    )
-    _add_common(parser)
-    parser.set_defaults(run=_demo, command="demo", spec=None, no_monitors=False)
-
-
-def _add_common(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
-    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        help="write tables, tests and pages there; a campaign that was ended there goes on",
-    )
+    add_campaign_options(parser)
+    parser.set_defaults(run=_demo)
 
 
 def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -102,35 +88,51 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         description="Play a test file alone and judge it; the same test gives the same run.",
         epilog="example: handover replay out/demo/tests/pseudorandom-017.json --out out/replay",
     )
-    parser.add_argument("test", metavar="TEST", help="a .json file")
+    add_replay_options(parser)
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
-    parser.add_argument("--spec", metavar="FILE", help="judge by these requirements")
-    parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
     parser.set_defaults(run=_replay)
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from handover.campaign.command import run_campaign
+    from handover.campaign.campaign import handover_campaign
+    from rvmon.cli.campaign_run import conduct, show
 
-    return run_campaign(arguments)
+    robots = ("legacy" if arguments.legacy else "correct",)
+    campaign = handover_campaign(robots, monitors=not arguments.no_monitors)
+    if not arguments.no_monitors:
+        campaign = judged_by(campaign, arguments.spec)
+    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+    words = ["run", "--strategy", arguments.strategy]
+    words += ["--legacy"] if arguments.legacy else []
+    words += ["--spec", arguments.spec] if arguments.spec else []
+    words += ["--no-monitors"] if arguments.no_monitors else []
+    conducted = conduct(campaign, strategies, arguments, words)
+    show(campaign, conducted, arguments.format)
+    if conducted.summary.cut_short:
+        return INTERRUPTED
+    return int(arguments.strict and bool(conducted.judged(strict=True).wrong))
 
 
 def _demo(arguments: argparse.Namespace) -> int:
-    from handover.campaign.command import run_demo
+    from handover.campaign.campaign import handover_campaign
+    from rvmon.cdv.write_pages import REPORT
+    from rvmon.cli.campaign_run import conduct, show
 
-    return run_demo(arguments)
+    campaign = handover_campaign(("legacy", "correct"))
+    conducted = conduct(campaign, tuple(campaign.strategies), arguments, ["demo"])
+    show(campaign, conducted, "text")
+    if arguments.out:
+        print(f"Look at {Path(arguments.out) / REPORT}")
+    return INTERRUPTED if conducted.summary.cut_short else 0
 
 
 def _replay(arguments: argparse.Namespace) -> int:
-    from handover.campaign.replay import run_replay
+    from handover.campaign.campaign import handover_campaign
+    from rvmon.cli.campaign_replay import replay
 
-    return run_replay(arguments)
+    campaign = judged_by(handover_campaign(), arguments.spec)
+    robot = "legacy" if arguments.legacy else None
+    return replay(campaign, arguments.test, robot, out=arguments.out, form=arguments.format)
 
 
 if __name__ == "__main__":

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from handover.campaign.summary import StrategySummary, Transition
-from handover.collector.statements import StatementCoverage
 from handover.collector.transitions import TRANSITIONS
 from handover.robot.handover import STATES
 from handover.robot.layout import COMMON
+from rvmon.cdv.summary import BlockCoverage, StrategySummary, Transition
 from rvmon.report.markup import e
 from rvmon.report.percent import percent_text
 
@@ -52,12 +51,12 @@ def flow_chart(figures: StrategySummary) -> ET.Element:
     return chart
 
 
-def _box(label: str, state: str, top: float, coverage: StatementCoverage) -> ET.Element:
+def _box(label: str, state: str, top: float, coverage: BlockCoverage) -> ET.Element:
     share = coverage.covered / coverage.statements if coverage.statements else 1.0
     kind = "state shared" if state == COMMON else "state"
     if coverage.covered == 0:
         kind += " never"
-    missing = ", ".join(str(line) for line in coverage.missing)
+    missing = ", ".join(coverage.missing)
     told = f"{coverage.covered} of {coverage.statements} statements ran"
     frame = {"x": LEFT, "y": top, "width": BOX_WIDTH, "height": BOX_HEIGHT, "rx": 6}
     return e(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from functools import cache
 
 
-def check_model(requirements: Iterable[str]) -> dict[str, bool | None]:
+@cache
+def check_model(requirements: tuple[str, ...]) -> dict[str, bool | None]:
     """Ask the model checker for a run that shows each requirement, as the paper did.
 
     Args:

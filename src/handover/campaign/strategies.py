@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 from handover.generator.abstract_test import AbstractTest
 from handover.generator.files import directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
-
-Strategy = Callable[[int, int], Sequence[AbstractTest]]
-"""Makes tests from `(count, seed)`."""
+from rvmon.cdv import Strategy
 
 
 def _directed(_count: int, _seed: int) -> Sequence[AbstractTest]:

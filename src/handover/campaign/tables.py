@@ -1,90 +1,58 @@
-"""A campaign's figures as tables of verdicts, ours and the paper's."""
+"""The tables of the two robots beside the paper's."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 
-from handover.campaign.paper import FITTED_BY_LOSS, paper_table
-from handover.campaign.summary import CampaignSummary, RobotSummary
-from rvmon.report.table import Counts, RunGroup, VerdictTable
+from handover.campaign.model_checking import check_model
+from handover.campaign.paper import FITTED_BY_LOSS, SOURCE, paper_table
+from rvmon.cdv import tables
+from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.tables import RobotTables
+from rvmon.report.table import VerdictTable
 from rvmon.verdict.verdict import Verdict
 
-ROBOTS = {
-    "legacy": "Robot of the paper's testbench",
-    "correct": "Correct robot",
-}
-"""What the two robots are called in titles."""
+WITNESSES = (
+    "Model-based tests follow a run of the model for each query: the likeliest by the "
+    "model's weights (model-based), the one with the fewest steps (model-based-shortest), "
+    "the one that takes the least time (model-based-fastest)."
+)
 
 
-def verdict_table(summary: CampaignSummary, robot: str) -> VerdictTable:
-    """The counts of one robot under each strategy."""
-    figures = summary.robots[robot]
-    tests = {name: strategy.tests for name, strategy in figures.strategies.items()}
-    counts = {name: strategy.counts for name, strategy in figures.strategies.items()}
-    return VerdictTable(
-        title=f"{ROBOTS[robot]}, judged by {figures.spec}",
-        requirements=figures.requirements,
-        groups=_groups(tests, counts),
-        checked=summary.checked,
-        notes=_notes(summary, figures),
-    )
-
-
-def unfitted_table(summary: CampaignSummary, robot: str) -> VerdictTable | None:
-    """The same counts with no signal lost at start-up; `None` if none was lost."""
-    figures = summary.robots[robot]
-    if not figures.unfitted:
-        return None
-    tests = {name: figures.strategies[name].tests for name in figures.unfitted}
-    return VerdictTable(
-        title=f"{ROBOTS[robot]}, without the fitted loss of signals at start-up",
-        requirements=figures.requirements,
-        groups=_groups(tests, figures.unfitted),
-    )
-
-
-def all_tables(summary: CampaignSummary) -> dict[str, VerdictTable]:
-    """Every table of a campaign and the paper's, by a short name."""
-    tables: dict[str, VerdictTable] = {}
-    for robot in summary.robots:
-        tables[robot] = verdict_table(summary, robot)
-        unfitted = unfitted_table(summary, robot)
-        if unfitted is not None:
-            tables[f"{robot} without start-up loss"] = unfitted
-    tables["paper"] = paper_table()
-    return tables
-
-
-def comparable(robot: str) -> VerdictTable | None:
-    """The published table, for the robot that it speaks of."""
-    return paper_table() if robot == "legacy" else None
-
-
-def _groups(
-    tests: Mapping[str, int], counts: Mapping[str, Mapping[str, Counts]]
-) -> tuple[RunGroup, ...]:
-    return tuple(RunGroup(name, tests[name], counts[name]) for name in tests)
-
-
-def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
-    notes = []
-    if summary.cut_short:
-        notes.append(
-            f"PARTIAL: {summary.cut_short} after {summary.finished} of {summary.planned} tests."
+def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
+    """The tables of each robot; the legacy one is that which the published table speaks of."""
+    shown = {}
+    checked = checked_of(summary)
+    for name, one in tables.robot_tables(summary).items():
+        notes = one.own.notes
+        if "model-based" in summary.robots[name].strategies:
+            notes = (*notes, WITNESSES)
+        own = replace(one.own, checked=checked, notes=notes)
+        control = one.control
+        if control is not None:
+            title = f"{summary.robots[name].title}, without the fitted loss of signals at start-up"
+            control = replace(control, title=title)
+        shown[name] = RobotTables(
+            own=own,
+            beside={"paper": paper_table()} if name == "legacy" else {},
+            control=control,
+            control_label="no fit" if name == "legacy" else "",
+            control_title="The same without the fitted loss of signals",
+            sources=(f"paper: {SOURCE}",) if name == "legacy" else (),
+            remark=_fitted(own, control) if name == "legacy" and control is not None else "",
         )
-    if "model-based" in figures.strategies:
-        notes.append(
-            "Model-based tests follow a run of the model for each query: the likeliest by the "
-            "model's weights (model-based), the one with the fewest steps (model-based-shortest), "
-            "the one that takes the least time (model-based-fastest)."
-        )
-    crashed = sum(len(strategy.crashes) for strategy in figures.strategies.values())
-    if crashed:
-        notes.append(f"The robot's code crashed in {crashed} tests, judged all the same.")
-    return tuple(notes)
+    return shown
 
 
-def fitted_note(table: VerdictTable, unfitted: VerdictTable) -> str:
+def checked_of(summary: CampaignSummary) -> dict[str, bool | None]:
+    """What model checking says by requirement, where tests were taken from the model."""
+    robots = summary.robots.values()
+    if not any("model-based" in robot.strategies for robot in robots):
+        return {}
+    return check_model(tuple(dict.fromkeys(id_ for robot in robots for id_ in robot.requirements)))
+
+
+def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
     """Which cells were fitted, and what they are without the fit."""
     shown = []
     for strategy, requirement in sorted(FITTED_BY_LOSS):

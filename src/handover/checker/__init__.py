@@ -1,6 +1,5 @@
-"""The checker: requirements attached to the simulation's message bus."""
+"""The checker: the requirements of the robots, and the model that their runs are held against."""
 
-from handover.checker.checker import Checker
 from handover.checker.specs import SPECS, spec_path
 
-__all__ = ["SPECS", "Checker", "spec_path"]
+__all__ = ["SPECS", "spec_path"]

@@ -1,1 +1,1 @@
-"""The coverage collector: which of the robot's statements and transitions the tests reach."""
+"""The coverage collector: which of the robot's statements and transitions are to be reached."""

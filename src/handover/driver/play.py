@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from handover.driver.draws import draw, stream
 from handover.driver.run import Run
-from handover.generator.files import AbstractTestError
+from rvmon.cdv import TestError
 
 if TYPE_CHECKING:
     from handover.driver.run import AroundRobotStep, Observer
@@ -40,7 +40,7 @@ def run_test(
         around_robot_step: context in which each step of the robot's code runs.
 
     Raises:
-        AbstractTestError: no robot or mutation of that name.
+        TestError: no robot or mutation of that name.
     """
     # The physics engine takes a tenth of a second to import: only who simulates pays.
     from handover.driver.script import Script
@@ -55,9 +55,9 @@ def run_test(
     robot = robot or test.robot or "correct"
     mutation = mutation or test.mutation
     if robot not in BEHAVIOURS:
-        raise AbstractTestError(f"no robot named {robot!r}: there are {', '.join(BEHAVIOURS)}")
+        raise TestError(f"no robot named {robot!r}: there are {', '.join(BEHAVIOURS)}")
     if mutation is not None and mutation not in MUTATIONS:
-        raise AbstractTestError(f"no mutation named {mutation!r}: there are {', '.join(MUTATIONS)}")
+        raise TestError(f"no mutation named {mutation!r}: there are {', '.join(MUTATIONS)}")
     make_robot = HandoverRobot if mutation is None else MUTATIONS[mutation]
 
     draws = draw(test.seed, startup_loss=startup_loss and test.startup_loss)

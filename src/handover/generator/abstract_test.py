@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
 
 from handover.world.faults import SensorFaults
+from rvmon.cdv import Test
 
 HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
 RobotSignal = Literal["informHumanOfHandoverStart", "setv"]
@@ -26,7 +26,6 @@ Switch = Literal[
 """Parameters that are 0 or 1."""
 
 Parameter = Literal[Switch, "time"]
-Verdict = Literal["P", "F", "NT", "I"]
 Strategy = Literal[
     "pseudorandom",
     "constrained",
@@ -69,37 +68,22 @@ class SetParam(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="set
 Action = SendSignal | ReceiveSignal | SetParam
 
 
-class AbstractTest(
-    msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, omit_defaults=True
-):
-    """A test that can be replayed alone: actions, seed, and what it is to be played against.
+class AbstractTest(Test, frozen=True, kw_only=True):
+    """A test of a handover.
 
     Attributes:
-        name: unique within a campaign; also the file's name.
         strategy: which generator made it.
-        seed: of everything that the driver and the world draw at random.
         actions: in order; each begins when the one before is over.
-        text: what the test is for (directed tests).
         robot: the robot it is written for; `None`: any.
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
         horizon_s: simulated seconds.
         startup_loss: whether the human's signals may get lost as the processes start.
         faults: what is wrong with the sensors.
-        expected: verdicts by requirement, for tests that know them.
     """
 
-    name: Annotated[str, msgspec.Meta(min_length=1)]
     strategy: Strategy
-    seed: Annotated[int, msgspec.Meta(ge=0)]
     actions: tuple[Action, ...]
-    text: str = ""
     robot: Literal["correct", "legacy"] | None = None
-    mutation: str | None = None
     horizon_s: Annotated[float, msgspec.Meta(gt=0, le=3600)] = 200.0
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
-    expected: dict[str, Verdict] = {}
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """To other processes it goes as to files: what has its default stays left out."""
-        return partial(msgspec.json.decode, type=AbstractTest), (msgspec.json.encode(self),)

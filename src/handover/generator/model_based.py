@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 from functools import cache
-from math import floor, inf
 from typing import TYPE_CHECKING, Literal
 
 from handover.generator.abstract_test import (
@@ -17,22 +16,13 @@ from handover.generator.abstract_test import (
     SetParam,
     Strategy,
 )
-from handover.generator.files import AbstractTestError
-from handover.generator.template import (
-    Limit,
-    PolicyName,
-    Template,
-    TemplateStep,
-    Wait,
-    save_template,
-)
+from rvmon.cdv.template import PolicyName, Template, save_template
+from rvmon.cdv.template_times import choose_times
+from rvmon.cdv.witness_templates import Edge, templates_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
     from pathlib import Path
-
-    from rvmon.timed.model.network import Network
-    from rvmon.timed.runs.run import Run
 
 REQUIREMENTS = ("R1", "R2", "R3", "R4")
 """The queries whose witnesses become templates; R5 has none, for the model knows no distances."""
@@ -51,13 +41,12 @@ _STRATEGIES: dict[PolicyName, Strategy] = {
     "shortest": "model-based-shortest",
     "fastest": "model-based-fastest",
 }
-_Edge = tuple[str, str, str]
 _POSTURES: tuple[tuple[str, Literal["hgazeOk", "hlocationOk", "hpressureOk"]], ...] = (
     ("gaze", "hgazeOk"),
     ("location", "hlocationOk"),
     ("pressure", "hpressureOk"),
 )
-_ACTIONS: dict[_Edge, Action] = {
+ACTIONS: dict[Edge, Action] = {
     ("workflow", "idle", "waitInform"): SendSignal("activateRobot"),
     ("workflow", "waitInform", "informed"): ReceiveSignal("informHumanOfHandoverStart"),
     ("workflow", "informed", "ready"): SendSignal("humanIsReady"),
@@ -88,28 +77,15 @@ def model_based(_count: int, seed: int, policy: PolicyName = "likely") -> tuple[
 
 
 @cache
-def templates(policy: PolicyName = "likely") -> tuple[Template, ...]:
+def templates(policy: PolicyName = "likely") -> tuple[Template[Action], ...]:
     """The templates of the requirements, from witnesses that the model checker chooses.
 
     Raises:
-        AbstractTestError: a query has no witness.
+        TestError: a query has no witness.
     """
     from handover.model import handover_network
-    from rvmon.timed.search.outcome import Policy
-    from rvmon.timed.search.verify import verify
 
-    network = handover_network()
-    found = []
-    for query in network.queries:
-        if query.id in REQUIREMENTS:
-            run = verify(network, query, policy=Policy(policy)).run
-            if run is None:
-                raise AbstractTestError(f"the model has no run that shows {query.id}")
-            steps, limits = project(network, run)
-            unit_s = (network.unit or 0) / 1e9
-            text = " ".join(query.text.split())
-            found.append(Template(query.id, query.remark, text, policy, unit_s, steps, limits))
-    return tuple(found)
+    return templates_of(handover_network(), REQUIREMENTS, PROJECTED, ACTIONS, policy)
 
 
 def save_templates(strategies: Collection[str], folder: Path) -> None:
@@ -127,62 +103,14 @@ def save_templates(strategies: Collection[str], folder: Path) -> None:
                 save_template(template, own)
 
 
-def project(network: Network, run: Run) -> tuple[tuple[TemplateStep, ...], tuple[Limit, ...]]:
-    """What of a run concerns the human and the sensors, with all limits between its instants.
-
-    The closed difference constraints of the run, restricted to those instants, are exactly the
-    limits that the whole run puts on them.
-    """
-    timing = run.timing
-    assert timing is not None  # noqa: S101 - the model checker knows the timing of its runs
-    instants, texts, actions = [0], [""], list[Action | None]([None])
-    for number, step in enumerate(run.steps, start=1):
-        for index, edge in [] if step.action is None else step.action.edges:
-            automaton = network.automata[index]
-            if automaton.name not in PROJECTED:
-                continue
-            source, target = (automaton.locations[i].name for i in (edge.source, edge.target))
-            instants.append(number)
-            texts.append(f"{automaton.name}: {source} → {target}")
-            actions.append(_ACTIONS.get((automaton.name, source, target)))
-    # Human and sensors act in whole units: a limit between two units is the next one inside.
-    within = [
-        [floor(bound / timing.scale) if (bound := float(timing.bounds[p, q])) < inf else inf
-         for q in instants]
-        for p in instants
-    ]  # fmt: skip
-    steps = tuple(
-        TemplateStep(texts[now], _wait(within, now - 1, now), actions[now])
-        for now in range(1, len(instants))
-    )
-    limits = tuple(
-        Limit(first, last, wait)
-        for first in range(len(instants))
-        for last in range(first + 2, len(instants))
-        if (wait := _wait(within, first, last)) != Wait(0)
-    )
-    return steps, limits
-
-
-def _wait(within: Sequence[Sequence[float]], first: int, last: int) -> Wait:
-    """The limits between two instants, without those that the instants between imply."""
-    middle = range(first + 1, last)
-    low, high = -within[last][first], within[first][last]
-    if any(-within[k][first] - within[last][k] == low for k in middle):
-        low = 0
-    if any(within[first][k] + within[k][last] == high for k in middle):
-        high = inf
-    return Wait(int(low), None if high == inf else int(high))
-
-
-def instantiate(template: Template, seed: int) -> AbstractTest:
+def instantiate(template: Template[Action], seed: int) -> AbstractTest:
     """A test whose times were chosen within the limits of a template.
 
     Raises:
-        AbstractTestError: no whole numbers of units satisfy the limits.
+        TestError: no whole numbers of units satisfy the limits.
     """
     rng = random.Random(f"model-based/{seed}/{template.name}")  # noqa: S311  # repeatable
-    times = choose_times(template, rng)
+    times = choose_times(template, rng, PATIENCE)
     strategy = _STRATEGIES[template.policy]
     return AbstractTest(
         name=f"{strategy}-{template.name}",
@@ -193,39 +121,7 @@ def instantiate(template: Template, seed: int) -> AbstractTest:
     )
 
 
-def choose_times(template: Template, rng: random.Random) -> list[int]:
-    """Instants of all steps in units since the start, the start first.
-
-    They are fixed in turn, each within what those before it leave open.
-
-    Raises:
-        AbstractTestError: the limits contradict each other.
-    """
-    size = len(template.steps) + 1
-    most = [[0.0 if p == q else inf for q in range(size)] for p in range(size)]
-    neighbours = [
-        Limit(last - 1, last, step.wait) for last, step in enumerate(template.steps, start=1)
-    ]
-    for limit in (*neighbours, *template.limits):
-        first, last, wait = limit.first, limit.last, limit.wait
-        most[last][first] = min(most[last][first], -wait.at_least)
-        if wait.at_most is not None:
-            most[first][last] = min(most[first][last], wait.at_most)
-    for middle in range(size):
-        for p in range(size):
-            for q in range(size):
-                most[p][q] = min(most[p][q], most[p][middle] + most[middle][q])
-    if any(most[p][p] < 0 for p in range(size)):
-        raise AbstractTestError(f"template {template.name}: no times satisfy all of its limits")
-    times = [0]
-    for step in range(1, size):
-        low = max(times[p] - most[step][p] for p in range(step))
-        high = min(times[p] + most[p][step] for p in range(step))
-        times.append(rng.randint(int(low), int(min(high, low + PATIENCE))))
-    return times
-
-
-def _script(template: Template, times: Sequence[int]) -> list[Action]:
+def _script(template: Template[Action], times: Sequence[int]) -> list[Action]:
     """The script that does each action at its time, as far as the driver's own delays allow."""
     script: list[Action] = []
     now = 0

@@ -6,6 +6,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -15,6 +16,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rvmon.errors import RvmonError, WorkerLostError
+from rvmon.execute.ended import Ended
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -33,6 +35,8 @@ def execute(
     *,
     jobs: int,
     what: str = "task",
+    instead: Callable[[_Task, Ended], _Result] | None = None,
+    timeout_s: float | None = None,
 ) -> Generator[_Result, None, None]:
     """Do tasks, shared among processes; the results come in the order of the tasks.
 
@@ -45,11 +49,15 @@ def execute(
         tasks: taken from as processes have time; for several processes what can be pickled.
         begin: called once in each process, before its first task; what it returns does a task.
             Where processes are not forked, it is pickled, once for each.
-        jobs: processes at most; 1: this process does all.
+        jobs: processes at most; 1: this process does all, unless `instead` is given.
         what: the word for a task in messages.
+        instead: the result of a task whose process was ended; the other tasks are done all the
+            same, by other processes.
+        timeout_s: with `instead`, seconds after which the process of a task is ended.
 
     Raises:
-        WorkerLostError: a process was ended from outside; the task that it had is named.
+        WorkerLostError: a process was ended from outside, and there is no `instead`; the task that
+            it had is named.
         RvmonError: a task cannot be pickled, or no process be begun.
         Exception: what `begin`, a task, or taking the next of `tasks` raised. As for the others,
             the results of all tasks before have been given out.
@@ -57,8 +65,8 @@ def execute(
     >>> list(execute([1, 2, 3], lambda: abs, jobs=1))
     [1, 2, 3]
     """
-    if jobs > 1:
-        pool = _Pool(tasks, begin, jobs, what)
+    if jobs > 1 or instead is not None:
+        pool = _Pool(tasks, begin, jobs, what, instead, timeout_s)
         try:
             yield from pool.results()
         finally:
@@ -79,6 +87,7 @@ class _Worker:
         tasks: number and pickle of those that it has and did not answer, ascending.
         given: tasks of its last chunk.
         size: tasks of its next chunk.
+        since: when it had begun the first of these at the latest, on the clock that only goes on.
     """
 
     process: BaseProcess
@@ -86,6 +95,7 @@ class _Worker:
     tasks: deque[tuple[int, bytes]] = field(default_factory=deque)
     given: int = 0
     size: int = 1
+    since: float = 0.0
 
 
 class _Pool:
@@ -97,6 +107,8 @@ class _Pool:
         begin: Callable[[], Callable[[Any], Any]],
         jobs: int,
         what: str,
+        instead: Callable[[Any, Ended], Any] | None,
+        timeout_s: float | None,
     ) -> None:
         import multiprocessing
 
@@ -104,6 +116,8 @@ class _Pool:
         self._begin = begin
         self._jobs = jobs
         self._what = what
+        self._instead = instead
+        self._timeout_s = timeout_s
         self._context = multiprocessing.get_context()
         self._workers: list[_Worker] = []
         self._taken = 0
@@ -135,8 +149,11 @@ class _Pool:
             busy: dict[Any, _Worker] = {one.connection: one for one in self._workers if one.tasks}
             if not busy:
                 return
-            for connection in wait(busy):
+            answered = wait(busy, self._patience(busy.values()))
+            for connection in answered:
                 self._take(busy[connection])
+            for connection in busy.keys() - answered:
+                self._end_if_late(busy[connection])
 
     def _share(self) -> None:
         """Give tasks to all workers that have none; if there are more, to further ones."""
@@ -148,6 +165,7 @@ class _Pool:
             worker = resting.pop() if resting else self._begun()
             worker.tasks.extend(chunk)
             worker.given = len(chunk)
+            worker.since = time.monotonic()
             with suppress(OSError):  # it was ended: no answer will say so
                 worker.connection.send([task for _, task in chunk])
 
@@ -194,19 +212,16 @@ class _Pool:
 
     def _take(self, worker: _Worker) -> None:
         """Take an answer of a worker, or that there will be none."""
-        number = worker.tasks[0][0]
         try:
-            failed, is_last, result = worker.connection.recv()
+            answer = worker.connection.recv()
         except (EOFError, OSError):
-            message = (
-                f"the process that had {self._what} {number + 1} was ended from outside, as "
-                "systems do when memory runs out: use fewer processes (jobs)"
-            )
-            self._fail(number, WorkerLostError(message))
-            self._workers.remove(worker)
-            worker.process.join()
+            self._lose(worker, timed_out=False)
             return
-        worker.tasks.popleft()
+        worker.since = time.monotonic()
+        if answer is None:  # it is ready for its first task
+            return
+        failed, is_last, result = answer
+        number, _ = worker.tasks.popleft()
         if failed:
             self._fail(number, pickle.loads(result))  # noqa: S301 - as above
         else:
@@ -214,13 +229,61 @@ class _Pool:
         if is_last:
             done = worker.given - len(worker.tasks)
             worker.size = done if worker.tasks else min(2 * done, MOST_TASKS)
-            while worker.tasks:
-                heappush(self._returned, worker.tasks.pop())
+            self._give_back(worker)
+
+    def _patience(self, busy: Iterable[_Worker]) -> float | None:
+        """Seconds until the first task will have taken too long."""
+        if self._timeout_s is None:
+            return None
+        return max(0.0, min(one.since for one in busy) + self._timeout_s - time.monotonic())
+
+    def _end_if_late(self, worker: _Worker) -> None:
+        """End a worker whose task takes too long, unless its answer has just come."""
+        late = self._timeout_s is not None and time.monotonic() - worker.since >= self._timeout_s
+        if late and not worker.connection.poll():
+            worker.process.kill()
+            self._lose(worker, timed_out=True)
+
+    def _lose(self, worker: _Worker, *, timed_out: bool) -> None:
+        """Do without a worker that was ended, and without a result of the task that it had."""
+        self._workers.remove(worker)
+        worker.connection.close()
+        worker.process.join()
+        number, task = worker.tasks.popleft()
+        if self._instead is None:
+            message = (
+                f"the process that had {self._what} {number + 1} was ended from outside, as "
+                "systems do when memory runs out: use fewer processes (jobs)"
+            )
+            self._fail(number, WorkerLostError(message))
+            return
+        why = f"it took more than {self._timeout_s:g} s" if timed_out else _end_of(worker.process)
+        self._give_back(worker)
+        ended = Ended(timed_out, why, time.monotonic() - worker.since)
+        result = self._instead(pickle.loads(task), ended)  # noqa: S301 - packed here
+        self._done[number] = pickle.dumps(result)
+
+    def _give_back(self, worker: _Worker) -> None:
+        """What a worker has is for others."""
+        while worker.tasks:
+            heappush(self._returned, worker.tasks.pop())
 
     def _fail(self, number: int, error: Exception) -> None:
         """A task has no result: what comes behind it is not begun."""
         self._done[number] = error
         self._tasks = iter(())
+
+
+def _end_of(process: BaseProcess) -> str:
+    """How a process ended, in words."""
+    code = process.exitcode
+    if code is None or code >= 0:
+        return f"its process ended, with exit code {code}"
+    try:
+        name = signal.Signals(-code).name
+    except ValueError:
+        name = str(-code)
+    return f"its process was ended by signal {name}"
 
 
 @contextmanager

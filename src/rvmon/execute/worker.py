@@ -31,8 +31,9 @@ def serve(
 ) -> None:
     """Do the tasks that come, until the other end of the connection is closed.
 
-    What comes are lists of pickled tasks. For each task goes back whether it failed, whether no
-    more of its list is going to be done, and its pickled result or error.
+    What comes are lists of pickled tasks. `None` goes back when the first is begun; for each task,
+    whether it failed, whether no more of its list is going to be done, and its pickled result or
+    error.
 
     Args:
         connection: to who gives out the tasks.
@@ -51,6 +52,7 @@ def serve(
         try:
             if work is None:
                 work = begin()
+                connection.send(None)
             return False, pickle.dumps(work(pickle.loads(task)))  # noqa: S301 - from the parent
         except Exception as error:  # noqa: BLE001 - raised where the result is asked for
             return True, _packed(error)

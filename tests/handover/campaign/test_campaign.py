@@ -7,31 +7,37 @@ import signal
 
 import pytest
 
-from handover.campaign import play as playing
-from handover.campaign.documents import coverage_document, table_document, to_json
-from handover.campaign.examples import choose_examples, comparable_jobs
-from handover.campaign.execute import INTERRUPTED, execute
+from handover.campaign import system
+from handover.campaign.campaign import handover_campaign
+from handover.campaign.documents import table_document
 from handover.campaign.paper import FITTED, paper_table
-from handover.campaign.plan import plan
-from handover.campaign.summarise import summarise
+from handover.checker import spec_path
 from handover.generator.files import directed
+from rvmon.cdv.documents import coverage_document, to_json
+from rvmon.cdv.examples import choose_examples, comparable_jobs
+from rvmon.cdv.execute import execute
+from rvmon.cdv.outcome import Ending
+from rvmon.cdv.plan import plan
+from rvmon.cdv.summarise import summarise
+from rvmon.loading import load
 from rvmon.verdict.verdict import Verdict
 
 pytestmark = pytest.mark.campaign
 
-REQUIREMENTS = dict.fromkeys(("R1", "R2", "R3", "R4", "R5"), "")
-TEXTS = {"legacy": REQUIREMENTS, "correct": REQUIREMENTS}
+REQUIREMENTS = ("R1", "R2", "R3", "R4", "R5")
+SPECS = {robot: load(spec_path(robot)) for robot in ("legacy", "correct")}
 
 
-def small(**more):
+def small(*, monitors=True, **more):
     """A few tests of two strategies against both robots."""
     options = {"tests": 6, "seed": 3, **more}
-    return plan(("legacy", "correct"), ("pseudorandom", "constrained"), **options)
+    campaign = handover_campaign(("legacy", "correct"), monitors=monitors)
+    return plan(campaign, ("pseudorandom", "constrained"), **options)
 
 
 def document(results):
     """What `table.json` says, but for the seconds."""
-    content = table_document(summarise(results, TEXTS))
+    content = table_document(summarise(results, SPECS))
     del content["seconds"]
     return to_json(content)
 
@@ -45,7 +51,7 @@ def results():
 @pytest.fixture(scope="module")
 def directed_results():
     """All directed tests against the robots that they are written for."""
-    return execute(plan(("correct", "legacy"), ("directed",)), jobs=1)
+    return execute(plan(handover_campaign(), ("directed",)), jobs=1)
 
 
 def test_the_number_of_workers_changes_nothing(results):
@@ -76,7 +82,7 @@ def test_what_was_not_run_is_absent(results):
 
 def test_random_tests_never_reach_the_release(results):
     """The paper's coverage hole: the release block stays at 0 %, for want of a ready human."""
-    content = json.loads(to_json(coverage_document(summarise(results, TEXTS))))
+    content = json.loads(to_json(coverage_document(summarise(results, SPECS))))
     for robot in content["robots"].values():
         for strategy in robot["strategies"].values():
             assert strategy["by_state"]["release"]["percent"] == 0
@@ -85,19 +91,19 @@ def test_random_tests_never_reach_the_release(results):
 
 def test_tests_whose_signals_got_lost_are_repeated():
     """The table without the fitted loss differs in these tests only."""
-    chosen = plan(("legacy",), ("constrained",), tests=40, seed=1)
+    chosen = plan(handover_campaign(("legacy",)), ("constrained",), tests=40, seed=1)
     played = execute(chosen, jobs=1)
-    lost = [one for one in played.outcomes if not one.connected]
-    assert 0 < len(lost) == len(played.unfitted) < 12
-    assert all(one.verdicts["R5"] == "NT" for one in lost)
-    assert all(one.verdicts["R5"] == "P" for one in played.unfitted)
-    summary = summarise(played, TEXTS).robots["legacy"]
-    assert summary.unfitted["constrained"]["R5"][Verdict.PASS] == 40
+    lost = [one for one in played.played if one.control is not None]
+    assert 0 < len(lost) < 12
+    assert all(one.outcome.verdicts["R5"] == "NT" for one in lost)
+    assert all(one.control.verdicts["R5"] == "P" for one in lost)
+    summary = summarise(played, SPECS).robots["legacy"]
+    assert summary.controls["constrained"]["R5"][Verdict.PASS] == 40
 
 
 def test_directed_tests_end_as_they_should(directed_results):
     """Each known answer comes out; a planted fault says nothing about the robot as it is."""
-    summary = summarise(directed_results, TEXTS)
+    summary = summarise(directed_results, SPECS)
     for figures in summary.robots.values():
         assert [one.test for one in figures.known if not one.as_expected] == []
     correct = summary.robots["correct"]
@@ -108,28 +114,25 @@ def test_directed_tests_end_as_they_should(directed_results):
 
 def test_a_crash_of_the_robot_is_a_result(directed_results):
     """The test is judged, and its exception is kept."""
-    crashed = [one for one in directed_results.outcomes if one.error is not None]
+    crashed = [one for one in directed_results.played if one.outcome.error is not None]
     assert [one.job.test.name for one in crashed] == ["mutant-crashes"]
-    assert "ZeroDivisionError" in crashed[0].error
-    assert set(crashed[0].verdicts) == set(REQUIREMENTS)
+    outcome = crashed[0].outcome
+    assert outcome.ending is Ending.CRASHED
+    assert "ZeroDivisionError" in outcome.error
+    assert set(outcome.verdicts) == set(REQUIREMENTS)
 
 
-def test_an_interrupt_keeps_the_finished_tests(monkeypatch, results):
+def test_an_interrupt_keeps_the_finished_tests(results):
     """The table is made of what was played, and says that it is partial."""
-    calls = []
 
-    def run_test(*arguments, **options):
-        calls.append(1)
-        if len(calls) == 9:
-            raise KeyboardInterrupt
-        return real(*arguments, **options)
+    def press_ctrl_c(count):
+        if count == 8:
+            signal.raise_signal(signal.SIGINT)
 
-    real = playing.run_test
-    monkeypatch.setattr(playing, "run_test", run_test)
-    played = execute(small(), jobs=1)
-    assert played.cut_short == INTERRUPTED
-    assert played.outcomes == results.outcomes[:8]
-    content = table_document(summarise(played, TEXTS))
+    played = execute(small(), jobs=1, progress=press_ctrl_c)
+    assert played.cut_short == "interrupted"
+    assert played.played == results.played[:8]
+    content = table_document(summarise(played, SPECS))
     assert content["partial"] == {"why": "interrupted", "planned": 24, "finished": 8}
     counted = sum(
         strategy["tests"]
@@ -142,8 +145,8 @@ def test_an_interrupt_keeps_the_finished_tests(monkeypatch, results):
 @pytest.mark.skipif(
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
 )
-def test_a_worker_that_is_lost_keeps_the_finished_tests(monkeypatch, results):
-    """Those before the one that it had, which is named."""
+def test_a_test_that_kills_its_process_is_a_result(monkeypatch, results):
+    """The others are played all the same."""
     last = small().jobs()[4]
 
     def run_test(test, **options):
@@ -151,19 +154,24 @@ def test_a_worker_that_is_lost_keeps_the_finished_tests(monkeypatch, results):
             os.kill(os.getpid(), signal.SIGKILL)
         return real(test, **options)
 
-    real = playing.run_test
-    monkeypatch.setattr(playing, "run_test", run_test)
+    real = system.run_test
+    monkeypatch.setattr(system, "run_test", run_test)
     played = execute(small(), jobs=2)
-    assert played.outcomes == results.outcomes[:4]
-    assert "the process that had test 5 was ended from outside" in played.cut_short
+    lost = played.played[4].outcome
+    assert (lost.ending, lost.error) == (Ending.LOST, "its process was ended by signal SIGKILL")
+    assert lost.verdicts == dict.fromkeys(REQUIREMENTS, Verdict.INCONCLUSIVE)
+    assert not played.cut_short
+    assert [one for one in played.played if one.outcome is not lost] == [
+        one for one in results.played if one.job != last
+    ]
 
 
 def test_without_monitors_nothing_is_judged():
     """The simulation is the same, and no verdict is made up."""
-    played = execute(small(monitors=False), jobs=1, unfitted=False)
-    assert all(one.verdicts == {} for one in played.outcomes)
-    assert [one.states for one in played.outcomes] == [
-        one.states for one in execute(small(), jobs=1, unfitted=False).outcomes
+    played = execute(small(monitors=False), jobs=1, controls=False)
+    assert all(one.outcome.verdicts == {} for one in played.played)
+    assert [one.outcome.hits for one in played.played] == [
+        one.outcome.hits for one in execute(small(), jobs=1, controls=False).played
     ]
 
 
@@ -180,13 +188,13 @@ def test_the_paper_counts_a_hundred_a_hundred_and_four():
 
 def test_every_count_has_an_example(results):
     """Each cell that is not nought leads to a test with that verdict."""
-    examples = choose_examples(results.outcomes)
-    verdicts = {(one.job.robot, one.job.test.name): one.verdicts for one in results.outcomes}
+    examples = choose_examples(results.played)
+    verdicts = {(one.job.robot, one.job.test.name): one.outcome.verdicts for one in results.played}
     for (robot, strategy, requirement, verdict), job in examples.by_cell.items():
         assert (job.robot, job.test.strategy) == (robot, strategy)
         assert verdicts[robot, job.test.name][requirement] == verdict
         assert job in examples.jobs
-    summary = summarise(results, TEXTS)
+    summary = summarise(results, SPECS)
     cells = {
         (robot, strategy, requirement, verdict)
         for robot, figures in summary.robots.items()
@@ -201,9 +209,9 @@ def test_every_count_has_an_example(results):
 def test_a_failed_test_is_held_against_itself_without_fault(directed_results):
     """A planted fault is best seen beside the robot as it is."""
     failed = next(
-        one.job for one in directed_results.outcomes if one.job.test.name == "mutant-releases-late"
+        one.job for one in directed_results.played if one.job.test.name == "mutant-releases-late"
     )
-    first, *others = comparable_jobs(failed, ["R1"], directed_results.outcomes)
+    first, *others = comparable_jobs(failed, ["R1"], directed_results.played)
     assert first.test.mutation is None
     assert first.test.actions == failed.test.actions
     assert others

@@ -13,11 +13,12 @@ import time
 
 import pytest
 
-from handover.campaign import command
-from handover.campaign.execute import INTERRUPTED, execute
 from handover.checker import spec_path
 from handover.cli import main
-from handover.generator.files import directed, save
+from handover.generator.files import directed
+from rvmon.cdv.execute import execute
+from rvmon.cdv.files import save
+from rvmon.cli import campaign_run
 
 pytestmark = pytest.mark.campaign
 
@@ -185,11 +186,11 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys, jobs):
 
         return execute(chosen, **{**options, "progress": press_ctrl_c})
 
-    monkeypatch.setattr(command, "execute", interrupted)
+    monkeypatch.setattr(campaign_run, "execute", interrupted)
     assert main(["run", "--tests", "60", "--jobs", jobs, "--out", str(tmp_path)]) == 130
     content = json.loads((tmp_path / "table.json").read_text())
     partial = content["partial"]
-    assert partial["why"] == INTERRUPTED
+    assert partial["why"] == "interrupted"
     assert 0 < partial["finished"] < partial["planned"] == 120
     strategies = content["robots"]["correct"]["strategies"].values()
     assert sum(strategy["tests"] for strategy in strategies) == partial["finished"]

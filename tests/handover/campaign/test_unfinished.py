@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from handover.campaign import command
-from handover.campaign.execute import execute
-from handover.campaign.unfinished import NAME
 from handover.cli import main
+from rvmon.cdv.execute import execute
+from rvmon.cdv.unfinished import NAME
+from rvmon.cli import campaign_run
 from rvmon.execute.journal import entries
 
 pytestmark = pytest.mark.campaign
@@ -46,8 +46,8 @@ def whole(tmp_path_factory):
             kept.append(Path("out", NAME).read_bytes())
             real(*arguments)
 
-        real = command.write_tables
-        patch.setattr(command, "write_tables", write_tables)
+        real = campaign_run.write_tables
+        patch.setattr(campaign_run, "write_tables", write_tables)
         assert main(WORDS) == 0
     return files(folder / "out"), kept[0]
 
@@ -67,7 +67,7 @@ def played(monkeypatch):
     def telling(plan, **options):
         return execute(plan, **{**options, "progress": told.append})
 
-    monkeypatch.setattr(command, "execute", telling)
+    monkeypatch.setattr(campaign_run, "execute", telling)
     return told
 
 
@@ -130,7 +130,7 @@ def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
         return execute(plan, **{**options, "progress": press_ctrl_c})
 
     with monkeypatch.context() as patch:
-        patch.setattr(command, "execute", interrupted)
+        patch.setattr(campaign_run, "execute", interrupted)
         assert main(WORDS) == 130
     assert "the same command plays what is left" in capsys.readouterr().err
     assert (here / "table.json").exists()

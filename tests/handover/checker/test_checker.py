@@ -3,9 +3,10 @@
 import pytest
 
 import rvmon
-from handover.checker import SPECS, Checker, spec_path
+from handover.checker import SPECS, spec_path
 from handover.driver import run_test
 from handover.generator.files import directed
+from rvmon.cdv.checker import Checker
 
 TESTS = {test.name: test for test in directed()}
 

@@ -4,57 +4,58 @@ from itertools import pairwise
 
 import pytest
 
-from handover.collector.meter import StatementMeter, robot_statements
-from handover.collector.statements import coverage_by_state, total_coverage
+from handover.collector.code import robot_code
 from handover.collector.transitions import TRANSITIONS
 from handover.driver import run_test
 from handover.generator.files import directed
 from handover.robot.handover import STATES
+from rvmon.cdv.meter import Meter, code_groups, statements_name
+from rvmon.coverage.hits import merged, score
 
 TESTS = {test.name: test for test in directed()}
+GROUPS = {group.name: group for group in code_groups(robot_code())}
 
 
 @pytest.fixture(scope="module")
 def measured():
-    """A handover that ends in a release, and one in which nobody comes: runs and lines."""
-    meter = StatementMeter()
-    runs, executed = {}, {}
+    """A handover that ends in a release, and one in which nobody comes: runs and hits."""
+    meter = Meter(robot_code())
+    runs, hits = {}, {}
     for name in ("released", "nobody-comes"):
         meter.begin()
         runs[name] = run_test(TESTS[name], around_robot_step=lambda: meter)
-        executed[name] = meter.executed()
-    return runs, executed
+        hits[name] = meter.hits()
+    return runs, hits
 
 
 def test_every_state_has_statements():
     """The robot's code is divided among its states, each line in one of them."""
-    by_state = robot_statements().by_state
-    assert set(STATES) < set(by_state)
-    assert all(by_state[state] for state in STATES)
-    lines = [line for lines in by_state.values() for line in lines]
+    assert {statements_name(state) for state in STATES} < GROUPS.keys()
+    assert all(group.items for group in GROUPS.values())
+    lines = [line for group in GROUPS.values() for line in group.items]
     assert len(lines) == len(set(lines)) > 100
 
 
 @pytest.mark.campaign
 def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
     """The block of the paper's coverage hole: 100 % by one test, 0 % by another."""
-    _, executed = measured
-    released = coverage_by_state(robot_statements(), executed["released"])
-    nobody = coverage_by_state(robot_statements(), executed["nobody-comes"])
-    assert released["release"].percent == 100
-    assert released["release"].missing == ()
-    assert nobody["release"].percent == 0
-    assert len(nobody["release"].missing) == nobody["release"].statements
+    _, hits = measured
+    release = GROUPS[statements_name("release")]
+    released, nobody = (score(hits[name], release) for name in ("released", "nobody-comes"))
+    assert released.covered == released.items > 0
+    assert nobody.covered == 0
 
 
 def test_tests_are_kept_apart(measured):
     """What one test ran is not counted for another; together they cover more than each."""
-    _, executed = measured
-    statements = robot_statements()
-    alone = [total_coverage(statements, lines).covered for lines in executed.values()]
-    both = total_coverage(statements, frozenset().union(*executed.values()))
-    assert both.covered > max(alone)
-    assert 0 < both.percent < 100
+    _, hits = measured
+
+    def covered(one):
+        return sum(score(one, group).covered for group in GROUPS.values())
+
+    alone = [covered(one) for one in hits.values()]
+    both = covered(merged(hits.values()))
+    assert max(alone) < both < sum(len(group.items) for group in GROUPS.values())
 
 
 def test_measuring_changes_nothing(measured):

@@ -16,8 +16,8 @@ from handover.driver import Run, run_test
 from handover.driver.draws import draw
 from handover.driver.run import SampleValues
 from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
-from handover.generator.files import AbstractTestError
 from handover.generator.pseudorandom import constrained, pseudorandom
+from rvmon.cdv import TestError
 
 pytestmark = pytest.mark.campaign
 
@@ -232,7 +232,7 @@ def test_arguments_win_over_the_file() -> None:
 )
 def test_unknown_names_are_told(settings: dict[str, str], names: str) -> None:
     """A robot or mutation that does not exist is an error that lists those that do."""
-    with pytest.raises(AbstractTestError, match=names):
+    with pytest.raises(TestError, match=names):
         run_test(protocol_test(1), **settings)  # type: ignore[arg-type]
 
 

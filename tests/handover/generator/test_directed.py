@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 
 import rvmon
-from handover.checker import Checker, spec_path
+from handover.checker import spec_path
 from handover.driver import run_test
 from handover.generator import AbstractTest
 from handover.generator.files import directed
+from rvmon.cdv.checker import Checker
 
 
 @pytest.mark.campaign

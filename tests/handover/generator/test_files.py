@@ -12,17 +12,12 @@ from hypothesis import strategies as st
 
 from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
 from handover.generator.abstract_test import Switch
-from handover.generator.files import (
-    AbstractTestError,
-    directed,
-    from_json,
-    load,
-    save,
-    to_json,
-)
+from handover.generator.files import directed
 from handover.generator.pseudorandom import constrained
 from handover.robot.mutants import MUTATIONS
 from handover.world.faults import SensorFaults
+from rvmon.cdv import TestError
+from rvmon.cdv.files import from_json, load, save, to_json
 
 REQUIREMENTS = ("R1", "R2", "R3", "R4", "R5")
 CANNOT_OCCUR = {("R4", "F"), ("R4", "NT")}
@@ -51,7 +46,7 @@ TESTS = st.builds(
 @given(TESTS)
 def test_written_tests_read_back(test: AbstractTest) -> None:
     """Reading what was written gives the same test."""
-    assert from_json(to_json(test)) == test
+    assert from_json(to_json(test), AbstractTest) == test
 
 
 def test_another_process_writes_the_same_file() -> None:
@@ -65,7 +60,7 @@ def test_files_carry_the_name(tmp_path: Path) -> None:
     test = constrained(1, seed=0)[0]
     path = save(test, tmp_path)
     assert path.name == "constrained-000.json"
-    assert load(path) == test
+    assert load(path, AbstractTest) == test
 
 
 GOOD = to_json(constrained(1, seed=0)[0])
@@ -90,15 +85,15 @@ def test_wrong_files_are_told(text: bytes, message: str, tmp_path: Path) -> None
     """Each wrong file gives one message with the file, the place and the cause."""
     path = tmp_path / "wrong.json"
     path.write_bytes(text)
-    with pytest.raises(AbstractTestError, match=message) as caught:
-        load(path)
+    with pytest.raises(TestError, match=message) as caught:
+        load(path, AbstractTest)
     assert "wrong.json" in str(caught.value)
 
 
 def test_missing_file_is_told(tmp_path: Path) -> None:
     """A file that is not there is named."""
-    with pytest.raises(AbstractTestError, match=r"none\.json: No such file"):
-        load(tmp_path / "none.json")
+    with pytest.raises(TestError, match=r"none\.json: No such file"):
+        load(tmp_path / "none.json", AbstractTest)
 
 
 def test_directed_tests_cover_every_verdict() -> None:

@@ -7,19 +7,21 @@ import msgspec
 import pytest
 
 from handover.driver import run_test
-from handover.generator.abstract_test import ReceiveSignal, SendSignal, SetParam
-from handover.generator.files import AbstractTestError
+from handover.generator.abstract_test import Action, ReceiveSignal, SendSignal, SetParam
 from handover.generator.model_based import (
+    ACTIONS,
+    PATIENCE,
     PROJECTED,
-    choose_times,
     instantiate,
     model_based,
-    project,
     save_templates,
     templates,
 )
-from handover.generator.template import Wait, load_template, save_template
 from handover.model import handover_network
+from rvmon.cdv import TestError
+from rvmon.cdv.template import Wait, load_template, save_template
+from rvmon.cdv.template_times import choose_times
+from rvmon.cdv.witness_templates import project
 from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.verify import verify
 
@@ -73,7 +75,7 @@ def test_chosen_times_are_those_of_some_run(policy):
     ]
     template = templates(policy)[0]
     for seed in range(100):
-        times = choose_times(template, random.Random(seed))
+        times = choose_times(template, random.Random(seed), PATIENCE)
         for p, first in zip(instants, times, strict=True):
             for q, second in zip(instants, times, strict=True):
                 bound = run.timing.bounds[p, q]
@@ -87,7 +89,7 @@ def test_waits_are_chosen_all_over_their_windows():
     (index,) = (i for i, s in enumerate(template.steps, 1) if s.does == "workflow: ready → tasking")
     seen = set()
     for seed in range(300):
-        times = choose_times(template, random.Random(seed))
+        times = choose_times(template, random.Random(seed), PATIENCE)
         seen.add(times[index] - times[index - 1])
     assert seen == set(range(1, 11))
 
@@ -97,7 +99,7 @@ def test_templates_are_files(tmp_path):
     """A template can be written, read by people and programs, and read back."""
     template = templates()[1]
     path = save_template(template, tmp_path)
-    assert load_template(path) == template
+    assert load_template(path, Action) == template
     assert '"gaze: off → ok"' in path.read_text()
 
 
@@ -113,7 +115,7 @@ def test_each_way_of_choosing_has_its_tests_and_templates(tmp_path):
         "model-based",
         "model-based-fastest",
     ]
-    again = load_template(tmp_path / "model-based-fastest" / "R2.json")
+    again = load_template(tmp_path / "model-based-fastest" / "R2.json", Action)
     assert instantiate(again, seed=1) == tests["fastest"][1]
 
 
@@ -124,21 +126,21 @@ def test_a_template_changed_by_hand_is_taken_as_it_is(tmp_path):
     steps = list(template.steps)
     steps[2] = msgspec.structs.replace(steps[2], wait=Wait(100, 100))
     changed = msgspec.structs.replace(template, steps=tuple(steps))
-    times = choose_times(changed, random.Random(1))
+    times = choose_times(changed, random.Random(1), PATIENCE)
     assert times[3] - times[2] == 100
     steps[4] = msgspec.structs.replace(steps[4], wait=Wait(90, 90))
-    with pytest.raises(AbstractTestError, match="no times satisfy"):
+    with pytest.raises(TestError, match="no times satisfy"):
         instantiate(msgspec.structs.replace(template, steps=tuple(steps)), seed=1)
     (tmp_path / "broken.json").write_text('{"name": 3}')
-    with pytest.raises(AbstractTestError, match="not a test template"):
-        load_template(tmp_path / "broken.json")
+    with pytest.raises(TestError, match="not a test template"):
+        load_template(tmp_path / "broken.json", Action)
 
 
 def test_projection_keeps_only_human_and_sensors():
     """No step of a template is the robot's."""
     network = handover_network()
     run = verify(network, "E<> robot.done and withheld").run
-    steps, _ = project(network, run)
+    steps, _ = project(network, run, PROJECTED, ACTIONS)
     assert steps
     assert {step.does.split(":")[0] for step in steps} <= set(PROJECTED)
 

@@ -1,16 +1,14 @@
-"""The page of a campaign: both robots' tables beside the paper's, coverage, directed tests."""
+"""The page of a campaign: the tables of all robots, coverage of their code, directed tests."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 
-from handover.campaign.examples import Cell
-from handover.campaign.flow_chart import flow_chart
-from handover.campaign.paper import SOURCE
-from handover.campaign.summary import CampaignSummary, KnownAnswer, RobotSummary
-from handover.campaign.tables import ROBOTS, comparable, fitted_note, unfitted_table, verdict_table
-from handover.collector.statements import StatementCoverage
+from rvmon.cdv.examples import Cell
+from rvmon.cdv.presentation import Presentation
+from rvmon.cdv.summary import BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
+from rvmon.cdv.tables import RobotTables
 from rvmon.report.markup import Child, e, page
 from rvmon.report.percent import percent_text
 from rvmon.report.style import MARKS
@@ -18,8 +16,10 @@ from rvmon.report.table_html import legend, table_html
 from rvmon.verdict.verdict import Verdict
 
 
-def report_page(
+def campaign_page(
     summary: CampaignSummary,
+    tables: Mapping[str, RobotTables],
+    presentation: Presentation,
     *,
     command: str,
     examples: Mapping[Cell, str],
@@ -29,28 +29,35 @@ def report_page(
 
     Args:
         summary: the campaign's figures.
+        tables: its verdicts, by robot.
+        presentation: what is shown of them.
         command: runs the campaign again.
         examples: addresses of pages, by the counts that they are examples of.
         tests: addresses of pages, by robot and test.
     """
-    body: list[Child] = [_header(summary)]
-    for robot, figures in summary.robots.items():
-        if figures.requirements and figures.strategies:
-            body.append(_verdicts(summary, robot, examples))
-    for robot, figures in summary.robots.items():
-        if figures.strategies:
-            body.append(_coverage(robot, figures))
-    for robot, figures in summary.robots.items():
-        if figures.known:
-            body.append(_known(robot, figures, tests))
+    body: list[Child] = [_header(summary, presentation)]
+    body.extend(
+        _verdicts(robot, figures, tables[robot], examples)
+        for robot, figures in summary.robots.items()
+        if figures.requirements and figures.strategies
+    )
+    body.extend(
+        _coverage(figures, presentation, summary.kind)
+        for figures in summary.robots.values()
+        if any(one.statements for one in figures.strategies.values())
+    )
+    body.extend(
+        _known(robot, figures, tests) for robot, figures in summary.robots.items() if figures.known
+    )
     body.append(
         e("footer", None, e("p", None, "Run it again: ", e("code", None, command)), legend())
     )
-    return page("Simulated handovers", body, styles=["base.css", "report.css"], scripts=[])
+    title = presentation.title or summary.name
+    return page(title, body, styles=["base.css", "report.css"], scripts=[])
 
 
-def _header(summary: CampaignSummary) -> ET.Element:
-    robots = " and ".join(ROBOTS[robot].lower() for robot in summary.robots)
+def _header(summary: CampaignSummary, presentation: Presentation) -> ET.Element:
+    robots = " and ".join(robot.title.lower() for robot in summary.robots.values())
     partial = None
     if summary.cut_short:
         partial = e(
@@ -65,11 +72,15 @@ def _header(summary: CampaignSummary) -> ET.Element:
     return e(
         "header",
         None,
-        e("h1", None, f"{summary.finished} simulated handovers, {len(requirements)} requirements"),
+        e(
+            "h1",
+            None,
+            f"{summary.finished} {presentation.tests}, {len(requirements)} requirements",
+        ),
         e(
             "p",
             {"class": "soft"},
-            f"{robots}; seed {summary.seed}; {summary.stepped_s:,.0f} s of physics "
+            f"{robots}; seed {summary.seed}; {presentation.page_work(summary)} "
             f"in {summary.seconds:.1f} s",
         ),
         partial,
@@ -77,31 +88,27 @@ def _header(summary: CampaignSummary) -> ET.Element:
     )
 
 
-def _verdicts(summary: CampaignSummary, robot: str, examples: Mapping[Cell, str]) -> ET.Element:
-    table = verdict_table(summary, robot)
-    paper = comparable(robot)
-    unfitted = unfitted_table(summary, robot)
-    beside = {} if paper is None else {"paper": paper}
-
+def _verdicts(
+    robot: str, figures: RobotSummary, tables: RobotTables, examples: Mapping[Cell, str]
+) -> ET.Element:
     def link(strategy: str, requirement: str, verdict: Verdict) -> str | None:
         return examples.get((robot, strategy, requirement, verdict))
 
     parts: list[Child] = [
-        e("h2", None, ROBOTS[robot]),
-        e("p", {"class": "soft"}, "judged by ", e("code", None, summary.robots[robot].spec)),
-        table_html(table, beside=beside, link=link),
+        e("h2", None, figures.title),
+        e("p", {"class": "soft"}, "judged by ", e("code", None, figures.spec)),
+        table_html(tables.own, beside=tables.beside, link=link),
     ]
-    parts.extend(e("p", {"class": "soft"}, note) for note in table.notes)
-    if paper is not None:
-        parts.append(e("p", {"class": "soft"}, f"paper: {SOURCE}"))
-    if paper is not None and unfitted is not None:
-        parts.append(e("p", {"class": "soft"}, fitted_note(table, unfitted)))
-        summary_line = e("summary", None, "The same without the fitted loss of signals")
-        parts.append(e("details", None, summary_line, table_html(unfitted, beside=beside)))
+    remarks = (*tables.own.notes, *tables.sources, tables.remark)
+    parts.extend(e("p", {"class": "soft"}, remark) for remark in remarks if remark)
+    if tables.control is not None and tables.control_label:
+        summary_line = e("summary", None, tables.control_title)
+        table = table_html(tables.control, beside=tables.beside)
+        parts.append(e("details", None, summary_line, table))
     return e("section", None, *parts)
 
 
-def _coverage(robot: str, figures: RobotSummary) -> ET.Element:
+def _coverage(figures: RobotSummary, presentation: Presentation, kind: str) -> ET.Element:
     charts = [
         e(
             "figure",
@@ -113,25 +120,20 @@ def _coverage(robot: str, figures: RobotSummary) -> ET.Element:
                 f" {strategy.tests} tests, {_unbroken(strategy.total)} of "
                 f"{strategy.total.statements} statements",
             ),
-            flow_chart(strategy),
+            presentation.chart(strategy),
         )
         for name, strategy in figures.strategies.items()
     ]
     return e(
         "section",
         None,
-        e("h2", None, f"{ROBOTS[robot]}: statement coverage by state"),
-        e(
-            "p",
-            {"class": "soft"},
-            "Filled by the share of the state's statements that ran; the number beside a line is "
-            "how many tests took it, a dashed line was taken by none.",
-        ),
+        e("h2", None, f"{figures.title}: statement coverage by {kind}"),
+        e("p", {"class": "soft"}, presentation.chart_legend),
         e("div", {"class": "charts"}, *charts),
     )
 
 
-def _unbroken(total: StatementCoverage) -> str:
+def _unbroken(total: BlockCoverage) -> str:
     """The share that ran; a line does not end before its sign."""
     return percent_text(total.covered, total.statements).replace(" ", "\N{NO-BREAK SPACE}")
 
@@ -147,7 +149,7 @@ def _known(robot: str, figures: RobotSummary, tests: Mapping[tuple[str, str], st
     return e(
         "section",
         None,
-        e("h2", None, f"{ROBOTS[robot]}: directed tests"),
+        e("h2", None, f"{figures.title}: directed tests"),
         e("p", {"class": "soft"}, f"{right} of {len(figures.known)} ended as they should."),
         e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid),
     )

@@ -7,19 +7,21 @@ that outcomes depend on has changed since: tests, requirements, programs.
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import msgspec
 
 import rvmon
-from handover.campaign.outcome import Outcome
-from handover.campaign.plan import Job, Plan
 from rvmon.cache import file_stamps
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.outcome import Outcome, Played
+from rvmon.cdv.plan import Job, Plan
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.session import Spec
@@ -28,21 +30,18 @@ from rvmon.spec.checked.plain_data import to_plain
 NAME = "unfinished.journal"
 """The file in a campaign's folder."""
 
-_OURS = (Path(rvmon.__file__).parent, Path(__file__).parents[1])
-_OTHERS = ("coverage", "numpy", "pymunk")
-"""The packages that have a part in an outcome."""
+_PACKAGES = ("coverage", "msgspec", "numpy")
+"""Those that have a part in any outcome."""
 
 
 @dataclass(frozen=True, slots=True)
-class Played:
-    """One test that was played.
+class _Entry:
+    """One test that was played, and the seconds that the campaign had taken by then."""
 
-    Attributes:
-        outcomes: of the test; a second one is without the fitted loss of signals.
-        seconds: that the campaign had taken by then.
-    """
-
-    outcomes: Sequence[Outcome]
+    test: str
+    robot: str
+    outcome: Outcome
+    control: Outcome | None
     seconds: float
 
 
@@ -61,14 +60,22 @@ class Unfinished:
     Attributes:
         path: of its file.
         played: what was played before, in the order of the plan.
+        seconds: that this took.
     """
 
     path: Path
     played: Sequence[Played] = ()
+    seconds: float = 0.0
 
-    def keep(self, one: Played) -> None:
-        """Write down what was played: it stays, whatever ends this process."""
-        journal.add(self.path, msgspec.json.encode(one))
+    def keep(self, one: Played, seconds: float) -> None:
+        """Write down what was played: it stays, whatever ends this process.
+
+        Args:
+            one: a test.
+            seconds: that the campaign has taken by now.
+        """
+        entry = _Entry(one.job.test.name, one.job.robot, one.outcome, one.control, seconds)
+        journal.add(self.path, msgspec.json.encode(entry))
 
 
 def unfinished(folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str) -> Unfinished:
@@ -91,18 +98,22 @@ def unfinished(folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str
             known = [msgspec.json.encode(own)]
         else:
             _refuse_another(path, known[:1], own)
-        played = list(_in_order(known[1:], plan.jobs()))
-        journal.begin(path, known[: 1 + len(played)])
+        entries = list(_in_order(known[1:], plan.jobs()))
+        journal.begin(path, known[: 1 + len(entries)])
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror}: remove it, or name another --out") from None
-    return Unfinished(path, played)
+    played = [
+        Played(job, one.outcome, one.control)
+        for job, one in zip(plan.jobs(), entries, strict=False)
+    ]
+    return Unfinished(path, played, entries[-1].seconds if entries else 0.0)
 
 
-def _in_order(entries: Sequence[bytes], jobs: Sequence[Job]) -> Iterator[Played]:
+def _in_order(entries: Sequence[bytes], jobs: Sequence[Job]) -> Iterator[_Entry]:
     """What was played, up to the first that is not in its place: two may have written at once."""
     for entry, job in zip(entries, jobs, strict=False):
-        one = msgspec.json.decode(entry, type=Played)
-        if one.outcomes[0].job != job:
+        one = msgspec.json.decode(entry, type=_Entry)
+        if (one.test, one.robot) != (job.test.name, job.robot):
             return
         yield one
 
@@ -126,10 +137,38 @@ def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None
 
 def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
     """A checksum of all that outcomes depend on."""
+    campaign = plan.campaign
     said = [
-        msgspec.to_builtins(plan.jobs()),
+        [(job.robot, msgspec.to_builtins(job.test)) for job in plan.jobs()],
         {robot: to_plain(spec.checked) for robot, spec in specs.items()},
-        [list(file_stamps(str(folder))) for folder in _OURS],
-        [sys.version, *map(version, _OTHERS)],
+        [list(_stamps(path)) for path in (Path(rvmon.__file__).parent, *_sources(campaign))],
+        [sys.version, *map(_version, (*_PACKAGES, *campaign.packages))],
     ]
     return hashlib.sha256(json.dumps(said).encode()).hexdigest()
+
+
+def _sources(campaign: Campaign) -> list[Path]:
+    """What is named, and the files in which tests, strategies and systems are defined."""
+    makers = (
+        campaign.test,
+        *campaign.strategies.values(),
+        *(robot.system for robot in campaign.robots.values()),
+    )
+    modules = {inspect.getmodule(one) for one in makers}
+    files = {module.__file__ for module in modules if module is not None and module.__file__}
+    return [*map(Path, campaign.sources), *map(Path, sorted(files))]
+
+
+def _stamps(path: Path) -> Iterator[tuple[str, int, int]]:
+    if path.is_dir():
+        yield from file_stamps(str(path))
+    else:
+        found = path.stat()
+        yield str(path), found.st_size, found.st_mtime_ns
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from msgspec import structs
 
-from handover.campaign.outcome import Outcome
-from handover.campaign.plan import Job
+from rvmon.cdv.outcome import Ending, Played
+from rvmon.cdv.plan import Job
 from rvmon.verdict.verdict import Verdict
 
 Cell = tuple[str, str, str, Verdict]
@@ -31,15 +31,20 @@ class Examples:
     by_cell: dict[Cell, Job]
 
 
-def choose_examples(outcomes: Sequence[Outcome]) -> Examples:
-    """The first test behind each count, every test with a known answer, and every crash."""
+def choose_examples(played: Sequence[Played]) -> Examples:
+    """The first test behind each count, every test with a known answer, and every crash.
+
+    A test that hung, or ended its process, has no page: it cannot be played again here.
+    """
     by_cell: dict[Cell, Job] = {}
     shown: dict[tuple[str, str], Job] = {}
-    for one in outcomes:
-        job = one.job
-        wanted = bool(job.test.expected) or one.error is not None
+    for one in played:
+        job, outcome = one.job, one.outcome
+        if outcome.ending in (Ending.HUNG, Ending.LOST):
+            continue
+        wanted = bool(job.test.expected) or outcome.error is not None
         if job.test.mutation is None:
-            for requirement, verdict in one.verdicts.items():
+            for requirement, verdict in outcome.verdicts.items():
                 cell = (job.robot, job.test.strategy, requirement, verdict)
                 wanted |= by_cell.setdefault(cell, job) is job
         if wanted:
@@ -47,25 +52,25 @@ def choose_examples(outcomes: Sequence[Outcome]) -> Examples:
     return Examples(tuple(shown.values()), by_cell)
 
 
-def comparable_jobs(job: Job, failed: Sequence[str], outcomes: Sequence[Outcome]) -> list[Job]:
+def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -> list[Job]:
     """Tests that pass what a test failed, on the same robot: its own self without fault first.
 
     Args:
         job: the test that failed.
         failed: ids of the requirements.
-        outcomes: of the campaign.
+        played: of the campaign.
     """
     jobs = _without_fault(job)
     for requirement in failed:
         passed = [
             one.job
-            for one in outcomes
+            for one in played
             if one.job.robot == job.robot
             and one.job.test.mutation is None
-            and one.verdicts.get(requirement) is Verdict.PASS
+            and one.outcome.verdicts.get(requirement) is Verdict.PASS
         ]
-        # The directed tests are about what the robot should do: those first.
-        passed.sort(key=lambda one: one.test.strategy != "directed")
+        # Tests that know their answers are about what the robot should do: those first.
+        passed.sort(key=lambda one: not one.test.expected)
         jobs.extend(passed[:COMPARED])
     return jobs
 

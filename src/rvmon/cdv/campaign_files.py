@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
-from handover.campaign.documents import coverage_document, table_document, to_json
-from handover.campaign.outcome import Results
-from handover.campaign.summary import CampaignSummary
-from handover.campaign.tables import all_tables
-from handover.campaign.text import print_summary
-from handover.generator.files import save
-from handover.generator.model_based import save_templates
+from rvmon.cdv.documents import coverage_document, to_json
+from rvmon.cdv.files import save
+from rvmon.cdv.outcome import Results
+from rvmon.cdv.presentation import Presentation
+from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.tables import RobotTables, named_tables
+from rvmon.cdv.text import print_summary
 from rvmon.report.table_csv import tables_csv
 from rvmon.report.table_latex import table_latex
 from rvmon.writing import write_whole
@@ -26,28 +26,29 @@ TEXT_COLUMNS = 100
 """Width of `table.txt`."""
 
 
-def write_tables(folder: Path, summary: CampaignSummary) -> None:
+def write_tables(
+    folder: Path,
+    summary: CampaignSummary,
+    tables: Mapping[str, RobotTables],
+    presentation: Presentation,
+) -> None:
     """Write `table.txt`, `table.csv`, `table.tex`, `table.json` and `coverage.json`."""
-    tables = all_tables(summary)
-    latex = "\n".join(table_latex(table) for table in tables.values())
+    named = {**named_tables(tables, summary.control), **presentation.further}
+    latex = "\n".join(table_latex(table) for table in named.values())
     folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / "table.txt", _plain_text(summary))
-    write_whole(folder / "table.csv", tables_csv(tables, key="robot"))
+    write_whole(folder / "table.txt", _plain_text(summary, tables))
+    write_whole(folder / "table.csv", tables_csv(named, key="robot"))
     write_whole(folder / "table.tex", latex)
-    write_whole(folder / "table.json", to_json(table_document(summary)))
+    write_whole(folder / "table.json", to_json(presentation.document(summary)))
     write_whole(folder / "coverage.json", to_json(coverage_document(summary)))
 
 
 def write_tests(folder: Path, results: Results) -> None:
-    """Write every test that was played to `tests/`, each to be replayed alone.
-
-    Those that the model gave have their templates in `templates/`.
-    """
+    """Write every test that was played to `tests/`, each to be replayed alone."""
     tests = folder / TESTS
     tests.mkdir(parents=True, exist_ok=True)
-    for test in {one.job.test.name: one.job.test for one in results.outcomes}.values():
+    for test in {one.job.test.name: one.job.test for one in results.played}.values():
         save(test, tests)
-    save_templates({one.job.test.strategy for one in results.outcomes}, folder / TEMPLATES)
 
 
 def dated_files(folder: Path) -> dict[Path, int]:
@@ -79,11 +80,11 @@ def left_over(folder: Path, before: Mapping[Path, int]) -> str:
     )
 
 
-def _plain_text(summary: CampaignSummary) -> str:
+def _plain_text(summary: CampaignSummary, tables: Mapping[str, RobotTables]) -> str:
     import io
 
-    from rich.console import Console
+    from rvmon.report.terminal import Terminal
 
     text = io.StringIO()
-    print_summary(summary, Console(file=text, width=TEXT_COLUMNS, color_system=None))
+    print_summary(summary, tables, Terminal(file=text, width=TEXT_COLUMNS, color_system=None))
     return text.getvalue()

@@ -1,15 +1,17 @@
-"""A test template: what the human does, and within which limits of time, as a readable file."""
+"""A test template: what is done to the system, and within which limits of time, as a file."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Generic, Literal, TypeVar
 
 import msgspec
 
-from handover.generator.abstract_test import Action
-from handover.generator.files import AbstractTestError
+from rvmon.cdv.files import TestError
 from rvmon.writing import write_whole
+
+Action = TypeVar("Action")
+"""What a test does at an instant; the tests' own type."""
 
 PolicyName = Literal["shortest", "fastest", "likely"]
 """How a witness is chosen among several."""
@@ -22,13 +24,15 @@ class Wait(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     at_most: int | None = None
 
 
-class TemplateStep(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """One instant of a witness, seen from the human.
+class TemplateStep(
+    msgspec.Struct, Generic[Action], frozen=True, forbid_unknown_fields=True, omit_defaults=True
+):
+    """One instant of a witness, seen from the automata that a test stands for.
 
     Attributes:
-        does: the edges of the human's and the sensors' automata that are taken.
+        does: the edge of these automata that is taken.
         wait: since the step before, or since the start.
-        action: what the human's script does; `None` if the instant only bounds others.
+        action: what the test does; `None` if the instant only bounds others.
     """
 
     does: str
@@ -47,8 +51,10 @@ class Limit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     wait: Wait
 
 
-class Template(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """A witness of a query, projected on the human and the sensors.
+class Template(
+    msgspec.Struct, Generic[Action], frozen=True, forbid_unknown_fields=True, omit_defaults=True
+):
+    """A witness of a query, projected on the automata that a test stands for.
 
     Attributes:
         name: the query's id.
@@ -65,30 +71,34 @@ class Template(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_def
     query: str
     policy: PolicyName
     unit_s: float
-    steps: tuple[TemplateStep, ...]
+    steps: tuple[TemplateStep[Action], ...]
     limits: tuple[Limit, ...] = ()
 
 
-def template_to_json(template: Template) -> bytes:
+def template_to_json(template: Template[Any]) -> bytes:
     """A template as indented JSON."""
     return msgspec.json.format(msgspec.json.encode(template), indent=2) + b"\n"
 
 
-def load_template(path: str | Path) -> Template:
+def load_template(path: str | Path, action: Any) -> Template[Any]:
     """Read a template.
 
+    Args:
+        path: of the file.
+        action: the type of what tests do.
+
     Raises:
-        AbstractTestError: the file cannot be read, or holds no template.
+        TestError: the file cannot be read, or holds no template.
     """
     try:
-        return msgspec.json.decode(Path(path).read_bytes(), type=Template)
+        return msgspec.json.decode(Path(path).read_bytes(), type=Template[action])
     except OSError as error:
-        raise AbstractTestError(f"{path}: {error.strerror}") from None
+        raise TestError(f"{path}: {error.strerror}") from None
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise AbstractTestError(f"{path}: not a test template: {error}") from None
+        raise TestError(f"{path}: not a test template: {error}") from None
 
 
-def save_template(template: Template, folder: str | Path) -> Path:
+def save_template(template: Template[Any], folder: str | Path) -> Path:
     """Write a template to `folder/<name>.json` and return that path."""
     path = Path(folder) / f"{template.name}.json"
     write_whole(path, template_to_json(template))

@@ -1,0 +1,99 @@
+"""The campaign of simulated handovers: its robots, strategies, and what is shown of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import handover
+from handover.campaign.documents import table_document
+from handover.campaign.flow_chart import flow_chart
+from handover.campaign.paper import paper_table
+from handover.campaign.strategies import STRATEGIES
+from handover.campaign.system import Handover, without_loss
+from handover.campaign.tables import robot_tables
+from handover.checker import SPECS, spec_path
+from handover.collector.code import robot_code
+from handover.collector.transitions import TRANSITIONS
+from handover.generator.abstract_test import AbstractTest
+from handover.generator.model_based import save_templates
+from handover.robot.handover import STATES
+from rvmon.cdv import Campaign, Control, Robot
+from rvmon.cdv.campaign_files import TEMPLATES
+from rvmon.cdv.presentation import Presentation
+from rvmon.cdv.summary import CampaignSummary
+
+ROBOTS = {
+    "correct": "Correct robot",
+    "legacy": "Robot of the paper's testbench",
+}
+"""What the two robots are called in titles."""
+
+
+def handover_campaign(robots: Sequence[str] = tuple(ROBOTS), *, monitors: bool = True) -> Campaign:
+    """A campaign against one or both robots.
+
+    Args:
+        robots: `correct`, `legacy` or both, in the order of the tables.
+        monitors: `False` judges nothing, to measure what judging costs.
+    """
+    return Campaign(
+        name="handover",
+        test=AbstractTest,
+        strategies=STRATEGIES,
+        robots={
+            robot: Robot(
+                partial(Handover, robot),
+                spec_path(robot) if monitors else None,
+                title=ROBOTS[robot],
+                spec_name=SPECS[robot],
+            )
+            for robot in robots
+        },
+        code=robot_code(),
+        states=STATES,
+        transitions=TRANSITIONS,
+        control=Control("without start-up loss", without_loss),
+        sources=(Path(handover.__file__).parent,),
+        packages=("pymunk",),
+        program="handover",
+        presentation=Presentation(
+            title="Simulated handovers",
+            tests="simulated handovers",
+            tables=robot_tables,
+            further={"paper": paper_table()},
+            document=table_document,
+            work=_work,
+            page_work=_physics,
+            chart=flow_chart,
+            chart_legend="Filled by the share of the state's statements that ran; the number "
+            "beside a line is how many tests took it, a dashed line was taken by none.",
+            robot_words=_robot_words,
+            write_more=_write_templates,
+        ),
+    )
+
+
+def _work(summary: CampaignSummary) -> str:
+    return (
+        f"{summary.simulated_s:,.0f} s simulated, {_stepped_s(summary)} s of them with physics, "
+        "the rest at rest and jumped over"
+    )
+
+
+def _physics(summary: CampaignSummary) -> str:
+    return f"{_stepped_s(summary)} s of physics"
+
+
+def _stepped_s(summary: CampaignSummary) -> str:
+    return f"{summary.figures.get('stepped_s', 0):,.0f}"
+
+
+def _robot_words(robot: str) -> Sequence[str]:
+    return ("--legacy",) if robot == "legacy" else ()
+
+
+def _write_templates(folder: Path, strategies: frozenset[str]) -> None:
+    """Write the templates of those strategies that take tests from the model."""
+    save_templates(strategies, folder / TEMPLATES)

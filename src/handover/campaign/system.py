@@ -1,0 +1,56 @@
+"""The simulated handover as a system that campaigns play tests on."""
+
+from __future__ import annotations
+
+from msgspec import structs
+
+from handover.campaign.scene import scene_of
+from handover.driver import run_test
+from handover.driver.draws import draw
+from handover.generator.abstract_test import AbstractTest
+from rvmon.cdv import Observer, Run
+
+OUTCOMES = {
+    "timed_out": "the robot timed out",
+    "released": "the piece was released",
+    "withheld": "the robot kept the piece",
+}
+"""What ends a handover, by the event that tells it."""
+
+
+class Handover:
+    """One of the two robots, and the human, in their world.
+
+    Args:
+        robot: `correct` or `legacy`.
+    """
+
+    def __init__(self, robot: str) -> None:
+        self._robot = robot
+
+    def play(self, test: AbstractTest, observer: Observer) -> Run:
+        """Play a test from the human's script and its seed to its horizon."""
+        run = run_test(
+            test,
+            robot=self._robot,
+            record_poses=observer.wants_scene,
+            observer=observer,
+            around_robot_step=observer.code,
+        )
+        happened = {name for _, values in run.samples for name in values}
+        outcome = next((text for event, text in OUTCOMES.items() if event in happened), "none")
+        return Run(
+            end_ns=run.end_ns,
+            states=run.states,
+            error=run.error,
+            figures={"stepped_s": run.stepped_s},
+            facts=[("outcome", outcome)],
+            scene=None if run.poses is None else scene_of(run.poses),
+        )
+
+
+def without_loss(test: AbstractTest) -> AbstractTest | None:
+    """A test whose signals get lost at start-up, without that loss; `None` for the others."""
+    if draw(test.seed, startup_loss=test.startup_loss).connected:
+        return None
+    return structs.replace(test, startup_loss=False)

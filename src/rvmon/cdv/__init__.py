@@ -1,0 +1,29 @@
+"""Coverage-driven verification of any system that can play a test.
+
+An engineer with a simulator writes a `System`, a type of `Test`, a strategy that makes some, and
+requirements; `rvmon.cli.campaign.main(campaign)` is then the command line of the campaign. What is
+made of it, in order: `plan` (tests), `execute` (on all cores: `play` judges and measures),
+`summarise` (figures), tables, pages, and `gate`: is all as expected?
+"""
+
+from rvmon.cdv.abstract_test import Test
+from rvmon.cdv.campaign import Campaign, Control, ExpectedFailure, Robot, Strategy
+from rvmon.cdv.code import Block, Code, blocks_of
+from rvmon.cdv.files import TestError
+from rvmon.cdv.system import Observer, Run, System
+
+__all__ = [
+    "Block",
+    "Campaign",
+    "Code",
+    "Control",
+    "ExpectedFailure",
+    "Observer",
+    "Robot",
+    "Run",
+    "Strategy",
+    "System",
+    "Test",
+    "TestError",
+    "blocks_of",
+]

@@ -1,0 +1,121 @@
+"""A campaign as data: which robots, which tests, what is measured, what is known to fail."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+from rvmon.cdv.abstract_test import Test
+from rvmon.cdv.code import Code
+from rvmon.cdv.presentation import Presentation
+from rvmon.cdv.system import System, Values
+from rvmon.coverage.hits import Hits
+from rvmon.session import Spec
+
+Strategy = Callable[[int, int], Sequence[Test]]
+"""Makes tests from `(count, seed)`: the same arguments, the same tests."""
+
+
+class Collector(Protocol):
+    """Gathers coverage of one run from its samples, beside what a campaign measures itself."""
+
+    def step_ns(self, t_ns: int, values: Values, /) -> object:
+        """Take one sample, with the declared names only."""
+        ...
+
+    def finish_ns(self, t_ns: int, /) -> Hits:
+        """What was hit in a run that is judged up to `t_ns`."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A system under test, and what judges it.
+
+    Attributes:
+        system: makes what plays its tests, once in each process.
+        spec: file of its requirements; `None` judges nothing.
+        title: what tables and pages call it; default: its name in the campaign.
+        spec_name: what they call its requirements; default: the path.
+    """
+
+    system: Callable[[], System[Any]]
+    spec: str | Path | None
+    title: str = ""
+    spec_name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A test without what its strategy, or chance, adds to it: played right after it.
+
+    Its outcome is kept beside that of the test, and is shown in a table of its own.
+
+    Attributes:
+        name: heads that table, such as `without wind`.
+        make: the control of a test, `None` if it has none.
+    """
+
+    name: str
+    make: Callable[[Any], Test | None]
+
+
+@dataclass(frozen=True, slots=True)
+class ExpectedFailure:
+    """A failure that is known, and is not to fail a campaign; that it fails no more, is told.
+
+    Attributes:
+        requirement: that fails.
+        reason: why that is accepted, for people.
+        strategy: in tests of this strategy only; empty: of any.
+        test: in this test only; empty: in any.
+        robot: of this robot only; empty: of any.
+    """
+
+    requirement: str
+    reason: str
+    strategy: str = ""
+    test: str = ""
+    robot: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """All that a campaign consists of but how many tests there are.
+
+    Attributes:
+        name: what people call it; the page's title.
+        test: the type of its tests.
+        strategies: by name, in the order of the columns of a table.
+        robots: by name.
+        code: whose coverage is measured.
+        states: that the robot has; what is not listed is counted, and is no goal.
+        transitions: that its code allows, likewise.
+        control: what is played beside a test.
+        expected_failures: that do not fail it.
+        timeout_s: seconds that a test may take before it is ended; `None`: any.
+        collect: makes of the requirements what gathers further coverage, once for each run.
+        sources: files and folders that runs depend on, beside those that define tests, strategies
+            and systems: where one has changed, an unfinished campaign is not gone on with.
+        packages: whose versions runs depend on, likewise.
+        program: the installed program that runs it; empty: the script that was started.
+        presentation: how its figures are shown.
+    """
+
+    name: str
+    test: type[Test]
+    strategies: Mapping[str, Strategy]
+    robots: Mapping[str, Robot]
+    code: Code | None = None
+    states: Sequence[str] = ()
+    transitions: Sequence[tuple[str, str]] = ()
+    control: Control | None = None
+    expected_failures: Sequence[ExpectedFailure] = ()
+    timeout_s: float | None = 600.0
+    collect: Callable[[Spec], Collector] | None = None
+    sources: Sequence[str | Path] = ()
+    packages: Sequence[str] = ()
+    program: str = ""
+    presentation: Presentation = field(default_factory=Presentation)

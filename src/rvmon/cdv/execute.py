@@ -1,0 +1,91 @@
+"""Play a plan on all cores; whatever ends it early, the finished tests are kept."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from functools import partial
+
+from rvmon.cdv.outcome import Ending, Outcome, Played, Results
+from rvmon.cdv.plan import Job, Plan
+from rvmon.cdv.play import player
+from rvmon.cdv.unfinished import Unfinished
+from rvmon.execute import parallel
+from rvmon.execute.ended import Ended
+from rvmon.loading import load
+from rvmon.verdict.verdict import Verdict
+
+INTERRUPTED = "interrupted"
+
+Progress = Callable[[int], None]
+"""Called with the number of tests that have been finished so far."""
+
+
+def execute(
+    plan: Plan,
+    *,
+    jobs: int | None = None,
+    controls: bool = True,
+    kept: Unfinished | None = None,
+    progress: Progress | None = None,
+) -> Results:
+    """Play all tests of a plan.
+
+    The results do not depend on the number of processes. A test that takes too long, or ends its
+    process, is a result as any other.
+
+    Args:
+        plan: what to play.
+        jobs: processes; default: one per core.
+        controls: also play the controls of tests.
+        kept: where each test is kept as soon as it was played; those before are not played again.
+        progress: told as tests are finished.
+
+    Raises:
+        RvmonError: a system cannot be made, or no process be begun.
+    """
+    campaign = plan.campaign
+    played = [] if kept is None else [*kept.played]
+    begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
+    control = campaign.control.make if campaign.control is not None and controls else None
+    left = plan.jobs()[len(played) :]
+    cut_short = ""
+    try:
+        with closing(
+            parallel.execute(
+                left,
+                partial(player, campaign.robots, campaign.code, control, campaign.collect),
+                jobs=jobs or os.cpu_count() or 1,
+                what="test",
+                instead=partial(_without_result, _requirements(plan)),
+                timeout_s=campaign.timeout_s,
+            )
+        ) as results:
+            for job, (outcome, beside) in zip(left, results, strict=True):
+                played.append(Played(job, outcome, beside))
+                if kept is not None:
+                    kept.keep(played[-1], time.perf_counter() - begun)
+                if progress is not None:
+                    progress(len(played))
+    except KeyboardInterrupt:
+        cut_short = INTERRUPTED
+    return Results(plan, tuple(played), time.perf_counter() - begun, cut_short)
+
+
+def _requirements(plan: Plan) -> dict[str, tuple[str, ...]]:
+    """The ids of the requirements by robot."""
+    return {
+        name: () if robot.spec is None else tuple(load(robot.spec).requirements)
+        for name, robot in plan.campaign.robots.items()
+    }
+
+
+def _without_result(
+    requirements: Mapping[str, Sequence[str]], job: Job, ended: Ended
+) -> tuple[Outcome, None]:
+    """The outcome of a test whose process was ended: nothing is known of it."""
+    ending = Ending.HUNG if ended.timed_out else Ending.LOST
+    verdicts = dict.fromkeys(requirements[job.robot], Verdict.INCONCLUSIVE)
+    return Outcome(verdicts, {}, ending, ended.why, 0, {}, ended.seconds), None

@@ -1,0 +1,168 @@
+"""Is a campaign as expected? What is known to fail, fails; nothing else does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from rvmon.cdv.campaign import Campaign, ExpectedFailure
+from rvmon.cdv.outcome import Ending, Played, Results
+from rvmon.errors import UnknownNameError
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class TestJudgement:
+    """One test, held against what was expected of it.
+
+    Attributes:
+        played: the test.
+        wrong: what is not as expected, each in a sentence.
+        known: failures that are, each with the reason for which it is accepted.
+    """
+
+    __test__ = False
+
+    played: Played
+    wrong: tuple[str, ...]
+    known: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignJudgement:
+    """A campaign, held against what was expected of it.
+
+    Attributes:
+        tests: each by itself, in the order of the plan.
+        checks: what is asked of the tests together, in words, with what is wrong about it; empty if
+            nothing is.
+    """
+
+    tests: tuple[TestJudgement, ...]
+    checks: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def wrong(self) -> list[str]:
+        """All that is not as expected."""
+        of_tests = [
+            f"{one.played.job.test.name} ({one.played.job.robot}): {what}"
+            for one in self.tests
+            for what in one.wrong
+        ]
+        return of_tests + [f"{check}: {what}" for check, what in self.checks.items() if what]
+
+
+def judge_campaign(
+    results: Results, requirements: Mapping[str, Sequence[str]], *, strict: bool = False
+) -> CampaignJudgement:
+    """Hold all tests against what was expected of them.
+
+    A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
+    to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, its code
+    crashed, it hung or was lost. An expected failure that did not occur is wrong as well, unless no
+    test was played in which it could.
+
+    Args:
+        results: what was played.
+        requirements: by robot, the ids of those that were judged.
+        strict: verdicts that are inconclusive are wrong as well, unless the test knows them, and so
+            are requirements that were never triggered: that no test passed or failed.
+
+    Raises:
+        UnknownNameError: a failure is expected of what does not exist.
+    """
+    campaign = results.plan.campaign
+    _refuse_unknown(campaign, requirements)
+    tests = tuple(_judged(one, campaign.expected_failures, strict) for one in results.played)
+    checks = dict(_expected_failures(campaign.expected_failures, results.played))
+    if strict and not results.cut_short:
+        checks |= _triggered(requirements, results.played)
+    return CampaignJudgement(tests, checks)
+
+
+def _judged(one: Played, expected: Sequence[ExpectedFailure], strict: bool) -> TestJudgement:
+    test, outcome = one.job.test, one.outcome
+    wrong, known = [], []
+    if outcome.ending is not Ending.FINISHED and test.mutation is None:
+        wrong.append(f"{outcome.ending}: {outcome.error}")
+    for name, verdict in outcome.verdicts.items():
+        answer = test.expected.get(name)
+        if answer is not None:
+            if answer != verdict:
+                wrong.append(f"{name} is {verdict}, not {answer}")
+        elif verdict is Verdict.FAIL and test.mutation is None:
+            reasons = [why.reason for why in expected if _is_about(why, one, name)]
+            if reasons:
+                known.append(f"{name} failed, as expected: {reasons[0]}")
+            else:
+                wrong.append(f"{name} failed")
+        elif verdict is Verdict.INCONCLUSIVE and strict and test.mutation is None:
+            wrong.append(f"{name} is inconclusive")
+    return TestJudgement(one, tuple(wrong), tuple(known))
+
+
+def _is_about(why: ExpectedFailure, one: Played, requirement: str) -> bool:
+    """Whether a failure is expected of a requirement in a test on the robot as it is."""
+    test = one.job.test
+    return (
+        why.requirement == requirement
+        and test.mutation is None
+        and why.strategy in ("", test.strategy)
+        and why.test in ("", test.name)
+        and why.robot in ("", one.job.robot)
+    )
+
+
+def _expected_failures(
+    expected: Sequence[ExpectedFailure], played: Sequence[Played]
+) -> Iterator[tuple[str, str]]:
+    for why in expected:
+        verdicts = [
+            one.outcome.verdicts[why.requirement]
+            for one in played
+            if why.requirement in one.outcome.verdicts and _is_about(why, one, why.requirement)
+        ]
+        if verdicts:
+            missing = "" if Verdict.FAIL in verdicts else f"it did not, in {len(verdicts)} tests"
+            yield f"{_told(why)} is expected to fail ({why.reason})", missing
+
+
+def _told(why: ExpectedFailure) -> str:
+    places = {"strategy": why.strategy, "test": why.test, "robot": why.robot}
+    named = [f"{kind} {name}" for kind, name in places.items() if name]
+    return " of ".join([why.requirement, *named])
+
+
+def _triggered(
+    requirements: Mapping[str, Sequence[str]], played: Sequence[Played]
+) -> dict[str, str]:
+    checks = {}
+    for robot, names in requirements.items():
+        for name in names:
+            seen = {
+                one.outcome.verdicts[name]
+                for one in played
+                if one.job.robot == robot and one.job.test.mutation is None
+            }
+            is_decided = not seen.isdisjoint((Verdict.PASS, Verdict.FAIL))
+            wrong = "" if is_decided else "no test passed or failed it"
+            checks[f"{name} is triggered ({robot})"] = wrong
+    return checks
+
+
+def _refuse_unknown(campaign: Campaign, requirements: Mapping[str, Sequence[str]]) -> None:
+    """A misspelt name would expect nothing; a test's is not known beforehand."""
+    names = {name for several in requirements.values() for name in several}
+    kinds: dict[str, set[str]] = {
+        "requirement": names,
+        "strategy": {*campaign.strategies},
+        "robot": {*campaign.robots},
+    }
+    for why in campaign.expected_failures:
+        for kind, known in kinds.items():
+            name = getattr(why, kind)
+            if name and known and name not in known:
+                raise UnknownNameError(
+                    f"a failure is expected of the {kind} `{name}`: there are "
+                    f"{', '.join(sorted(known))}"
+                )

@@ -1,0 +1,173 @@
+"""Play tests one after the other in one process, judged and measured."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from rvmon.cdv.campaign import Collector, Robot
+from rvmon.cdv.checker import Checker
+from rvmon.cdv.code import Code
+from rvmon.cdv.files import TestError
+from rvmon.cdv.meter import Meter
+from rvmon.cdv.outcome import Ending, Outcome
+from rvmon.cdv.plan import Job
+from rvmon.cdv.system import Observer, Run, System
+from rvmon.coverage.hits import Hit
+from rvmon.errors import RvmonError
+from rvmon.loading import load
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rvmon.cdv.abstract_test import Test
+    from rvmon.session import Spec
+
+STATES = "states"
+TRANSITIONS = "transitions"
+"""Names of groups of coverage."""
+
+
+def player(
+    robots: Mapping[str, Robot],
+    code: Code | None,
+    control: Callable[[Any], Test | None] | None,
+    collect: Callable[[Spec], Collector] | None,
+) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
+    """What plays a job in this process: its outcome, and that of its control.
+
+    Args:
+        robots: by name.
+        code: whose coverage is measured.
+        control: makes the control of a test.
+        collect: makes of the requirements what gathers further coverage.
+
+    Raises:
+        RvmonError: a system cannot be made, or the requirements are wrong.
+    """
+    benches = {name: _Bench(name, robot, code, collect) for name, robot in robots.items()}
+
+    def played(job: Job) -> tuple[Outcome, Outcome | None]:
+        bench = benches[job.robot]
+        outcome = bench.play(job.test)
+        beside = None if control is None else control(job.test)
+        return outcome, None if beside is None else bench.play(beside)
+
+    return played
+
+
+class _Bench:
+    """One robot with all that plays, judges and measures it."""
+
+    def __init__(
+        self,
+        name: str,
+        robot: Robot,
+        code: Code | None,
+        collect: Callable[[Spec], Collector] | None,
+    ) -> None:
+        self._system = system_of(name, robot)
+        self._checker = None if robot.spec is None else Checker(load(robot.spec), collect)
+        self._meter = None if code is None else Meter(code)
+        self._marked = code is not None and code.marked
+
+    def play(self, test: Test) -> Outcome:
+        """Play a test; whatever its code raises is its result."""
+        started = time.perf_counter()
+        if self._checker is not None:
+            self._checker.begin()
+        if self._meter is not None:
+            self._meter.begin()
+        measured = self._meter or nullcontext()
+        observer = Observer(
+            () if self._checker is None else (self._checker.observe,),
+            code=measured if self._marked else None,
+        )
+        with nullcontext() if self._marked else measured:
+            run = run_of(self._system, test, observer)
+        hits: dict[str, Mapping[str, Hit]] = {**_hits_of_states(run)}
+        if self._meter is not None:
+            hits |= self._meter.hits()
+        verdicts: Mapping[str, Verdict] = {}
+        if self._checker is not None:
+            verdicts = self._checker.finish(run.end_ns).verdicts
+            hits |= self._checker.hits(run.end_ns)
+        return Outcome(
+            verdicts=verdicts,
+            hits=hits,
+            ending=Ending.FINISHED if run.error is None else Ending.CRASHED,
+            error=run.error,
+            end_ns=run.end_ns,
+            figures=run.figures,
+            seconds=time.perf_counter() - started,
+        )
+
+
+def system_of(name: str, robot: Robot) -> System[Any]:
+    """What plays the tests of a robot.
+
+    Raises:
+        RvmonError: it cannot be made; the message says why.
+    """
+    try:
+        return robot.system()
+    except RvmonError:
+        raise
+    except Exception as error:
+        raise RvmonError(
+            f"robot `{name}`: what plays its tests cannot be made: {_told(error)}"
+        ) from error
+
+
+def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
+    """Play a test; an exception that comes out ends the run at its last sample.
+
+    Raises:
+        TestError: the test cannot be played, says the system.
+    """
+    try:
+        run = system.play(test, observer)
+    except TestError:
+        raise
+    except Exception as error:  # noqa: BLE001 - of whatever kind those of the system are
+        return Run(observer.last_ns, error=_told(error))
+    if run.end_ns < observer.last_ns:
+        told = f"it ended at {run.end_ns} ns, before its last sample, at {observer.last_ns} ns"
+        return replace(run, end_ns=observer.last_ns, error=run.error or told)
+    return run
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"
+
+
+def transition(source: str, target: str) -> str:
+    """The name of a transition."""
+    return f"{source} → {target}"
+
+
+def source_and_target(name: str) -> tuple[str, str]:
+    """The states of a transition of that name."""
+    source, _, target = name.partition(" → ")
+    return source, target
+
+
+def _hits_of_states(run: Run) -> dict[str, dict[str, Hit]]:
+    """How often each state was entered and each transition taken, and when first."""
+    entered = [(t_ns, state) for t_ns, state in run.states]
+    taken = [
+        (t_ns, transition(source, target)) for (_, source), (t_ns, target) in pairwise(entered)
+    ]
+    found = {STATES: _counted(entered), TRANSITIONS: _counted(taken)}
+    return {group: items for group, items in found.items() if items}
+
+
+def _counted(happened: list[tuple[int, str]]) -> dict[str, Hit]:
+    hits: dict[str, Hit] = {}
+    for t_ns, name in happened:
+        known = hits.get(name)
+        hits[name] = Hit(1, t_ns) if known is None else Hit(known.count + 1, known.first)
+    return hits

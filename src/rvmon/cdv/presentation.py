@@ -1,0 +1,84 @@
+"""How the figures of a campaign are shown; each part can be replaced."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rvmon.cdv.documents import table_document
+from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, StrategySummary
+from rvmon.cdv.tables import RobotTables, robot_tables
+from rvmon.report.markup import Child, e
+from rvmon.report.percent import percent_text
+from rvmon.report.table import VerdictTable
+
+
+def work_done(summary: CampaignSummary) -> str:
+    """What a campaign has simulated."""
+    return f"{summary.simulated_s:,.0f} s simulated"
+
+
+def block_chart(figures: StrategySummary) -> ET.Element:
+    """A table of the shares of all blocks under one strategy, and of the transitions taken."""
+    rows = [
+        e(
+            "tr",
+            None,
+            e("th", {"scope": "row"}, name),
+            _share(one),
+            _share(figures.branches.get(name)),
+        )
+        for name, one in figures.statements.items()
+    ]
+    head = e("tr", None, *(e("th", None, name) for name in ("", "statements", "branches")))
+    taken: list[Child] = []
+    for (source, target), tests in figures.transitions.items():
+        taken += [e("dt", None, f"{source} → {target}"), e("dd", None, f"{tests} tests")]
+    blocks = e("table", None, e("thead", None, head), e("tbody", None, *rows))
+    return e("div", None, blocks, e("dl", {"class": "facts"}, *taken) if taken else None)
+
+
+def _share(block: BlockCoverage | None) -> ET.Element:
+    shown = "" if block in (None, NOTHING) else percent_text(block.covered, block.statements)
+    return e("td", None, shown)
+
+
+def _option_of_robot(robot: str) -> Sequence[str]:
+    return ("--robot", robot)
+
+
+def _nothing_more(folder: Path, strategies: frozenset[str]) -> None:
+    """Write no further files."""
+
+
+@dataclass(frozen=True, slots=True)
+class Presentation:
+    """How figures are shown.
+
+    Attributes:
+        title: of the page; default: the campaign's name.
+        tests: what the tests are called, in the plural.
+        tables: the verdicts on each robot, by its name.
+        further: more tables for the files, by name.
+        document: the content of `table.json`.
+        work: what was simulated, in words, for the terminal.
+        page_work: the same for the page.
+        chart: the coverage of code under one strategy, for the page.
+        chart_legend: how to read it.
+        robot_words: what `replay` is told so that it takes a robot.
+        write_more: writes further files to a campaign's folder, told the strategies of its tests.
+    """
+
+    title: str = ""
+    tests: str = "tests"
+    tables: Callable[[CampaignSummary], Mapping[str, RobotTables]] = robot_tables
+    further: Mapping[str, VerdictTable] = field(default_factory=dict)
+    document: Callable[[CampaignSummary], Mapping[str, object]] = table_document
+    work: Callable[[CampaignSummary], str] = work_done
+    page_work: Callable[[CampaignSummary], str] = work_done
+    chart: Callable[[StrategySummary], ET.Element] = block_chart
+    chart_legend: str = "The share of statements that ran and of branches that were taken."
+    robot_words: Callable[[str], Sequence[str]] = _option_of_robot
+    write_more: Callable[[Path, frozenset[str]], None] = _nothing_more

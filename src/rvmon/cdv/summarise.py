@@ -1,0 +1,151 @@
+"""Outcomes of tests become the figures of a campaign."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+
+from rvmon.cdv.meter import branches_name, code_groups, statements_name
+from rvmon.cdv.outcome import Ending, Outcome, Played, Results
+from rvmon.cdv.play import STATES, TRANSITIONS, source_and_target
+from rvmon.cdv.summary import (
+    BlockCoverage,
+    CampaignSummary,
+    KnownAnswer,
+    RobotSummary,
+    StrategySummary,
+)
+from rvmon.coverage.model import Group
+from rvmon.report.table import Counts
+from rvmon.session import Spec
+from rvmon.verdict.verdict import Verdict
+
+
+def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
+    """Count verdicts, statements, branches, states and transitions.
+
+    Args:
+        results: what was played.
+        specs: by robot, what judged it; one that is missing was not judged.
+    """
+    campaign = results.plan.campaign
+    groups = {} if campaign.code is None else {one.name: one for one in code_groups(campaign.code)}
+    blocks = [] if campaign.code is None else [block.name for block in campaign.code.blocks]
+    robots = {}
+    for name, robot in campaign.robots.items():
+        texts = _texts(specs.get(name))
+        played = [one for one in results.played if one.job.robot == name]
+        by_strategy = _by_strategy(played)
+        robots[name] = RobotSummary(
+            title=robot.title or name,
+            spec=robot.spec_name or str(robot.spec or ""),
+            requirements=texts,
+            strategies={
+                strategy: _strategy(several, tuple(texts), groups, blocks)
+                for strategy, several in by_strategy.items()
+            },
+            controls={
+                strategy: _counts((one.control or one.outcome for one in several), tuple(texts))
+                for strategy, several in by_strategy.items()
+                if any(one.control is not None for one in several)
+            },
+            known=tuple(_known(one) for one in played if one.job.test.expected),
+        )
+    outcomes = [one.outcome for one in results.played]
+    return CampaignSummary(
+        name=campaign.name,
+        seed=results.plan.seed,
+        robots=robots,
+        planned=len(results.plan.jobs()),
+        finished=len(outcomes),
+        cut_short=results.cut_short,
+        seconds=results.seconds,
+        simulated_s=sum(one.simulated_s for one in outcomes),
+        figures=_sums(outcomes),
+        kind="" if campaign.code is None else campaign.code.kind,
+        control="" if campaign.control is None else campaign.control.name,
+    )
+
+
+def _texts(spec: Spec | None) -> Mapping[str, str]:
+    if spec is None:
+        return {}
+    return {name: requirement.text for name, requirement in spec.requirements.items()}
+
+
+def _by_strategy(played: Sequence[Played]) -> dict[str, list[Played]]:
+    """Tests of the robot as it is: a planted fault says nothing about the robot."""
+    groups: dict[str, list[Played]] = {}
+    for one in played:
+        if one.job.test.mutation is None:
+            groups.setdefault(one.job.test.strategy, []).append(one)
+    return groups
+
+
+def _strategy(
+    played: Sequence[Played],
+    requirements: Sequence[str],
+    groups: Mapping[str, Group],
+    blocks: Sequence[str],
+) -> StrategySummary:
+    outcomes = [one.outcome for one in played]
+    statements = {block: _coverage(groups[statements_name(block)], outcomes) for block in blocks}
+    branches = {
+        block: _coverage(groups[branches_name(block)], outcomes)
+        for block in blocks
+        if branches_name(block) in groups
+    }
+    return StrategySummary(
+        tests=len(outcomes),
+        counts=_counts(outcomes, requirements),
+        statements=statements,
+        branches=branches,
+        states=_tests_that_hit(STATES, outcomes),
+        transitions={
+            source_and_target(name): tests
+            for name, tests in _tests_that_hit(TRANSITIONS, outcomes).items()
+        },
+        crashes=_errors(played, Ending.CRASHED),
+        hung=_errors(played, Ending.HUNG),
+        lost=_errors(played, Ending.LOST),
+        figures=_sums(outcomes),
+        simulated_s=sum(one.simulated_s for one in outcomes),
+    )
+
+
+def _errors(played: Sequence[Played], ending: Ending) -> dict[str, str]:
+    return {
+        one.job.test.name: one.outcome.error or "" for one in played if one.outcome.ending is ending
+    }
+
+
+def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> dict[str, Counts]:
+    all_of_them = list(outcomes)
+    counts: dict[str, Counts] = {}
+    for name in requirements:
+        seen = Counter(one.verdicts[name] for one in all_of_them)
+        counts[name] = {verdict: seen[verdict] for verdict in Verdict}
+    return counts
+
+
+def _tests_that_hit(group: str, outcomes: Sequence[Outcome]) -> Counter[str]:
+    return Counter(item for one in outcomes for item in one.hits.get(group, ()))
+
+
+def _coverage(group: Group, outcomes: Sequence[Outcome]) -> BlockCoverage:
+    hit = _tests_that_hit(group.name, outcomes)
+    missing = tuple(item for item in group.items if item not in hit)
+    return BlockCoverage(len(group.items), len(group.items) - len(missing), missing)
+
+
+def _sums(outcomes: Sequence[Outcome]) -> dict[str, float]:
+    sums: dict[str, float] = {}
+    for one in outcomes:
+        for name, figure in one.figures.items():
+            sums[name] = sums.get(name, 0) + figure
+    return sums
+
+
+def _known(one: Played) -> KnownAnswer:
+    test = one.job.test
+    return KnownAnswer(test.name, test.text, test.mutation, test.expected, one.outcome.verdicts)

@@ -1,0 +1,157 @@
+"""The figures of a campaign: data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rvmon.report.percent import percent
+from rvmon.report.table import Counts
+from rvmon.verdict.verdict import Verdict
+
+Transition = tuple[str, str]
+"""From one state of the robot to another."""
+
+
+@dataclass(frozen=True, slots=True)
+class BlockCoverage:
+    """How many statements of a block of code have run, or how many of its branches were taken.
+
+    Attributes:
+        statements: how many there are.
+        covered: how many of them have run.
+        missing: names of those that have not.
+    """
+
+    statements: int
+    covered: int
+    missing: tuple[str, ...]
+
+    @property
+    def percent(self) -> float:
+        """The share of `covered`; 0 and 100 only where exactly none or all have run."""
+        return percent(self.covered, self.statements)
+
+    def __add__(self, other: BlockCoverage) -> BlockCoverage:
+        return BlockCoverage(
+            self.statements + other.statements,
+            self.covered + other.covered,
+            self.missing + other.missing,
+        )
+
+
+NOTHING = BlockCoverage(0, 0, ())
+"""The coverage of no code."""
+
+
+@dataclass(frozen=True, slots=True)
+class StrategySummary:
+    """All tests of one strategy against one robot.
+
+    Attributes:
+        tests: how many were played.
+        counts: of tests per verdict, by requirement.
+        statements: of the measured code, by block; empty if none is measured.
+        branches: by block; empty if they are not measured.
+        states: how many tests entered each.
+        transitions: how many tests took each.
+        crashes: what the code under test raised, by test.
+        hung: why, by test that was ended.
+        lost: why, by test whose process was ended.
+        figures: the sums of what the system tells of its runs.
+        simulated_s: simulated seconds.
+    """
+
+    tests: int
+    counts: Mapping[str, Counts]
+    statements: Mapping[str, BlockCoverage]
+    branches: Mapping[str, BlockCoverage]
+    states: Mapping[str, int]
+    transitions: Mapping[Transition, int]
+    crashes: Mapping[str, str]
+    hung: Mapping[str, str]
+    lost: Mapping[str, str]
+    figures: Mapping[str, float]
+    simulated_s: float
+
+    @property
+    def total(self) -> BlockCoverage:
+        """Statements of all blocks."""
+        return sum(self.statements.values(), NOTHING)
+
+
+@dataclass(frozen=True, slots=True)
+class KnownAnswer:
+    """A directed test: it knows what is to come out.
+
+    Attributes:
+        test: its name.
+        text: what it is for.
+        mutation: the fault that was planted into the robot, if any.
+        expected: verdicts by requirement.
+        verdicts: what came out, of all requirements.
+    """
+
+    test: str
+    text: str
+    mutation: str | None
+    expected: Mapping[str, str]
+    verdicts: Mapping[str, Verdict]
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether all expected verdicts came out."""
+        return all(self.verdicts.get(name) == verdict for name, verdict in self.expected.items())
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSummary:
+    """One robot under all strategies.
+
+    Attributes:
+        title: what tables call it.
+        spec: name of the requirements' file.
+        requirements: id → text; empty if nothing was judged.
+        strategies: without the tests on mutated robots.
+        controls: counts by strategy and requirement with the controls in the place of their tests,
+            of the strategies that have some.
+        known: directed tests with their answers, also those on mutated robots.
+    """
+
+    title: str
+    spec: str
+    requirements: Mapping[str, str]
+    strategies: Mapping[str, StrategySummary]
+    controls: Mapping[str, Mapping[str, Counts]]
+    known: tuple[KnownAnswer, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignSummary:
+    """A whole campaign.
+
+    Attributes:
+        name: of the campaign.
+        seed: all tests follow from it.
+        robots: by name.
+        planned: how many tests were to be played.
+        finished: how many were.
+        cut_short: why fewer; empty if all were.
+        seconds: wall time.
+        simulated_s: simulated seconds, in all tests.
+        figures: the sums of what the systems tell of all runs.
+        kind: the word for a block of the measured code.
+        control: the name of what was played beside tests.
+    """
+
+    name: str
+    seed: int
+    robots: Mapping[str, RobotSummary]
+    planned: int
+    finished: int
+    cut_short: str
+    seconds: float
+    simulated_s: float
+    figures: Mapping[str, float]
+    kind: str
+    control: str

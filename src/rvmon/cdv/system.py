@@ -1,0 +1,104 @@
+"""What a system under test has to offer: it plays a test, and tells what happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
+from typing import Protocol, TypeVar
+
+from rvmon.cdv.abstract_test import Test
+from rvmon.report.scene import Scene
+from rvmon.trace.sample import Value
+
+Values = Mapping[str, Value]
+"""What changed or occurred at an instant, by name; an event is `True`, what is unknown `None`."""
+
+Taker = Callable[[int, Values], None]
+"""Takes one sample: nanoseconds and values."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What a system tells of a run when it is over; the samples went to the observer.
+
+    Attributes:
+        end_ns: the instant up to which the run is judged, not before its last sample.
+        states: `(t_ns, state)` of the system, at each entry of one, also from itself.
+        error: what the code under test raised, as one text, if it crashed.
+        figures: of the run, by name, such as seconds of physics; a campaign adds them up.
+        facts: more about the run for its page, as pairs of name and value.
+        scene: what could be seen; where the observer asks for it.
+    """
+
+    end_ns: int
+    states: Sequence[tuple[int, str]] = ()
+    error: str | None = None
+    figures: Mapping[str, float] = field(default_factory=dict)
+    facts: Sequence[tuple[str, str]] = ()
+    scene: Scene | None = None
+
+
+class Observer:
+    """Told by a system, while it plays, of each sample: `observer(t_ns, values)`.
+
+    Args:
+        takers: get each sample.
+        code: the context in which code is measured.
+        wants_scene: whether a page is going to be made.
+
+    Attributes:
+        last_ns: instant of the latest sample.
+        wants_scene: whether the run should come with its scene.
+    """
+
+    def __init__(
+        self,
+        takers: Sequence[Taker],
+        *,
+        code: AbstractContextManager[object] | None = None,
+        wants_scene: bool = False,
+    ) -> None:
+        self._takers = takers
+        self._code = nullcontext() if code is None else code
+        self.last_ns = 0
+        self.wants_scene = wants_scene
+
+    def __call__(self, t_ns: int, values: Values) -> None:
+        """Take one whole sample; each is later than the one before.
+
+        Args:
+            t_ns: its instant.
+            values: what changed or occurred; a name that the requirements lack is passed over.
+        """
+        self.last_ns = t_ns
+        for take in self._takers:
+            take(t_ns, values)
+
+    def code(self) -> AbstractContextManager[object]:
+        """The context for the code under test, if `Code.marked` says that only there is measured.
+
+        It can be entered again and again, one at a time.
+        """
+        return self._code
+
+
+_Test = TypeVar("_Test", bound=Test, contravariant=True)
+
+
+class System(Protocol[_Test]):
+    """A robot in its world, or in its simulator. One object plays many tests, one after the other.
+
+    The same test must give the same run, whatever was played before. What a test begins outside of
+    this process, such as a simulator, is to be begun by `rvmon.execute.command.run`: it ends with
+    this process, which is killed if the test takes too long.
+    """
+
+    def play(self, test: _Test, observer: Observer, /) -> Run:
+        """Play a test from its beginning to its end.
+
+        Args:
+            test: all that the run depends on.
+            observer: to be called with each sample.
+        """
+        ...

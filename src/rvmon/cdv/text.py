@@ -1,0 +1,112 @@
+"""A campaign's figures for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
+from rvmon.cdv.tables import LEGEND, RobotTables
+from rvmon.report.percent import percent_text
+from rvmon.report.table_text import table_text
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+_WIDE = 12
+"""Characters beyond which a strategy's name goes to two lines, if it has a hyphen."""
+
+
+def print_summary(
+    summary: CampaignSummary, tables: Mapping[str, RobotTables], console: Console
+) -> None:
+    """Print requirements, the tables of all robots, the coverage of their code, known answers."""
+    for name, text in next(iter(summary.robots.values())).requirements.items():
+        console.print(_named(name, text))
+    console.print()
+    for robot, figures in summary.robots.items():
+        if figures.requirements and figures.strategies:
+            _print_verdicts(tables[robot], console)
+        measured = {
+            "statements of its code that ran": [
+                one.statements for one in figures.strategies.values()
+            ],
+            "branches of its code that were taken": [
+                one.branches for one in figures.strategies.values()
+            ],
+        }
+        for what, columns in measured.items():
+            if any(columns):
+                console.print(f"{figures.title}: {what}", style="bold")
+                console.print(_shares(summary.kind, list(figures.strategies), columns))
+                console.print()
+    for figures in summary.robots.values():
+        for line in _known(figures):
+            console.print(line)
+
+
+def _named(name: str, text: str) -> Text:
+    from rich.text import Text
+
+    return Text.assemble((name, "bold"), "  ", text)
+
+
+def _print_verdicts(tables: RobotTables, console: Console) -> None:
+    beside = dict(tables.beside)
+    if tables.control is not None and tables.control_label:
+        beside = {tables.control_label: tables.control, **beside}
+    console.print(table_text(tables.own, beside=beside))
+    if tables.remark:
+        console.print(tables.remark, style="dim")
+    console.print(LEGEND, style="dim")
+    console.print()
+
+
+def _shares(
+    kind: str, strategies: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]]
+) -> Table:
+    """How much of each block ran under each strategy."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    table.add_column(kind, no_wrap=True)
+    table.add_column("all", justify="right")
+    for name in strategies:
+        words = [name] if len(name) <= _WIDE else name.rsplit("-", 1)
+        table.add_column(" ".join(words), justify="right", min_width=max(map(len, words)))
+    for block, first in columns[0].items():
+        table.add_row(block, str(first.statements), *(_share(one[block]) for one in columns))
+    table.add_section()
+    totals = [sum(one.values(), NOTHING) for one in columns]
+    table.add_row("all", str(totals[0].statements), *map(_share, totals), style="bold")
+    return table
+
+
+def _share(block: BlockCoverage) -> str:
+    return percent_text(block.covered, block.statements)
+
+
+def _known(figures: RobotSummary) -> Iterator[str]:
+    if not figures.known:
+        return
+    right = sum(one.as_expected for one in figures.known)
+    planted = sum(one.mutation is not None for one in figures.known)
+    yield (
+        f"{figures.title}: {right} of {len(figures.known)} directed tests ended as they should, "
+        f"{planted} of them with a fault planted into the robot."
+    )
+    for one in figures.known:
+        if not one.as_expected:
+            yield f"  {one.test}: {difference(one)}"
+
+
+def difference(one: KnownAnswer) -> str:
+    """What came out otherwise than a directed test knows it."""
+    return ", ".join(
+        f"{name} is {one.verdicts.get(name)}, not {verdict}"
+        for name, verdict in one.expected.items()
+        if one.verdicts.get(name) != verdict
+    )

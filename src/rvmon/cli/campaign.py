@@ -1,0 +1,177 @@
+"""The command line of a campaign of tests: `run` plays all, `replay` one.
+
+Exit codes: 0 all went as expected (a replay: no requirement failed), 1 it did not, 2 wrong input,
+3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rvmon.cdv.campaign import Campaign
+from rvmon.cli import guarded
+from rvmon.cli.numbers import duration, positive
+from rvmon.cli.say import warn
+from rvmon.errors import UnknownNameError
+from rvmon.writing import write_whole
+
+INTERRUPTED = 130
+"""The exit code of a campaign that was interrupted."""
+
+
+def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
+    """Run the command line of a campaign and return its exit code.
+
+    Args:
+        campaign: what it is about.
+        arguments: without the program's name; default `sys.argv[1:]`.
+    """
+
+    def parsed() -> argparse.Namespace:
+        found = _parser(campaign).parse_args(arguments)
+        found.campaign = campaign
+        return found
+
+    return guarded(parsed)
+
+
+def _parser(campaign: Campaign) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=f"{campaign.name}: tests judged by requirements.")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    run = commands.add_parser(
+        "run",
+        help="play the tests of a campaign",
+        description="Generate tests, play them on all cores, judge them, show and keep the table.",
+    )
+    run.add_argument(
+        "--strategy",
+        metavar="NAMES",
+        help=f"of {', '.join(campaign.strategies)} (default: all)",
+    )
+    run.add_argument(
+        "--robot", metavar="NAMES", help=f"of {', '.join(campaign.robots)} (default: all)"
+    )
+    add_campaign_options(run)
+    add_judging_options(run)
+    run.add_argument(
+        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
+    )
+    run.add_argument("--junit", metavar="FILE", help="write what was expected, and what came out")
+    run.add_argument(
+        "--strict", action="store_true", help="what is inconclusive or never triggered is a failure"
+    )
+    run.set_defaults(run=_run)
+    replay = commands.add_parser(
+        "replay",
+        help="play one test again",
+        description="Play a test file alone and judge it; the same test gives the same run.",
+    )
+    add_replay_options(replay)
+    replay.add_argument(
+        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
+    )
+    replay.set_defaults(run=_replay)
+    return parser
+
+
+def add_campaign_options(parser: argparse.ArgumentParser) -> None:
+    """Declare how many tests are played, and where their results go."""
+    parser.add_argument(
+        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
+    )
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
+    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        help="write tables, tests and pages there; a campaign that was ended there goes on",
+    )
+
+
+def add_replay_options(parser: argparse.ArgumentParser) -> None:
+    """Declare which test is played again, and where its page goes."""
+    parser.add_argument("test", metavar="TEST", help="a .json file")
+    parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
+    add_judging_options(parser)
+
+
+def add_judging_options(parser: argparse.ArgumentParser) -> None:
+    """Declare what judges, and in which form verdicts are printed."""
+    parser.add_argument("--spec", metavar="FILE", help="judge by these requirements")
+    parser.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="for people (default), or as data",
+    )
+
+
+def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, ...]:
+    """Read names that are separated by commas.
+
+    Args:
+        listed: on the command line; `None`: all.
+        known: that there are.
+        what: the word for one, also of its option.
+
+    Raises:
+        UnknownNameError: one does not exist, or none is named.
+    """
+    if listed is None:
+        return tuple(known)
+    names = tuple(dict.fromkeys(name.strip() for name in listed.split(",") if name.strip()))
+    there_are = f"there are {', '.join(known)}"
+    for name in names:
+        if name not in known:
+            raise UnknownNameError(f"no {what} `{name}`: {there_are}")
+    if not names:
+        raise UnknownNameError(f"--{what} names none: {there_are}")
+    return names
+
+
+def judged_by(campaign: Campaign, spec: str | None) -> Campaign:
+    """The campaign with other requirements for all of its robots; `None`: as it is."""
+    if spec is None:
+        return campaign
+    robots = {
+        name: replace(robot, spec=Path(spec), spec_name="")
+        for name, robot in campaign.robots.items()
+    }
+    return replace(campaign, robots=robots)
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from rvmon.cdv.junit import junit_xml
+    from rvmon.cli.campaign_run import conduct, show
+
+    campaign = judged_by(arguments.campaign, arguments.spec)
+    robots = names_of(arguments.robot, tuple(campaign.robots), "robot")
+    campaign = replace(campaign, robots={name: campaign.robots[name] for name in robots})
+    if arguments.timeout is not None:
+        campaign = replace(campaign, timeout_s=arguments.timeout)
+    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+    words: list[object] = ["run"]
+    for option in ("strategy", "robot", "spec", "timeout"):
+        value = getattr(arguments, option)
+        words += [] if value is None else [f"--{option}", value]
+    conducted = conduct(campaign, strategies, arguments, words)
+    show(campaign, conducted, arguments.format)
+    judgement = conducted.judged(strict=arguments.strict)
+    cut_short = conducted.summary.cut_short
+    if arguments.junit is not None:
+        write_whole(arguments.junit, junit_xml(campaign.name, judgement, cut_short))
+    for what in judgement.wrong:
+        warn(f"not as expected: {what}")
+    return INTERRUPTED if cut_short else int(bool(judgement.wrong))
+
+
+def _replay(arguments: argparse.Namespace) -> int:
+    from rvmon.cli.campaign_replay import replay as play_again
+
+    campaign = judged_by(arguments.campaign, arguments.spec)
+    return play_again(
+        campaign, arguments.test, arguments.robot, out=arguments.out, form=arguments.format
+    )

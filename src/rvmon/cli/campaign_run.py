@@ -1,0 +1,135 @@
+"""Run a campaign: plan, play, show, write."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign_files import dated_files, left_over, write_tables, write_tests
+from rvmon.cdv.documents import to_json
+from rvmon.cdv.execute import execute
+from rvmon.cdv.gate import CampaignJudgement, judge_campaign
+from rvmon.cdv.outcome import Results
+from rvmon.cdv.plan import plan
+from rvmon.cdv.program import typed
+from rvmon.cdv.summarise import summarise
+from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.tables import RobotTables
+from rvmon.cdv.text import print_summary
+from rvmon.cdv.unfinished import unfinished
+from rvmon.cdv.write_pages import write_pages
+from rvmon.cli.progress import bar
+from rvmon.cli.say import say_json, warn
+from rvmon.loading import load
+from rvmon.report.folder import made
+from rvmon.report.terminal import Terminal
+
+
+@dataclass(frozen=True, slots=True)
+class Conducted:
+    """A campaign that was run.
+
+    Attributes:
+        results: what came out of its tests.
+        summary: its figures.
+        tables: its verdicts, by robot.
+    """
+
+    results: Results
+    summary: CampaignSummary
+    tables: Mapping[str, RobotTables]
+
+    def judged(self, *, strict: bool) -> CampaignJudgement:
+        """Hold the campaign against what was expected of it.
+
+        Args:
+            strict: what is inconclusive, or never triggered, is wrong as well.
+        """
+        robots = self.summary.robots.items()
+        requirements = {name: tuple(robot.requirements) for name, robot in robots}
+        return judge_campaign(self.results, requirements, strict=strict)
+
+
+def conduct(
+    campaign: Campaign,
+    strategies: Sequence[str],
+    arguments: Namespace,
+    words: Sequence[object],
+) -> Conducted:
+    """Plan, load the requirements, play, count, write.
+
+    Args:
+        campaign: what it is about.
+        strategies: that make tests.
+        arguments: those of `add_campaign_options`.
+        words: the command that runs it again, and its other options.
+    """
+    folder = made(arguments.out) if arguments.out else None
+    before = dated_files(folder) if folder is not None else {}
+    with told("generating tests"):
+        chosen = plan(campaign, strategies, tests=arguments.tests, seed=arguments.seed)
+    # Wrong requirements are told before anything is played.
+    specs = {
+        name: load(robot.spec) for name, robot in campaign.robots.items() if robot.spec is not None
+    }
+    planned = len(chosen.jobs())
+    command, *others = words
+    amount = ["--tests", arguments.tests, "--seed", arguments.seed]
+    again = typed(campaign.program, [command, *amount, *others, "--out", arguments.out])
+    kept = None
+    if folder is not None:
+        kept = unfinished(folder, chosen, specs, again)
+        if kept.played:
+            warn(f"{len(kept.played)} of {planned} tests were played before")
+    with bar("tests", planned) as tell:
+        results = execute(chosen, jobs=arguments.jobs, kept=kept, progress=tell)
+    summary = summarise(results, specs)
+    tables = campaign.presentation.tables(summary)
+    if folder is not None:
+        with told("writing tables and pages"):
+            write_tables(folder, summary, tables, campaign.presentation)
+            write_tests(folder, results)
+            played = frozenset(one.job.test.strategy for one in results.played)
+            campaign.presentation.write_more(folder, played)
+            write_pages(folder, summary, tables, results, specs, again)
+        if remark := left_over(folder, before):
+            warn(remark)
+    if kept is not None and results.cut_short:
+        warn(f"{kept.path}: the same command plays what is left")
+    elif kept is not None:
+        kept.path.unlink(missing_ok=True)
+    return Conducted(results, summary, tables)
+
+
+def told(what: str) -> AbstractContextManager[object]:
+    """Tell a person at a terminal what is being done."""
+    console = Terminal(stderr=True)
+    return console.status(what) if console.is_terminal else nullcontext()
+
+
+def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
+    """Print a campaign's figures.
+
+    Args:
+        campaign: what it was about.
+        conducted: how it went.
+        form: `text` for people, or `json`.
+    """
+    summary = conducted.summary
+    if form == "json":
+        say_json(to_json(campaign.presentation.document(summary)).decode().removesuffix("\n"))
+        return
+    console = Terminal() if sys.stdout.isatty() else Terminal(width=100)
+    print_summary(summary, conducted.tables, console)
+    work = campaign.presentation.work(summary)
+    console.print(f"{summary.finished} tests in {summary.seconds:.1f} s: {work}.")
+    if summary.cut_short:
+        console.print(
+            f"{summary.cut_short}: {summary.finished} of {summary.planned} tests were finished; "
+            "the tables are partial",
+            style="yellow",
+        )
