@@ -211,7 +211,7 @@ def _growth(summary: Summary) -> ET.Element | None:
         None,
         e("h2", None, "Growth"),
         growth_chart(summary),
-        e("p", {"class": "order"}, f"{of} cover as much: ", *names, more),
+        e("p", {"class": "order"}, f"{of} cover the same: ", *names, more),
     )
 
 

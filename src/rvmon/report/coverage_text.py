@@ -89,7 +89,7 @@ def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> N
         grid = _grid(summary, group) if group.axes else None
         if grid is not None and _fits(grid, console):
             console.print(grid)
-            console.print("  – ignored   ! illegal   1/3: one hit of three", style="dim")
+            console.print(_key(group), style="dim")
         else:
             console.print(_bins(summary, group))
 
@@ -102,9 +102,11 @@ def print_tests(summary: Summary, console: Console) -> None:
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     wide = console.width >= WIDE
+    with_strategy = wide and any(summary.strategies)
     table.add_column("test", overflow="fold")
-    if wide:
+    if with_strategy:
         table.add_column("strategy", overflow="fold")
+    if wide:
         table.add_column("ended", overflow="fold")
     table.add_column("alone", justify="right", no_wrap=True)
     table.add_column("share", justify="right", no_wrap=True)
@@ -115,7 +117,8 @@ def print_tests(summary: Summary, console: Console) -> None:
         ended = Text(wrong or record.ending.value, style="bold red" if wrong else "")
         table.add_row(
             record.name,
-            *((record.strategy, ended) if wide else ()),
+            *((record.strategy,) if with_strategy else ()),
+            *((ended,) if wide else ()),
             f"{len(only):,}" if only else "",
             share_text(step.share) if step.added else "",
             _first_of(summary.item_name(place) for place in step.added),
@@ -125,7 +128,7 @@ def print_tests(summary: Summary, console: Console) -> None:
     order = summary.ranking
     names = [summary.record(step.entry).name for step in order]
     of = counted(len(summary.coverage.entries), "test")
-    console.print(f"{len(order):,} of {of} cover as much: {_first_of(names)}")
+    console.print(f"{len(order):,} of {of} cover the same: {_first_of(names, SHOWN)}")
 
 
 def _groups(summary: Summary, console: Console) -> Table:
@@ -199,6 +202,17 @@ def _grid(summary: Summary, group: Group) -> Table:
         table.add_row(*row)
         last = bins
     return table
+
+
+def _key(group: Group) -> str:
+    """What the signs of a grid mean, of those that it may have."""
+    kinds = {item.kind for item in group.items.values()}
+    parts = ["0 hole"]
+    if any(item.goal > 1 for item in group.items.values()):
+        parts.append("1/3 one hit of three")
+    parts += ["! illegal"] if BinKind.ILLEGAL in kinds else []
+    parts += ["– ignored"] if BinKind.IGNORE in kinds else []
+    return "  " + "   ".join(parts)
 
 
 def _cell(summary: Summary, group: Group, place: int) -> Text:
