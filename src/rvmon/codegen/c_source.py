@@ -22,7 +22,7 @@ from rvmon.codegen.c_nodes import (
 )
 from rvmon.codegen.c_rows import rows_source
 from rvmon.codegen.c_samples import SAMPLE, take_source
-from rvmon.codegen.c_tables import array, automata_source, lists, repeats
+from rvmon.codegen.c_tables import array, automata_source, lists, repeats, runs_on
 from rvmon.codegen.c_text import called, filled, template
 from rvmon.codegen.comment import comment
 from rvmon.errors import RvmonError
@@ -86,7 +86,7 @@ class _Writer:
             "prefix": prefix,
             "GAP": str(self.plan.gap or 0),
             "REPEATING": str(int(any(map(repeats, self.plan.rules)))),
-            "EPISODES": str(int(any(rule.again is not None for rule in self.plan.rules))),
+            "EPISODES": str(int(any(map(runs_on, self.plan.rules)))),
             "NAMES": "\n".join(self._constants()),
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }

@@ -53,7 +53,12 @@ def automata_source(plan: Plan, networks: Mapping[int, int]) -> Iterator[str]:
 
 def repeats(rule: PlannedRule) -> bool:
     """Whether a trigger that stays true starts an attempt at each position."""
-    return rule.requirement.pulse and rule.requirement.mode is not Mode.WHENEVER
+    return rule.requirement.pulse and not runs_on(rule)
+
+
+def runs_on(rule: PlannedRule) -> bool:
+    """Whether an attempt runs until its trigger is false."""
+    return rule.requirement.mode is Mode.WHENEVER
 
 
 def outcomes(policy: EndPolicy) -> list[int]:
@@ -125,7 +130,7 @@ def _entry(plan: Plan, owner: int, rule: PlannedRule, judging: str, index: int) 
     places = ", ".join(str(-1 if state is None else plan.graph.index[state]) for state in formulas)
     requirement = rule.requirement
     hidden = index >= len(plan.rules)
-    episodic = hidden or requirement.mode is Mode.WHENEVER
+    episodic = hidden or runs_on(rule)
     flags = ", ".join(str(flag).lower() for flag in (requirement.pulse, episodic, hidden))
     return f"    {{{judging}, {places}, {owner}, {flags}, outcomes{index}}},"
 
