@@ -71,10 +71,10 @@ class Model:
 def combination(bins: Sequence[str]) -> str:
     """The name of the item of a cross that has one bin of each axis, in the order of the axes.
 
-    >>> combination(["yes", "touch"])
-    'yes × touch'
+    >>> combination(["yes", "touch"]), combination(["yes", "a × b"])
+    ('yes × touch', 'yes × `a × b`')
     """
-    return " × ".join(bins)
+    return " × ".join(f"`{one}`" if "×" in one else one for one in bins)
 
 
 def group_of(name: str, subject: Subject, items: Sequence[Item], weight: int = 1) -> Group:

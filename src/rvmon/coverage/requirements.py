@@ -49,6 +49,16 @@ def _item(name: str) -> Item:
     return Item(name, BinKind.IGNORE if fails else BinKind.GOAL)
 
 
+def locations_of(name: str) -> str:
+    """The group of the locations of a requirement's automaton; no name holds a backtick."""
+    return f"`{name}` locations"
+
+
+def edges_of(name: str) -> str:
+    """The group of its edges."""
+    return f"`{name}` edges"
+
+
 def decides(part: str) -> str:
     """The item of a part that decided: without it, verdicts or their instants would be others."""
     return f"`{part}` decides"
@@ -96,8 +106,8 @@ class WatchedRequirement:
         if self.graph is not None:
             places = [place.name for place in self.graph.places]
             edges = dict.fromkeys(map(edge_name, _steps(self.graph)))
-            yield group_of(f"{name} locations", Subject.STATES, [*map(_item, places)])
-            yield group_of(f"{name} edges", Subject.TRANSITIONS, [*map(_item, edges)])
+            yield group_of(locations_of(name), Subject.STATES, [*map(_item, places)])
+            yield group_of(edges_of(name), Subject.TRANSITIONS, [*map(_item, edges)])
 
 
 def deadline_of(owed: Formula) -> int | None:
@@ -287,5 +297,5 @@ def _passages(
             known = locations.get(place)
             first = min(one.first or 0 for one in (hit, known or hit))
             locations[place] = Hit(hit.count + (known.count if known else 0), first)
-    yield f"{name} locations", locations
-    yield f"{name} edges", edges
+    yield locations_of(name), locations
+    yield edges_of(name), edges

@@ -142,3 +142,11 @@ def test_online_is_offline():
         assert monitor.hits == {"c": monitor.finish(9)["c"]}
         assert monitor.finish() == spec.coverage(states("idle", "moving", "done"))
         monitor.reset()
+
+
+def test_combinations_have_names_of_their_own():
+    """Whatever bins are called."""
+    bins = "= p {x: true, `y × z`: false}", "= q {`x × y`: true, z: false}"
+    points = "".join(f"coverpoint {n} {own}\n" for n, own in zip("ab", bins, strict=True))
+    spec = loads(f"{SIGNALS}{points}cross c = a, b\n")
+    assert len(spec.coverage_model.model.groups["c"].items) == 4

@@ -39,7 +39,7 @@ def test_what_only_a_failure_shows_has_no_goal():
     late = [(t + 1, values) for t, values in [*answered(2)]]
     near = [(t + 20, values) for t, values in answered(1.9)]
     hits = spec.coverage([*early, *late, *near])
-    for name in ("R", "R locations", "R edges"):
+    for name in ("R", "`R` locations", "`R` edges"):
         found = score(hits, groups[name])
         assert found.covered == found.items > 0
 
@@ -64,16 +64,16 @@ requirement R
 
 def test_automata():
     """Where attempts were, and how they went on."""
-    found = seen(ANSWER, answered(1), "R edges")
+    found = seen(ANSWER, answered(1), "`R` edges")
     assert found == {"start → A": 1, "A → P": 1}
-    assert seen(ANSWER, answered(1), "R locations").keys() == {"start", "A", "P"}
+    assert seen(ANSWER, answered(1), "`R` locations").keys() == {"start", "A", "P"}
 
 
 def test_attempts_in_doubt_show_nothing():
     """Neither is it known that there was one, nor where it went."""
     samples = [(0, {"a": None, "b": False}), (1, {"b": True}), (5, {})]
     assert seen(ANSWER, samples) == {}
-    assert seen(ANSWER, samples, "R edges") == {}
+    assert seen(ANSWER, samples, "`R` edges") == {}
 
 
 def test_requirements_without_automaton_and_with_instances():
@@ -89,12 +89,12 @@ requirement Each
   for each i in pick.id
 """
     spec = loads(text)
-    assert {"Net", "Each", "Each edges"} <= spec.coverage_model.model.groups.keys()
-    assert "Net edges" not in spec.coverage_model.model.groups
+    assert {"Net", "Each", "`Each` edges"} <= spec.coverage_model.model.groups.keys()
+    assert "`Net` edges" not in spec.coverage_model.model.groups
     samples = [(0, {"a": False, "b": False}), (1, {"pick": {"id": 1}}), (1.5, {"pick": {"id": 2}})]
     samples += [(2, {"put": {"id": 1}}), (2.5, {"put": {"id": 2}})]
     hits = spec.coverage(samples)
-    assert hits["Each"]["passed"].count == hits["Each edges"]["A → P"].count == 2
+    assert hits["Each"]["passed"].count == hits["`Each` edges"]["A → P"].count == 2
 
 
 def test_goals():
@@ -102,3 +102,10 @@ def test_goals():
     text = "signal a, b : bool\ncover met = a and b\n"
     assert seen(text, [(0, {"a": True, "b": True})], "met") == {"shown": 1}
     assert seen(text, [(0, {"a": True, "b": False})], "met") == {}
+
+
+def test_names_of_groups_are_not_names_of_requirements():
+    """A requirement may be called as the edges of another are not."""
+    text = ANSWER + "requirement `R edges`\n  always a\n"
+    groups = loads(text).coverage_model.model.groups
+    assert {"R", "`R` edges", "R edges", "`R edges` edges"} <= groups.keys()
