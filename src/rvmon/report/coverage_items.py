@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from itertools import product
 
 from rvmon.coverage.model import Group, Item, combination
-from rvmon.report.coverage_summary import Summary, cell_text
+from rvmon.report.coverage_summary import Summary, cell_text, is_grid
 from rvmon.report.coverage_tests import test_link
 from rvmon.report.markup import Child, e
 from rvmon.spec.checked.goals import BinKind
@@ -33,7 +33,7 @@ def groups_sections(summary: Summary) -> list[ET.Element]:
         score = summary.scores[group.name]
         about = f"{group.subject.value}, {score.covered:,} of {score.items:,} covered"
         title = (group.name, e("small", None, about))
-        if group.axes:
+        if is_grid(group):
             heading = e("h3", {"id": f"g{number}"}, *title)
             maps.append(e("div", {"class": "cross"}, heading, _heat_map(summary, group)))
         else:
@@ -48,7 +48,7 @@ def groups_sections(summary: Summary) -> list[ET.Element]:
     sections = []
     if maps:
         grid = e("div", {"class": "crosses"}, *maps)
-        crosses = [group for group in summary.coverage.model.groups.values() if group.axes]
+        crosses = [group for group in summary.coverage.model.groups.values() if is_grid(group)]
         sections.append(e("section", None, e("h2", None, "Crosses"), grid, _key(crosses)))
     if lists:
         grid = e("div", {"class": "lists"}, *lists)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from math import prod
 
 from rvmon.coverage.answers import Comparison, Goals, Step, Totals
 from rvmon.coverage.compare import compare
@@ -28,6 +29,7 @@ from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
 from rvmon.report.percent import percent_text
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
+from rvmon.spec.rules.goals import MOST_COMBINATIONS
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 
@@ -244,6 +246,18 @@ def not_fine(record: TestRecord) -> str:
     if record.failed:
         parts.append(f"F {', '.join(record.failed)}")
     return "; ".join(parts)
+
+
+def is_grid(group: Group) -> bool:
+    """Whether a group is shown along its axes: a cross of the size that a specification may have.
+
+    >>> from rvmon.coverage.model import Subject
+    >>> is_grid(Group("g", Subject.CROSS, {}, axes={"x": ["a", "b"], "y": ["c"]}))
+    True
+    >>> is_grid(Group("g", Subject.CROSS, {}, axes=dict.fromkeys("vwxyz", ["a"] * 100)))
+    False
+    """
+    return bool(group.axes) and 0 < prod(map(len, group.axes.values())) <= MOST_COMBINATIONS
 
 
 def cell_text(kind: BinKind, goal: int, count: int) -> str:

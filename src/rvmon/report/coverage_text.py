@@ -13,6 +13,7 @@ from rvmon.report.coverage_summary import (
     Summary,
     cell_text,
     counted,
+    is_grid,
     name_of,
     not_fine,
     share_text,
@@ -86,7 +87,7 @@ def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> N
         score = summary.scores[group.name]
         heading = f"  {group.subject.value}, {score.covered:,} of {score.items:,} covered"
         console.print(Text.assemble((group.name, "bold"), heading))
-        grid = _grid(summary, group) if group.axes else None
+        grid = _grid(summary, group) if is_grid(group) else None
         if grid is not None and _fits(grid, console):
             console.print(grid)
             console.print(_key(group), style="dim")

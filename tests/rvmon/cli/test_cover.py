@@ -80,6 +80,19 @@ def test_a_cross_of_three_has_nested_rows(tmp_path, capsys, monkeypatch):
     assert "x y e f" not in lines
 
 
+def test_a_cross_that_nobody_could_look_at_is_a_list(tmp_path, capsys):
+    """Its axes span more cells than any specification has; those that are items are listed."""
+    axes = {axis: [str(number) for number in range(100)] for axis in "uvwxyz"}
+    name = combination(["7"] * 6)
+    cross = Group("far", Subject.CROSS, {name: Item(name)}, axes=axes)
+    path = str(tmp_path / "a.cov")
+    with Database.open(path) as database:
+        database.declare(model_of([cross]))
+    code, lines = shown(capsys, path, "--bins", "--report", str(tmp_path / "a.html"))
+    assert code == 0
+    assert f"{name} 0" in lines
+
+
 def test_tests_with_what_they_added(door, capsys, monkeypatch):
     """Each test's part, and a short order; a narrow terminal has the same in fewer columns."""
     _, lines = shown(capsys, door, "--tests")
