@@ -137,6 +137,14 @@ class Summary:
         return [place for place, entry in enumerate(entries) if not_fine(entry.record)]
 
     @cached_property
+    def faults(self) -> Mapping[str, Sequence[int]]:
+        """What was wrong, in words, with which tests; what most of them had stands first."""
+        found: dict[str, list[int]] = {}
+        for place in self.not_fine:
+            found.setdefault(not_fine(self.record(place)), []).append(place)
+        return dict(sorted(found.items(), key=lambda fault: -len(fault[1])))
+
+    @cached_property
     def campaigns(self) -> Sequence[str]:
         """Their names, in order."""
         return campaigns(self.coverage)

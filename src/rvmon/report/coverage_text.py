@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -54,13 +54,12 @@ def print_overview(summary: Summary, console: Console) -> None:
         [f"{summary.item_name(place)}  {summary.hit_text(place)}" for place in summary.illegal],
         style="bold red",
     )
-    records = [summary.record(place) for place in summary.not_fine]
-    _print_list(
-        console,
-        "not fine:",
-        [f"{record.name}  {not_fine(record)}" for record in records],
-        style="bold red",
-    )
+    faults = [
+        f"{fault}  {counted(len(places), 'test')}: "
+        + _first_of([summary.record(place).name for place in places])
+        for fault, places in summary.faults.items()
+    ]
+    _print_list(console, "not fine:", faults, style="bold red")
     if summary.comparison is not None:
         _print_comparison(summary.comparison, summary.earlier_name, console)
 
@@ -122,7 +121,7 @@ def print_tests(summary: Summary, console: Console) -> None:
             *((ended,) if wide else ()),
             f"{len(only):,}" if only else "",
             share_text(step.share) if step.added else "",
-            _first_of(summary.item_name(place) for place in step.added),
+            _first_of([summary.item_name(place) for place in step.added]),
         )
     console.print(table)
     console.print("alone: items that no other test covers", style="dim")
@@ -282,8 +281,7 @@ def _print_list(console: Console, heading: str, lines: Sequence[str], *, style: 
         console.print(f"  … and {len(lines) - SHOWN:,} more: --format json has all", style="dim")
 
 
-def _first_of(names: Iterable[str], most: int = 3) -> str:
-    every = list(names)
+def _first_of(every: Sequence[str], most: int = 3) -> str:
     more = f", … and {len(every) - most:,} more" if len(every) > most else ""
     return ", ".join(every[:most]) + more
 

@@ -38,7 +38,7 @@ def test_the_overview(door, capsys):
     assert "total 46 % █████████░░░░░░░░░░░" in lines
     assert "D1 2 · · · · 1 · ·" in lines
     assert "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s" in lines
-    assert "wild-2 crashed: ZeroDivisionError: the gap is 0" in lines
+    assert "crashed: ZeroDivisionError: the gap is 0 1 test: wild-2" in lines
     assert lines[-1] == "what is missing: --holes"
 
 
