@@ -138,6 +138,12 @@ def test_what_makes_no_sense_is_refused():
             database.record(TestRecord("t", number=2**64), {})
         with pytest.raises(CoverageError, match="nan s"):
             database.record(TestRecord("t", seconds=float("nan")), {})
+        for group, told in [
+            (group_of("g", Subject.STATES, [Item("a", goal=0)]), "item `a` of `g` has goal 0"),
+            (group_of("g", Subject.STATES, [], weight=-1), "group `g` has weight -1"),
+        ]:
+            with pytest.raises(CoverageError, match=told):
+                database.declare(model_of([group]))
         with pytest.raises(CoverageError, match="no item `x` of `gaze`"):
             database.explain("gaze", "x", "why")
         assert database.coverage().entries == []
