@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
 from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import Model, model_of
 from rvmon.coverage.requirements import WatchedRequirements
-from rvmon.coverage.watcher import Bins, Watcher
+from rvmon.coverage.watched import Watched
+from rvmon.coverage.watcher import Bins, WatchingUnit
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
-from rvmon.monitor.online.evaluators import Evaluators
+from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.monitor.online.monitor import Monitor
-from rvmon.monitor.records.ledger import Ledger
-from rvmon.plan.outages import Outages
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
@@ -178,32 +177,22 @@ class CoverageMonitor:
         return hits
 
 
-class _BinRun(Monitor):
+class _BinRun(GeneratedMonitor):
     """Takes samples as every monitor does, and judges nothing."""
 
     def __init__(self, bins: Bins, settle: str, sources: frozenset[str] | None) -> None:
         self._bins = bins
-        super().__init__(CompiledSpec(bins.spec), (), "auto", settle, sources, None)
+        self._groups: Sequence[tuple[int, Watched]] = ()
+        forms, compiled = bins.forms(sources), CompiledSpec(bins.spec)
+        super().__init__(forms, compiled, (), "auto", settle, sources, None)
 
-    def _make_evaluators(self) -> Evaluators:
-        self._watcher = self._bins.watcher(Outages(self._bins.spec, self.options.sources))
-        return _Watching(self._bins.spec, self.options.sources, self._ledger, self._watcher)
+    def _begin(self) -> None:
+        super()._begin()
+        self._groups = [*self._bins.watched()]
+        if isinstance(self._unit, WatchingUnit):
+            self._unit.groups = self._groups
 
     @property
     def hits(self) -> Hits:
         """What was hit so far."""
-        return {one.name: dict(one.hits) for one in self._watcher.groups if one.hits}
-
-
-class _Watching(Evaluators):
-    """Of all evaluators only the one that watches bins."""
-
-    def __init__(
-        self,
-        spec: CheckedSpec,
-        sources: frozenset[str] | None,
-        ledger: Ledger,
-        watcher: Watcher,
-    ) -> None:
-        super().__init__(spec, (), "auto", sources, ledger)
-        self.main = watcher
+        return {one.name: dict(one.hits) for _, one in self._groups if one.hits}

@@ -9,40 +9,14 @@ true. A combination of bins is true where all of them are.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence, Set
 from itertools import product
 
 from rvmon.coverage.hits import Hit
 from rvmon.runtime.values import FALSE, TRUE
 
-
-@dataclass(frozen=True, slots=True)
-class WatchedBin:
-    """A bin of a coverpoint.
-
-    Attributes:
-        name: of the bin.
-        place: of its formula among the values.
-        pulse: whether that is a pulse.
-    """
-
-    name: str
-    place: int
-    pulse: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Occasion:
-    """Where something is looked at that is not looked at everywhere.
-
-    Attributes:
-        place: of its formula among the values.
-        pulse: whether that is a pulse.
-    """
-
-    place: int
-    pulse: bool
+Bins = tuple[int, ...]
+"""A combination of bins, one of each axis, by their numbers."""
 
 
 class Watched:
@@ -50,28 +24,40 @@ class Watched:
 
     Args:
         name: of its group in the model.
-        axes: of a coverpoint its bins, of a cross those of each coverpoint.
-        items: by combination of bins, the name of its item; what is not there is not counted.
-        occasion: where it is looked at; `None`: everywhere.
-
-    Attributes:
-        hits: by item, how often it was hit.
+        axes: of a coverpoint its bins, of a cross those of each coverpoint, by number.
+        items: by combination of bins, the name of its item.
+        places: by number, where the formula of a bin, or of an occasion, stands among the values.
+        pulses: the numbers of those that are pulses.
+        occasion: the number of what says where it is looked at; `None`: everywhere.
     """
 
     def __init__(
         self,
         name: str,
-        axes: Sequence[Sequence[WatchedBin]],
-        items: Mapping[tuple[str, ...], str],
-        occasion: Occasion | None,
+        axes: Sequence[Sequence[int]],
+        items: Mapping[Bins, str],
+        places: Sequence[int],
+        pulses: Set[int],
+        occasion: int | None,
     ) -> None:
         self.name = name
-        self.axes = axes
-        self.hits: dict[str, Hit] = {}
+        self._axes = [[(number, places[number]) for number in axis] for axis in axes]
         self._items = items
+        self._places = places
+        self._pulses = pulses
         self._occasion = occasion
         self._before = FALSE
-        self._standing: set[tuple[WatchedBin, ...]] = set()
+        self._standing: set[Bins] = set()
+        self._counts: dict[Bins, int] = {}
+        self._firsts: dict[Bins, int] = {}
+
+    @property
+    def hits(self) -> dict[str, Hit]:
+        """By item, how often it was hit."""
+        return {
+            self._items[bins]: Hit(count, self._firsts[bins])
+            for bins, count in self._counts.items()
+        }
 
     def look(self, t: int, values: Sequence[int]) -> None:
         """See a position.
@@ -82,31 +68,32 @@ class Watched:
         """
         occasion = self._occasion
         if occasion is not None:
-            before, self._before = self._before, values[occasion.place]
-            if self._before != TRUE or not (occasion.pulse or before == FALSE):
+            before, self._before = self._before, values[self._places[occasion]]
+            if self._before != TRUE or not (occasion in self._pulses or before == FALSE):
                 return
             for bins in self._true(values):
                 self._hit(bins, t)
             return
-        standing: set[tuple[WatchedBin, ...]] = set()
-        for bins in self._true(values):
-            if any(one.pulse for one in bins):
+        now = self._true(values)
+        standing = self._standing
+        for bins in now:
+            if bins not in standing:
                 self._hit(bins, t)
-                continue
-            standing.add(bins)
-            if bins not in self._standing:
-                self._hit(bins, t)
-        for bins in self._standing - standing:
-            if all(values[one.place] != FALSE for one in bins):
-                standing.add(bins)
-        self._standing = standing
+        # A pulse is over at the next position; what is unknown may be true.
+        self._standing = {bins for bins in now if self._pulses.isdisjoint(bins)}
+        for bins in standing.difference(now):
+            if all(values[self._places[number]] != FALSE for number in bins):
+                self._standing.add(bins)
 
-    def _true(self, values: Sequence[int]) -> product[tuple[WatchedBin, ...]]:
+    def _true(self, values: Sequence[int]) -> list[Bins]:
         """The combinations of bins that are true."""
-        return product(*([one for one in axis if values[one.place] == TRUE] for axis in self.axes))
+        axes = [[number for number, place in axis if values[place] == TRUE] for axis in self._axes]
+        return [*product(*axes)]
 
-    def _hit(self, bins: tuple[WatchedBin, ...], t: int) -> None:
-        item = self._items.get(tuple(one.name for one in bins))
-        if item is not None:
-            known = self.hits.get(item)
-            self.hits[item] = Hit(1, t) if known is None else Hit(known.count + 1, known.first)
+    def _hit(self, bins: Bins, t: int) -> None:
+        known = self._counts.get(bins)
+        if known is None:
+            self._counts[bins] = 1
+            self._firsts[bins] = t
+        else:
+            self._counts[bins] = known + 1

@@ -40,6 +40,7 @@ def states(*names):
         ("{both: p and q}", [(0, {"p": True}), (1, {"q": True})], {"both": 1}),
         ("{often: e}", [(t, {"e": True}) for t in range(3)], {"often": 3}),
         ("{second: pick.id == 2}", [(t, {"pick": {"id": t}}) for t in range(4)], {"second": 1}),
+        ("{one: p, same: p}", [(0, {"p": True})], {"one": 1, "same": 1}),
         ("{late: held(p, 2 s)}", [(0, {"p": True}), (5, {"p": False})], {"late": 1}),
     ],
 )
