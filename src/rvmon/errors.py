@@ -8,6 +8,7 @@
     ├── TraceError(ValueError)       a recording or a sample is wrong; names file and line
     │   ├── TimeOrderError           a sample's time is not after the one before
     │   └── MissingNameError         a recording has no column for a name that is read
+    ├── CoverageError(ValueError)    a database of coverage is wrong, or does not fit another
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
     ├── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
     ├── WorkerLostError              a process that shared the work was ended from outside
@@ -66,6 +67,10 @@ class TimeOrderError(TraceError):
 
 class MissingNameError(TraceError):
     """A recording in columns lacks names that the judged requirements read; it lists them."""
+
+
+class CoverageError(RvmonError, ValueError):
+    """A database of coverage cannot be read or written, or does not fit a model or another one."""
 
 
 class UnknownNameError(RvmonError, KeyError):

@@ -11,6 +11,8 @@ from rvmon.spec.checked.selection import requirements_asked, sources_asked
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
+    from rvmon.coverage.hits import Hits
+    from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.c.prepare import Prepared
@@ -82,8 +84,7 @@ class Spec:
         """
         from rvmon.readers.naming import read_as
 
-        other = copy(self)
-        known = self.schema
+        other, known = copy(self), self.schema
         other.schema = read_as(known, time=time, columns=columns, nan=nan, no_update=no_update)
         return other
 
@@ -103,10 +104,8 @@ class Spec:
             UnknownNameError: there is no such requirement.
 
         >>> from rvmon import loads
-        >>> text = "signal a, b : bool\nrequirement R\n  upon a then within 2 s for 1 s b\n"
-        >>> choice = loads(text).engines()["R"]
-        >>> choice.online, choice.recording
-        ('python', 'python')
+        >>> loads("signal a : bool\nrequirement R\n  always a\n").engines()["R"].online
+        'python'
         """
         from rvmon.monitor.engines.choice import choices
 
@@ -172,9 +171,9 @@ class Spec:
         """
         from rvmon.monitor import build_monitor
 
-        names = sources_asked(self.checked, sources)
+        asked = sources_asked(self.checked, sources)
         return build_monitor(
-            self._compiled, only=only, engine=engine, settle=settle, sources=names, keep=keep
+            self._compiled, only=only, engine=engine, settle=settle, sources=asked, keep=keep
         )
 
     def restore(self, data: bytes) -> Monitor:
@@ -285,10 +284,10 @@ class Spec:
 
         Args:
             traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
-            engine: `auto` or the name of one.
-            only: ids of the requirements to judge; default all.
+            engine: as for `evaluate`.
+            only: see there.
             jobs: processes; 1 judges in this one.
-            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
+            **reading: as for `evaluate`; so are the errors.
 
         Raises:
             TraceError: a trace cannot be read; the reports before it have been given out.
@@ -339,8 +338,7 @@ class Spec:
             The figures of the attempts by requirement and number, and as streams.
 
         Raises:
-            TraceError: the trace cannot be read.
-            UnknownNameError: `only` names what does not exist.
+            TraceError, UnknownNameError: as of `evaluate`.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
@@ -370,8 +368,8 @@ class Spec:
 
         Args:
             only: as for `monitor`; so are `settle` and `sources`.
-            settle: when a sample is taken for complete.
-            sources: the names that can arrive.
+            settle: see there.
+            sources: see there.
             streams: whether to give a figure per sample as well as per attempt.
 
         Raises:
@@ -379,18 +377,23 @@ class Spec:
         """
         from rvmon.monitor.robustness.monitor import RobustnessMonitor
 
-        chosen, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
-        return RobustnessMonitor(
-            self._compiled, only=chosen, settle=settle, sources=names, streams=streams
-        )
+        only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
+        compiled = self._compiled
+        return RobustnessMonitor(compiled, only=only, settle=settle, sources=names, streams=streams)
+
+    @cached_property
+    def coverage_model(self) -> SpecCoverage:
+        """What runs should show: bins, combinations, cover goals, and what requirements do."""
+        from rvmon.coverage.monitor import SpecCoverage
+
+        return SpecCoverage(self.checked)
+
+    def coverage(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Hits:
+        """What of `coverage_model` a trace hits, by group and item; arguments as of `evaluate`."""
+        return self.coverage_model.of(self.recording(trace, **reading))
 
     def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:
-        """Whatever `evaluate` takes as a trace, as a recording.
-
-        Args:
-            trace: it need not be read yet.
-            **reading: as for `evaluate`; so are the errors. By default any name may be missing.
-        """
+        """What `evaluate` takes as a trace, not read yet; by default any name may be missing."""
         from rvmon.monitor.evaluate import open_trace
 
         reading.setdefault("allow_missing", True)

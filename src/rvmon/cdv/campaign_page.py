@@ -12,7 +12,7 @@ from rvmon.cdv.tables import RobotTables
 from rvmon.report.markup import Child, e, page
 from rvmon.report.percent import percent_text
 from rvmon.report.style import MARKS
-from rvmon.report.table_html import table_html
+from rvmon.report.table_html import legend, table_html
 from rvmon.verdict.verdict import Verdict
 
 
@@ -50,7 +50,7 @@ def campaign_page(
         _known(robot, figures, tests) for robot, figures in summary.robots.items() if figures.known
     )
     body.append(
-        e("footer", None, e("p", None, "Run it again: ", e("code", None, command)), _legend())
+        e("footer", None, e("p", None, "Run it again: ", e("code", None, command)), legend())
     )
     title = presentation.title or summary.name
     return page(title, body, styles=["base.css", "report.css"], scripts=[])
@@ -179,16 +179,3 @@ def _verdict_cell(one: KnownAnswer, requirement: str) -> ET.Element:
     if expected is not None and expected != verdict:
         text += f" ≠ {expected}"
     return e("td", {"data-verdict": verdict.value}, text)
-
-
-def _legend() -> ET.Element:
-    words = {
-        Verdict.PASS: "passed",
-        Verdict.FAIL: "failed",
-        Verdict.NOT_TRIGGERED: "not triggered",
-        Verdict.INCONCLUSIVE: "inconclusive",
-    }
-    parts: list[Child] = []
-    for verdict, word in words.items():
-        parts += [e("b", {"data-verdict": verdict.value}, verdict.value), f" {word}   "]
-    return e("p", {"class": "soft"}, "Number of tests: ", *parts)

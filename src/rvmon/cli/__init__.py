@@ -36,6 +36,7 @@ COMMANDS = {
     "build": "a specification as a program that judges recordings",
     "prepare": "compile ahead what the engine c runs",
     "cross": "a recording, judged by every engine and installed peer: do they agree?",
+    "cover": "what tests have covered, what is missing, and what each test is good for",
     "verify": "model-check a network of timed automata",
     "conform": "hold recorded runs against a network of timed automata",
 }

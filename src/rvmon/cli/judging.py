@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+from rvmon.cli.beside import Beside, Options
 from rvmon.cli.post_analysis import post_analysis
 from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
@@ -18,34 +20,12 @@ from rvmon.monitor.inputs.missing import expect_names
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec
-from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
-    from rvmon.monitor.robustness.values import Measured
+    from rvmon.coverage.hits import Hits
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
-
-
-@dataclass(frozen=True, slots=True)
-class Options:
-    """How to judge.
-
-    Attributes:
-        only: ids of the requirements, or `None` for all.
-        engine: `auto` or the name of one.
-        until: the instant in seconds to which recordings are judged; default their last sample.
-        strict_columns: whether missing and undeclared columns are errors.
-        robustness: whether to find the robustness of each attempt as well.
-        allow_missing: the names that recordings in columns may lack; `True`: all.
-    """
-
-    only: tuple[str, ...] | None = None
-    engine: str = "auto"
-    until: float | None = None
-    strict_columns: bool = False
-    robustness: bool = False
-    allow_missing: bool | tuple[str, ...] = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +38,8 @@ class Judged:
         before: for a broken recording, the attempts decided before the place of the error.
         error: what was wrong with the recording.
         missing: the names that requirements read and that it lacks.
+        hits: what it hit of the coverage model, where that was asked for.
+        seconds: that it took.
     """
 
     trace: str
@@ -65,6 +47,8 @@ class Judged:
     before: tuple[Attempt, ...] = ()
     error: str = ""
     missing: tuple[str, ...] = ()
+    hits: Hits = field(default_factory=dict)
+    seconds: float = 0.0
 
 
 def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) -> Iterator[Judged]:
@@ -102,6 +86,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         is_alone: whether this process judges nothing else.
     """
     before: list[Attempt] = []
+    began = time.monotonic()
     try:
         if trace.endswith((".csv", ".parquet")) and not can_be_read_again(trace):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
@@ -114,15 +99,17 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             spec.schema.columns,
             only=options.only,
             allowed=options.allow_missing,
+            coverage=True,
         )
         end = None if options.until is None else ticks_of_seconds(options.until)
-        meter = _Meter(spec, options.only, recording.names, end) if options.robustness else None
+        beside = Beside(spec, options, recording.names, end)
+        read = shown_while_reading if is_alone else iter
         source = Source(
             recording,
             end,
             is_cut=True,
-            row_by_row="" if meter is None else "robustness is found sample by sample",
-            read=meter.reading if meter else shown_while_reading if is_alone else iter,
+            row_by_row="" if beside.is_idle else "more than verdicts is found sample by sample",
+            read=read if beside.is_idle else beside.reading(read),
             is_alone=is_alone,
         )
         try:
@@ -132,8 +119,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         except TraceError:
             before = before or _judged_before(spec, trace, options)
             raise
-        if meter is not None:
-            report = meter.measured(report)
+        report = beside.finished(report)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
     except TraceError as error:
@@ -143,7 +129,9 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     report = post_analysis(spec, trace, report, recording.names, goals=options.only is None)
     trace = _shown(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
-    return Judged(trace, replace(report, trace=trace, health=health), missing=missing)
+    report = replace(report, trace=trace, health=health)
+    seconds = time.monotonic() - began
+    return Judged(trace, report, missing=missing, hits=beside.hits, seconds=seconds)
 
 
 def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
@@ -157,36 +145,6 @@ def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
         for sample in recording:
             found.extend(monitor.step_ns(sample.t, sample.values))
     return found
-
-
-class _Meter:
-    """Finds the robustness of attempts while their samples go by."""
-
-    def __init__(
-        self,
-        spec: Spec,
-        only: tuple[str, ...] | None,
-        names: frozenset[str] | None,
-        end: int | None,
-    ) -> None:
-        self._end = end
-        self._monitor = spec.robustness_monitor(only=only, sources=names)
-        self._found: list[Measured] = []
-
-    def reading(self, recording: FileRecording) -> Iterator[Sample]:
-        """The samples, each measured once it was judged."""
-        for sample in shown_while_reading(recording):
-            yield sample
-            if self._end is None or sample.t <= self._end:
-                self._found.extend(self._monitor.step_ns(sample.t, sample.values))
-
-    def measured(self, report: Report) -> Report:
-        """The report with a figure for each attempt."""
-        self._found.extend(self._monitor.finish_ns(self._end))
-        from rvmon.monitor.robustness.values import margins_from
-
-        margins = margins_from(self._found)
-        return replace(report, attempts=tuple(margins.of(attempt) for attempt in report.attempts))
 
 
 def _shown(trace: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from fractions import Fraction
 
 from rvmon.errors import TraceError
 from rvmon.trace.time import ticks_of_seconds
@@ -55,3 +56,20 @@ def instant(text: str) -> float:
             f"expected a time in seconds, such as 12.5, not {text}"
         ) from None
     return seconds
+
+
+def percentage(text: str) -> float:
+    """Read a percentage, with or without its sign, as a share from 0 to 1.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or beyond 100.
+
+    >>> percentage("95%"), percentage("99.5")
+    (0.95, 0.995)
+    """
+    number = text.removesuffix("%").strip()
+    plain = number.isascii() and number.replace(".", "", 1).isdecimal() and len(number) < 20
+    share = Fraction(number) / 100 if plain else Fraction(-1)
+    if not 0 <= share <= 1:
+        raise argparse.ArgumentTypeError(f"expected a percentage, such as 95%, not {text}")
+    return float(share)

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
 """Options whose value can be left out, and otherwise follows a `=`."""
 
+OPTIONAL_OF_COVER = ("--bins",)
+"""Those of the command that has others, of which one begins like one of these."""
+
 
 def add_time(parser: argparse.ArgumentParser) -> None:
     """Declare `--time`."""
@@ -66,11 +69,12 @@ def with_values(words: Sequence[str]) -> list[str]:
     >>> with_values(["run", "--allow-missing", "a.rv", "--allow-missing=p"])
     ['run', '--allow-missing=', 'a.rv', '--allow-missing=p']
     """
+    optional = OPTIONAL_OF_COVER if words[:1] == ["cover"] else OPTIONAL_VALUES
     made: list[str] = []
     for place, word in enumerate(words):
         if word == "--":
             return [*made, *words[place:]]
-        short = len(word) > 2 and any(name.startswith(word) for name in OPTIONAL_VALUES)
+        short = len(word) > 2 and any(name.startswith(word) for name in optional)
         made.append(f"{word}=" if short else word)
     return made
 

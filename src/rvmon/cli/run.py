@@ -72,6 +72,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="say by how much each attempt passed or failed (SI units; negative: failed)",
     )
     add_format(parser)
+    parser.add_argument(
+        "--coverage",
+        metavar="DB",
+        help="add what the recordings hit of the coverage model to a database "
+        "(made if there is none); `rvmon cover DB` shows it",
+    )
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
     parser.add_argument(
@@ -92,7 +98,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge, show, and return the exit code."""
-    from rvmon.cli.judging import Options, judge_all
+    from rvmon.cli.beside import Options
+    from rvmon.cli.judging import judge_all
     from rvmon.loading import load
 
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
@@ -105,6 +112,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.strict_columns,
         arguments.robustness,
         allowed_names(arguments.allow_missing),
+        arguments.coverage is not None,
     )
     must_trigger = ids_of(arguments.require_triggered or None, spec)
     judged = list(judge_all(spec, arguments.traces, options, arguments.jobs))
@@ -131,6 +139,10 @@ def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
             raise RvmonError(f"cannot write {path}: it is a folder: name a file")
         if not path.parent.is_dir():
             raise RvmonError(f"cannot write {path}: there is no folder {path.parent}")
+    if arguments.coverage is not None:
+        from rvmon.coverage.database import Database
+
+        Database.open(arguments.coverage).close()
     if arguments.report and Path(arguments.report).is_file():
         raise RvmonError(f"cannot write to {arguments.report}: it is a file: name a folder")
     if arguments.report and not spec.requirements:
@@ -143,7 +155,8 @@ def _show_warnings(spec: Spec) -> None:
         from rvmon.diagnostics.render import render_full
 
         warn(render_full(spec.warnings))
-    if not spec.requirements and not spec.checked.covers:
+    checked = spec.checked
+    if not (spec.requirements or checked.covers or checked.coverpoints):
         warn(f"{spec.checked.name} has no requirement: nothing is judged")
 
 
@@ -202,6 +215,8 @@ def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
 
 def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
     reports = [one.report for one in judged if one.report is not None]
+    if arguments.coverage is not None:
+        _record_coverage(Path(arguments.coverage), spec, judged)
     if arguments.junit:
         from rvmon.report.junit import junit_xml
 
@@ -223,9 +238,28 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
         write_run_pages(Path(arguments.report), spec.checked, reports, read, command)
 
 
+def _record_coverage(path: Path, spec: Spec, judged: Sequence[Judged]) -> None:
+    from rvmon.coverage.database import Database
+    from rvmon.coverage.record import TestRecord
+
+    with Database.open(path) as database:
+        database.declare(spec.coverage_model.model)
+        for number, one in enumerate(judged):
+            if one.report is not None:
+                test = TestRecord(
+                    one.trace,
+                    campaign=spec.checked.name,
+                    recording=one.trace,
+                    verdicts=one.report.verdicts,
+                    number=number,
+                    seconds=one.seconds,
+                )
+                database.record(test, one.hits)
+
+
 def _failed(report: Report, *, strict: bool) -> bool:
     fine = {"P"} if strict else {"P", "NT", "I"}
-    return any(verdict not in fine for verdict in report.verdicts.values())
+    return bool(report.illegal) or any(verdict not in fine for verdict in report.verdicts.values())
 
 
 def _never_triggered(reports: Sequence[Report], ids: tuple[str, ...] | None) -> list[str]:

@@ -211,8 +211,9 @@ def _type_in(path: Path) -> Callable[..., Core]:
 def online_source(plan: Plan) -> str:
     """The source of the module; it includes that of `rvmon.codegen.c_source.c_files`."""
     names = Names(plan)
-    places = {  # the first two hold others
+    places = {  # the first ones hold others
         "HEAP": template("heap.c.in"),
+        "WIDEN": template("widen.c.in"),
         "KINDS": "\n".join(_kinds(plan, names)),
         "SPEC": comment(plan.spec.name),
         "PREFIX": names.prefix.upper(),

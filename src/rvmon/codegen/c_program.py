@@ -57,6 +57,7 @@ def program_source(plan: Plan) -> str:
     names = Names(plan)
     places = {
         "ENTRIES": "\n".join(_entries(plan, names)),
+        "WIDEN": template("widen.c.in"),
         "STEADY": str(int(_is_steady(plan))),
         "LAW": str(LAW),
         "SPEC": comment(plan.spec.name),

@@ -9,6 +9,7 @@ from itertools import accumulate
 
 from rvmon.codegen.c_leaves import uses_library
 from rvmon.codegen.c_names import Memory, Names, memory_of
+from rvmon.codegen.c_network import Networks
 from rvmon.codegen.c_nodes import (
     UNDETERMINED,
     group_count,
@@ -21,7 +22,7 @@ from rvmon.codegen.c_nodes import (
 )
 from rvmon.codegen.c_rows import rows_source
 from rvmon.codegen.c_samples import SAMPLE, take_source
-from rvmon.codegen.c_tables import array, automata_source, lists, repeats
+from rvmon.codegen.c_tables import array, automata_source, lists, repeats, runs_on
 from rvmon.codegen.c_text import called, filled, template
 from rvmon.codegen.comment import comment
 from rvmon.errors import RvmonError
@@ -35,9 +36,13 @@ _PARTS = (
     "monitor_head.c.in",
     "monitor_tokens.c.in",
     "monitor_attempts.c.in",
+    "monitor_drive.c.in",
     "monitor_clock.c.in",
     "monitor_api.c.in",
 )
+
+_NETWORK = ("network_ranges.c.in", "network_nodes.c.in", "network_judge.c.in")
+"""What stands behind the attempts where a network judges some of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,17 +57,10 @@ def c_files(plan: Plan) -> CFiles:
     """Generate C.
 
     Raises:
-        RvmonError: there is no requirement, one has no automaton, or a number of the specification
-            is no double.
+        RvmonError: there is no requirement, or a number of the specification is no double.
     """
     if not plan.rules:
         raise RvmonError("the specification has no requirements: there is nothing to compile")
-    for _, rule in plan.judges:
-        if rule.automaton is None:
-            raise RvmonError(
-                f"{rule.requirement.id} has no automaton of bounded size, so no C can be made of "
-                "it: leave it out with --only, or judge it with `rvmon run`"
-            )
     return _Writer(plan).files()
 
 
@@ -70,14 +68,17 @@ class _Writer:
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.names = Names(plan)
+        self.networks = Networks(plan)
 
     def files(self) -> CFiles:
         prefix = self.names.prefix
-        places = {  # the first four hold others
+        places = {  # the first ones hold others
             "HELPERS": "\n".join(self._helpers()),
             "TABLES": "\n".join(self._tables()),
+            "NETWORK_TABLES": "\n".join(self.networks.tables()),
             "ROWS": "\n".join(rows_source(self.plan, self.names)),
             "HEAP": template("heap.c.in"),
+            "WIDEN": template("widen.c.in"),
             "SPEC": comment(self.plan.spec.name),
             "GUARD": f"{prefix.upper()}_MONITOR_H",
             "HEADER": f"{prefix}.h",
@@ -85,11 +86,13 @@ class _Writer:
             "prefix": prefix,
             "GAP": str(self.plan.gap or 0),
             "REPEATING": str(int(any(map(repeats, self.plan.rules)))),
-            "EPISODES": str(int(any(rule.again is not None for rule in self.plan.rules))),
+            "EPISODES": str(int(any(map(runs_on, self.plan.rules)))),
             "NAMES": "\n".join(self._constants()),
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }
-        source = "".join(template(part) for part in _PARTS)
+        behind = _PARTS.index("monitor_attempts.c.in") + 1
+        network = _NETWORK if self.networks.number else ()
+        source = "".join(map(template, (*_PARTS[:behind], *network, *_PARTS[behind:])))
         return CFiles(
             prefix,
             {
@@ -116,6 +119,7 @@ class _Writer:
             "GROUPS": group_count(plan),
             "TIMED": len(names.timers),
             **{kind.name: names.memories(kind) for kind in Memory},
+            **self.networks.sizes,
         }
         for name, size in sizes.items():
             yield f"#define {upper}_{name} {size}"
@@ -172,7 +176,7 @@ class _Writer:
         yield from nodes_source(self.plan, self.names)
         yield from self._taking()
         yield from self._index_tables()
-        yield from automata_source(self.plan)
+        yield from automata_source(self.plan, self.networks.number)
         yield from self._letters()
 
     def _index_tables(self) -> Iterator[str]:
@@ -200,6 +204,9 @@ class _Writer:
         graph = self.plan.graph
         places, worse, better = [], [], []
         for _, rule in self.plan.judges:
+            if rule.automaton is None:
+                places.append([])
+                continue
             alphabet = rule.alphabet
             places.append([graph.index[state] for state in alphabet.propositions])
             worse.append([weight for weights in alphabet.pessimistic for weight in weights])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
+from rvmon.automaton.location import PASSED
 from rvmon.automaton.table import TableData, tables_of
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.specification import EndPolicy, Mode
@@ -14,21 +15,36 @@ from rvmon.verdict.verdict import Verdict
 VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
 DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
 
+_TABLES = (
+    *("class_of", "bases", "clocks", "strides", "cut_first", "cuts", "edges", "targets"),
+    *("sources", "time_values", "clause_first", "test_first", "tests"),
+)
+"""The arrays of an automaton."""
 
-def automata_source(plan: Plan) -> Iterator[str]:
-    """The tables of all requirements, and the array `automata` of them."""
+_WAITING = ", ".join([str(PASSED + 1), "0", *("NULL" for _ in _TABLES)])
+"""In place of an automaton where a network judges: an attempt is neither passed nor failed."""
+
+
+def automata_source(plan: Plan, networks: Mapping[int, int]) -> Iterator[str]:
+    """The tables of all requirements, and the array `automata` of them.
+
+    Args:
+        plan: what is generated.
+        networks: by number of a judge without an automaton, that of its network.
+    """
     width = max((r.automaton.clocks for _, r in plan.judges if r.automaton), default=0) or 1
     entries = []
     for index, (owner, rule) in enumerate(plan.judges):
-        if rule.automaton is None:
-            raise ValueError(f"{rule.requirement.id} has no automaton")
-        data = tables_of(rule.automaton)
         yield ""
         doubt = ", its attempts in doubt" if index >= len(plan.rules) else ""
         yield f"/* Requirement number {owner}{doubt}. */"
-        yield from _arrays(data, index, width)
+        machine = _WAITING
+        if rule.automaton is not None:
+            data = tables_of(rule.automaton)
+            yield from _arrays(data, index, width)
+            machine = _machine(data, index)
         yield array("uint8_t", f"outcomes{index}", outcomes(rule.requirement.at_end))
-        entries.append(_entry(plan, owner, rule, data, index))
+        entries.append(_entry(plan, owner, rule, f"{machine}, {networks.get(index, -1)}", index))
     yield ""
     yield "static const automaton automata[] = {"
     yield from entries
@@ -37,7 +53,12 @@ def automata_source(plan: Plan) -> Iterator[str]:
 
 def repeats(rule: PlannedRule) -> bool:
     """Whether a trigger that stays true starts an attempt at each position."""
-    return rule.requirement.pulse and rule.requirement.mode is not Mode.WHENEVER
+    return rule.requirement.pulse and not runs_on(rule)
+
+
+def runs_on(rule: PlannedRule) -> bool:
+    """Whether an attempt runs until its trigger is false."""
+    return rule.requirement.mode is Mode.WHENEVER
 
 
 def outcomes(policy: EndPolicy) -> list[int]:
@@ -98,35 +119,20 @@ def _arrays(data: TableData, index: int, width: int) -> Iterator[str]:
     yield f"static const end_test tests{index}[] = {{{shown or '{0, 0, false}'}}};"
 
 
-def _entry(plan: Plan, owner: int, rule: PlannedRule, data: TableData, index: int) -> str:
+def _machine(data: TableData, index: int) -> str:
+    """The fields of an automaton: where it begins, how many classes of letters it has, its tables."""
+    classes = len(data.rows[0]) if data.rows else 1
+    return ", ".join([str(data.initial), str(classes), *(f"{name}{index}" for name in _TABLES)])
+
+
+def _entry(plan: Plan, owner: int, rule: PlannedRule, judging: str, index: int) -> str:
     formulas = (rule.trigger, rule.again, rule.unborn, rule.determined)
     places = ", ".join(str(-1 if state is None else plan.graph.index[state]) for state in formulas)
     requirement = rule.requirement
     hidden = index >= len(plan.rules)
-    episodic = hidden or requirement.mode is Mode.WHENEVER
-    classes = len(data.rows[0]) if data.rows else 1
-    tables = ", ".join(
-        f"{name}{index}"
-        for name in (
-            "class_of",
-            "bases",
-            "clocks",
-            "strides",
-            "cut_first",
-            "cuts",
-            "edges",
-            "targets",
-            "sources",
-            "time_values",
-            "clause_first",
-            "test_first",
-            "tests",
-        )
-    )
+    episodic = hidden or runs_on(rule)
     flags = ", ".join(str(flag).lower() for flag in (requirement.pulse, episodic, hidden))
-    return (
-        f"    {{{data.initial}, {classes}, {tables}, {places}, {owner}, {flags}, outcomes{index}}},"
-    )
+    return f"    {{{judging}, {places}, {owner}, {flags}, outcomes{index}}},"
 
 
 def array(kind: str, name: str, values: Sequence[int]) -> str:

@@ -89,12 +89,7 @@ class IntakeWriter:
         """See what a dictionary holds; be done with one that brings one value or nothing new."""
         branch = "if"
         if self.whole:
-            yield f"if len(values) == {len(self.arriving)}:"
-            yield "    try:"
-            for number, name in enumerate(self.arriving):
-                yield f"        x{number} = values[{name!r}]"
-            yield "    except LookupError:"
-            yield "        return self.clerk.other(t, values)"
+            yield from self._unpacked()
             if not self.every:
                 yield from indented(self._compared())
             yield from indented(self._checked())
@@ -110,6 +105,43 @@ class IntakeWriter:
             yield "        one = ONE.get(name)"
             yield "        if one is not None:"
             yield "            return one(self, t, values[name], values)"
+
+    def _unpacked(self) -> Iterator[str]:
+        """The values of a row that has all signals; an event that it does not name is not there."""
+        numbered = [*enumerate(self.arriving)]
+        events = [(n, name) for n, name in numbered if name in self.plan.events]
+        signals = [(n, name) for n, name in numbered if name not in self.plan.events]
+        every = len(numbered)
+        # A row of one name has a way of its own.
+        least = max(len(signals), 2) if signals and not self._asks_events() else every
+        if least >= every:
+            yield f"if len(values) == {every}:"
+            signals, events = numbered, []
+        else:
+            yield f"if {least} <= len(values) <= {every}:"
+        yield "    try:"
+        yield from indented((f"x{n} = values[{name!r}]" for n, name in signals), 2)
+        yield "    except LookupError:"
+        yield "        return self.some(t, values)"
+        if not events:
+            return
+        if least == len(signals):
+            yield f"    if len(values) == {least}:"
+            yield from indented((f"x{n} = False" for n, _ in events), 2)
+            yield "    else:"
+        named = " + ".join(f"({name!r} in values)" for _, name in events)
+        counted = [f"x{n} = values.get({name!r}, False)" for n, name in events]
+        counted.append(f"if {named} != len(values) - {len(signals)}:")
+        counted.append("    return self.some(t, values)")
+        yield from indented(counted, 2 if least == len(signals) else 1)
+
+    def _asks_events(self) -> bool:
+        """Whether it matters that a row names an event that does not occur."""
+        return any(
+            [*self.values.every(f"x{n}", name)]
+            for n, name in enumerate(self.arriving)
+            if name in self.plan.events
+        )
 
     def _in_order(self, before: str) -> str:
         """Whether a time is whole and later than the one before; it may be beyond the limit."""

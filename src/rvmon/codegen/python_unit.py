@@ -42,16 +42,18 @@ _NAMES: dict[str, Any] = {
 """What generated code may call."""
 
 Made = TypeVar("Made", bound=Nodes)
+MadeUnit = TypeVar("MadeUnit", bound=Unit)
 
 
-def unit_class(plan: Plan, arriving: frozenset[str] | None = None) -> type[Unit]:
+def unit_class(plan: Plan, arriving: frozenset[str] | None, base: type[MadeUnit]) -> type[MadeUnit]:
     """The class of a plan's generated monitors.
 
     Args:
         plan: what to judge.
-        arriving: the names that have a source; default all.
+        arriving: the names that have a source; `None`: all.
+        base: what it derives from.
     """
-    return _made(unit_source(plan, arriving), Unit)
+    return _made(unit_source(plan, arriving), base)
 
 
 def evaluator_class(plan: Plan, base: type[Made]) -> type[Made]:
@@ -65,7 +67,7 @@ def evaluator_class(plan: Plan, base: type[Made]) -> type[Made]:
 
 
 def _made(source: str, base: type[Made]) -> type[Made]:
-    namespace = {**_NAMES, "Base": base}
+    namespace = {**_NAMES, "Base": base, "Unit": base}
     # The source holds names and numbers of the specification as literals only.
     exec(compile(source, "<generated monitor>", "exec"), namespace)  # noqa: S102
     made: type[Made] = namespace["Generated"]

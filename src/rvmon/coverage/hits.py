@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from rvmon.coverage.model import Group, Item, Model
 from rvmon.spec.checked.goals import BinKind
@@ -77,14 +78,22 @@ def share(hits: Hits, model: Model) -> float:
     """The share of a model that is covered: the mean of its groups by their weights.
 
     Returns:
-        From 0 to 1; 1 if nothing is wanted.
+        From 0 to 1, which stand for none and all alone; 1 if nothing is wanted.
     """
-    scores = [(group.weight, score(hits, group)) for group in model.groups.values()]
-    weighed = [(weight, one) for weight, one in scores if one.items]
-    whole = sum(weight for weight, _ in weighed)
+    return weighted((group.weight, score(hits, group)) for group in model.groups.values())
+
+
+def weighted(scores: Iterable[tuple[int, Score]]) -> float:
+    """The mean of scores by their weights, rounded once; one without items counts for nothing.
+
+    >>> weighted([(1, Score(4, 3)), (2, Score(2, 2)), (5, Score(0, 0))])
+    0.9166666666666666
+    """
+    wanted = [(weight, one) for weight, one in scores if one.items]
+    whole = sum(weight for weight, _ in wanted)
     if not whole:
         return 1.0
-    return sum(weight * one.covered / one.items for weight, one in weighed) / whole
+    return float(sum(Fraction(weight * one.covered, one.items) for weight, one in wanted) / whole)
 
 
 def illegal(hits: Hits, model: Model) -> list[tuple[Group, Item, Hit]]:

@@ -46,7 +46,8 @@ class Group:
         subject: what they are.
         items: by name, in order.
         weight: of the group in the total; 0: it is shown, and counts for nothing.
-        axes: of a cross, the bins of each of its coverpoints by that one's name.
+        axes: of a cross, the bins of each of its coverpoints by that one's name; its items are
+            named by `combination`.
     """
 
     name: str
@@ -65,6 +66,15 @@ class Model:
     """
 
     groups: Mapping[str, Group]
+
+
+def combination(bins: Sequence[str]) -> str:
+    """The name of the item of a cross that has one bin of each axis, in the order of the axes.
+
+    >>> combination(["yes", "touch"]), combination(["yes", "a × b"])
+    ('yes × touch', 'yes × `a × b`')
+    """
+    return " × ".join(f"`{one}`" if "×" in one else one for one in bins)
 
 
 def group_of(name: str, subject: Subject, items: Sequence[Item], weight: int = 1) -> Group:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.alphabet import Alphabet
+from rvmon.formula.core import Core
 from rvmon.formula.state import Leaf, State, Unborn
 from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
@@ -19,9 +20,9 @@ class PlannedRule:
     Attributes:
         requirement: as checked; without `let` and `for each`.
         trigger: what starts its attempts; `None` if that is the end of the trace.
+        owed: by an attempt.
         alphabet: of what it owes.
-        automaton: judges its attempts; `None` if there is none, which only a monitor in this
-            process can do without.
+        automaton: judges its attempts; `None` if a delay network does.
         in_runs: whether its open attempts are kept in runs.
         again: of a `whenever`, not FALSE where an episode goes on after a failure; `None`: nothing
             is asked.
@@ -36,6 +37,7 @@ class PlannedRule:
 
     requirement: Requirement
     trigger: State | None
+    owed: Core
     alphabet: Alphabet
     automaton: Automaton | None
     in_runs: bool = False
@@ -94,7 +96,7 @@ class Plan:
 
     @property
     def judges(self) -> Sequence[tuple[int, PlannedRule]]:
-        """All that has an automaton of its own, with the number of the rule that it belongs to.
+        """All that has attempts of its own, with the number of the rule that it belongs to.
 
         The rules themselves come first, then what judges their attempts in doubt.
         """

@@ -21,8 +21,9 @@ def junit_xml(
 ) -> str:
     """A test suite per run, a test case per requirement.
 
-    F is a failure; NT and I are skipped with their reason, since neither is a pass. A recording
-    that could not be read to its end is an error, lest it count as nothing to complain of.
+    F is a failure, as is a bin that must not be hit; NT and I are skipped with their reason, since
+    neither is a pass. A recording that could not be read to its end is an error, lest it count as
+    nothing to complain of.
 
     Args:
         reports: of the recordings that were judged.
@@ -37,13 +38,17 @@ def junit_xml(
             root,
             "testsuite",
             name=shown(report.trace or spec.name),
-            tests=str(len(verdicts)),
-            failures=str(verdicts.count(Verdict.FAIL)),
+            tests=str(len(verdicts) + len(report.illegal)),
+            failures=str(verdicts.count(Verdict.FAIL) + len(report.illegal)),
             errors="0",
             skipped=str(skipped),
         )
         for name, verdict in report.verdicts.items():
             _add_case(suite, report, name, verdict, spec.requirements[name].text)
+        for one in report.illegal:
+            own = shown(f"{one.group}: {one.item}")
+            case = ET.SubElement(suite, "testcase", name=own, classname=suite.get("name", ""))
+            ET.SubElement(case, "failure", message=shown(str(one)))
     for trace, message in broken:
         name = shown(trace)
         suite = ET.SubElement(

@@ -22,7 +22,7 @@ def percent(part: int, whole: int) -> float:
     return min(max(round(100 * part / whole, 1), SMALLEST), 100 - SMALLEST)
 
 
-def percent_text(part: int, whole: int) -> str:
+def percent_text(part: float, whole: float) -> str:
     """The same in whole percent, for people.
 
     >>> percent_text(2, 3), percent_text(1, 5000), percent_text(4999, 5000)

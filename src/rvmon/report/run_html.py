@@ -95,6 +95,7 @@ def _health(content: RunPage) -> ET.Element | None:
         findings.append(
             e("li", None, e("code", None, one.name), f" {one.kind.value}{times}{remark}")
         )
+    findings += [e("li", None, str(one)) for one in content.run.report.illegal]
     if not findings:
         return None
     return e("div", {"class": "health"}, e("h2", None, "Input health"), e("ul", None, *findings))

@@ -51,7 +51,8 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
 
     end = "" if report.end is None else f"  to {format_ticks(report.end)}"
     console.print(Text.assemble((report.trace or spec.name, "bold"), f"{end}  by {spec.name}"))
-    console.print(_verdict_table(report, spec))
+    if spec.requirements:
+        console.print(_verdict_table(report, spec))
     for name, requirement in spec.requirements.items():
         if name in report.misses:
             why = without_attempts(report.verdicts[name], report.misses[name])
@@ -64,6 +65,8 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")
     if report.goals:
         console.print(_goals_text(report.goals))
+    for one in report.illegal:
+        console.print(str(one), style="bold red", markup=False)
     for line in health_lines(report.health):
         console.print(line)
 

@@ -41,6 +41,20 @@ def table_html(
     return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
 
 
+def legend() -> ET.Element:
+    """What the letters above the counts stand for."""
+    words = {
+        Verdict.PASS: "passed",
+        Verdict.FAIL: "failed",
+        Verdict.NOT_TRIGGERED: "not triggered",
+        Verdict.INCONCLUSIVE: "inconclusive",
+    }
+    parts: list[Child] = []
+    for verdict, word in words.items():
+        parts += [e("b", {"data-verdict": verdict.value}, verdict.value), f" {word}   "]
+    return e("p", {"class": "soft"}, "Number of tests: ", *parts)
+
+
 def _head(table: VerdictTable, *, has_checked: bool) -> ET.Element:
     letters = len(Verdict)
     top: list[Child] = [e("th")]

@@ -105,7 +105,9 @@ class Maker:
             case "c rows":
                 return BatchLibrary(plan_alone(compiled), optimised=False)
             case "file":
-                return _module_of(plan_alone(compiled))
+                plan = plan_alone(compiled)
+                whole = all(rule.automaton is not None for rule in plan.judged)
+                return _module_of(plan) if whole else None
             case _:
                 return compiled
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.illegal import IllegalHit
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import LAW, Verdict, fold
 
@@ -33,6 +34,7 @@ class Report:
             deadline, ticks; where somebody looked.
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
+        illegal: what was hit of coverpoints and crosses and must not be; where somebody looked.
         law: version of the law that judged; a report that was kept may be of an older one.
         engine: the engines that judged, the fastest first; no part of what was judged, and so
             neither compared nor written down.
@@ -50,6 +52,7 @@ class Report:
     misses: Mapping[str, str] = field(default_factory=dict)
     late: Mapping[str, Mapping[int, int]] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
+    illegal: tuple[IllegalHit, ...] = ()
     law: int = LAW
     dropped: Mapping[str, Mapping[Verdict, int]] = field(default_factory=dict)
     engine: str = field(default="", compare=False)
@@ -95,7 +98,11 @@ class Report:
             {"law": self.law, "trace": self.trace, "origin": self.origin, "end": self.end},
             {name: (verdict, self._rest_of(name)) for name, verdict in self.verdicts.items()},
             texts,
-            {"health": self.health, **({"goals": self.goals} if self.goals else {})},
+            {
+                "health": self.health,
+                **({"goals": self.goals} if self.goals else {}),
+                **({"illegal": self.illegal} if self.illegal else {}),
+            },
         )
 
     def _rest_of(self, requirement: str) -> dict[str, object]:
@@ -138,7 +145,14 @@ class Report:
         )
         misses = {name: entry.nearest_miss for name, entry in entries if entry.nearest_miss}
         late = {name: entry.late for name, entry in entries if entry.late}
-        return replace(report, misses=misses, late=late, goals=document.goals, law=document.law)
+        return replace(
+            report,
+            misses=misses,
+            late=late,
+            goals=document.goals,
+            illegal=document.illegal,
+            law=document.law,
+        )
 
 
 def report_of(

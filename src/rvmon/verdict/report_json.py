@@ -11,6 +11,7 @@ from rvmon.errors import TraceError
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.attempt_json import encoded, record
+from rvmon.verdict.illegal import IllegalHit
 from rvmon.verdict.verdict import LAW, Verdict
 
 
@@ -34,6 +35,7 @@ class ReportJson(msgspec.Struct):
     origin: int = 0
     end: int | None = None
     goals: dict[str, Verdict] = {}
+    illegal: tuple[IllegalHit, ...] = ()
 
 
 def encode(

@@ -25,6 +25,9 @@ class CapturedAttempt:
         trigger: place of the trigger in the parent's flow: where that is FALSE, it is over.
         doubt: place there of what is UNKNOWN where it may have begun; `None`: anywhere.
 
+    Attributes:
+        evaluator: its own.
+
     Source: SEMANTICS, section 3 (Doubt, `let`); decision record 4.
     """
 
@@ -37,7 +40,7 @@ class CapturedAttempt:
         doubt: int | None,
     ) -> None:
         self._parent = parent
-        self._evaluator = parent
+        self.evaluator = parent
         self._own = captured
         self._captures = compiled.requirement.captures
         self._leaves = leaves_in(parent.graph, compiled)
@@ -46,7 +49,7 @@ class CapturedAttempt:
 
     def follow(self, evaluator: Evaluator) -> None:
         """Take the evaluator that is its own."""
-        self._evaluator = evaluator
+        self.evaluator = evaluator
         self._parent.watched.append(self)
 
     @property
@@ -57,7 +60,7 @@ class CapturedAttempt:
 
     def keeps(self, t: int) -> bool:
         """See `rvmon.monitor.attempts.evaluator.WatchedAttempt`."""
-        evaluator = self._evaluator
+        evaluator = self.evaluator
         trigger = self._parent.v[self._trigger]
         if evaluator.is_idle or trigger == FALSE:
             evaluator.blurs = False
@@ -76,7 +79,7 @@ class CapturedAttempt:
 
     @property
     def _attempts(self) -> Iterator[tuple[AttemptJudge, Open]]:
-        return ((judge, attempt) for judge in self._evaluator.judges for attempt in judge.attempts)
+        return ((judge, attempt) for judge in self.evaluator.judges for attempt in judge.attempts)
 
     @property
     def _is_same(self) -> bool:

@@ -26,7 +26,13 @@ from rvmon.trace.time import TIME_LIMIT
 
 
 class WatchedAttempt(Protocol):
-    """A captured attempt as the evaluator sees it in which it was triggered."""
+    """A captured attempt as the evaluator sees it in which it was triggered.
+
+    Attributes:
+        evaluator: its own.
+    """
+
+    evaluator: Evaluator
 
     def keeps(self, t: int) -> bool:
         """Look at the position `t`: whether to look at the next as well."""

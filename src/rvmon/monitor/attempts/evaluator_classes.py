@@ -16,6 +16,9 @@ from rvmon.spec.checked.specification import CheckedSpec
 
 Made = TypeVar("Made", bound=Evaluator)
 
+_IDLE: dict[int | None, type[Evaluator]] = {}
+"""The classes of evaluators that read nothing, by the ticks between two positions."""
+
 
 def class_of_all(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> type[Evaluator]:
     """The class of the evaluator that requirements without `for each` share.
@@ -26,8 +29,12 @@ def class_of_all(spec: CheckedSpec, requirements: Sequence[CompiledRequirement])
         spec: of the requirements.
         requirements: all that are judged.
     """
+    if not requirements:
+        if spec.gap not in _IDLE:
+            _IDLE[spec.gap] = generated(spec, graph_of(()), (), {}, Evaluator)
+        return _IDLE[spec.gap]
     key = tuple(one.rank for one in requirements)
-    cached = requirements[0].evaluators if requirements else {}
+    cached = requirements[0].evaluators
     if key not in cached:
         shared = [one for one in requirements if one.requirement.for_each is None]
         graph = graph_of(node for one in shared for node in one.shared_graph.nodes)

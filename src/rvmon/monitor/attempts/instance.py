@@ -11,11 +11,11 @@ from rvmon.trace.sample import Payload, Scalar, Value
 
 Shape = tuple[
     list[tuple[str, list[tuple[int, Scalar, int]]]],
-    list[tuple[str, str, dict[str, Scalar], Scalar, bool]],
+    list[tuple[str, str, dict[str, Scalar], Scalar, bool, bool]],
 ]
 """Per requirement its instances: rank, value, first instant; per evaluator its requirement,
-which of its judges it has, captured values, the value of its instance, and whether attempts start
-in it."""
+which of its judges it has, captured values, the value of its instance, whether attempts start in
+it, and whether it is still seen to whether its values stay known."""
 
 
 @dataclass(frozen=True, slots=True)

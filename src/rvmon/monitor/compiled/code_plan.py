@@ -37,6 +37,7 @@ def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) ->
     return PlannedRule(
         one.requirement,
         obligation.trigger,
+        obligation.owed,
         one.alphabet,
         automaton,
         one.in_runs(automaton),

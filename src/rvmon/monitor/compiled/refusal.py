@@ -112,13 +112,21 @@ def of_progression(one: CompiledRequirement) -> Refusal | None:
     return None
 
 
-def of_generated(one: CompiledRequirement) -> Refusal | None:
-    """What code that is generated cannot judge, be it Python or C."""
+def _of_captured(one: CompiledRequirement) -> Refusal | None:
+    """What has propositions of its own in each instance or attempt."""
     tables = "automaton" if one.automaton is not None else "network"
     if one.requirement.for_each:
         return Refusal("uses `for each`", _LEAVE_OUT, tables)
     if one.requirement.captures:
         return Refusal("uses `let`", _LEAVE_OUT, tables)
+    return None
+
+
+def of_generated(one: CompiledRequirement) -> Refusal | None:
+    """What generated Python cannot judge."""
+    refusal = _of_captured(one)
+    if refusal is not None:
+        return refusal
     if one.automaton is None:
         return Refusal(f"has no automaton ({one.refusal})", _LEAVE_OUT, "network")
     if isinstance(one.automaton.class_of, LetterDiagram):
@@ -128,20 +136,11 @@ def of_generated(one: CompiledRequirement) -> Refusal | None:
 
 
 def of_c(one: CompiledRequirement) -> Refusal | None:
-    """What generated code cannot judge without a monitor in this process.
-
-    Attempts in doubt need an automaton, too: in this process anything judges them.
-    """
+    """What generated code cannot judge without a monitor in this process."""
     if one.spec.max_delay is not None:
         mend = "leave out `max delay`, or use the engine `auto`"
         return Refusal("has samples that come late (`max delay`)", mend, "python")
-    refusal = of_generated(one)
-    if refusal is None and one.hidden is not None:
-        refusal = of_generated(one.hidden)
-        if refusal is not None:
-            reason = f"{refusal.reason}, where its trigger may be unknown"
-            return Refusal(reason, refusal.mend, "python")
-    return refusal
+    return _of_captured(one)
 
 
 def of_columns(one: CompiledRequirement) -> Refusal | None:

@@ -24,7 +24,7 @@ class C:
     name = "c"
 
     def refuses(self, requirement: CompiledRequirement) -> Refusal | None:
-        """What has no automaton, or needs Python beside it."""
+        """What needs Python beside it."""
         from rvmon.monitor.compiled.refusal import of_c
 
         return of_c(requirement)

@@ -10,7 +10,7 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.choice import judged_by
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import judge_rows
-from rvmon.monitor.online.generated import Forms, GeneratedMonitor
+from rvmon.monitor.online.generated import Forms, GeneratedMonitor, forms_of
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
@@ -56,7 +56,7 @@ def generated_or_tables(
         key = (tuple(one.requirement.id for one in chosen), asked.sources)
         forms = compiled.forms.get(key)
         if not isinstance(forms, Forms):
-            forms = compiled.forms[key] = Forms(compiled, chosen, asked.sources)
+            forms = compiled.forms[key] = forms_of(compiled, chosen, asked.sources)
         monitor = GeneratedMonitor(forms, compiled, chosen, engine, *how)
     monitor.judged_by = judged_by(chosen)
     return monitor

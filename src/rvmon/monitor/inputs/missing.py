@@ -12,7 +12,7 @@ from rvmon.diagnostics.nearest import MOST_NAMES, nearest
 from rvmon.errors import MissingNameError
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.values import shorten
-from rvmon.spec.checked.reads import names_of_requirement
+from rvmon.spec.checked.reads import names_of_coverage, names_of_requirement
 from rvmon.spec.checked.selection import sources_asked
 from rvmon.spec.checked.specification import CheckedSpec
 
@@ -23,18 +23,24 @@ _SHOWN = 8
 """Columns that are listed where none is like a name."""
 
 
-def names_read(spec: CheckedSpec, only: Collection[str] | None) -> dict[str, tuple[str, ...]]:
+def names_read(
+    spec: CheckedSpec, only: Collection[str] | None, *, coverage: bool = False
+) -> dict[str, tuple[str, ...]]:
     """The signals and events that requirements read, each with the ids of those.
 
     Args:
         spec: the specification.
         only: ids of the requirements; default all.
+        coverage: whether what coverpoints and crosses read is wanted as well.
     """
     found: dict[str, list[str]] = {}
     for name, requirement in spec.requirements.items():
         if only is None or name in only:
             for read in sorted({*names_of_requirement(requirement)}):
                 found.setdefault(read, []).append(name)
+    for name, reads in names_of_coverage(spec) if coverage else ():
+        for read in sorted({*reads}):
+            found.setdefault(read, []).append(name)
     return {read: tuple(names) for read, names in found.items()}
 
 
@@ -45,6 +51,7 @@ def expect_names(
     *,
     only: Sequence[str] | None,
     allowed: bool | Iterable[str],
+    coverage: bool = False,
 ) -> tuple[str, ...]:
     """Refuse a recording that lacks what is read.
 
@@ -54,6 +61,7 @@ def expect_names(
         mapped: by declared name the column that a person named.
         only: ids of the requirements; default all.
         allowed: the names that it may lack; whether all.
+        coverage: whether what coverpoints and crosses read counts.
 
     Returns:
         The names that it lacks, all of which it may.
@@ -66,7 +74,11 @@ def expect_names(
     names = recording.names
     if names is None:
         return ()
-    lacking = {name: ids for name, ids in names_read(spec, only).items() if name not in names}
+    lacking = {
+        name: ids
+        for name, ids in names_read(spec, only, coverage=coverage).items()
+        if name not in names
+    }
     refused = [] if allowed is True else [name for name in lacking if name not in (some or ())]
     if refused:
         place = f"{recording.path}: " if isinstance(recording, FileRecording) else ""

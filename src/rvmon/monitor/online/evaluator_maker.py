@@ -31,6 +31,8 @@ class EvaluatorMaker:
         ledger: takes the records.
     """
 
+    judge_of = staticmethod(judge_of)
+
     def __init__(
         self,
         spec: CheckedSpec,
@@ -61,7 +63,7 @@ class EvaluatorMaker:
         started_elsewhere: bool = False,
     ) -> Sequence[AttemptJudge]:
         """What judges the attempts of a requirement, and what judges beside it."""
-        judge = judge_of(
+        judge = self.judge_of(
             compiled,
             self.engine,
             evaluator,

@@ -166,10 +166,16 @@ class Evaluators(EvaluatorMaker):
             for name, keyed in self.instances.keyed.items()
         ]
         templates = {keyed.template for keyed in self.instances.keyed.values()}
+        watched = {one.evaluator for evaluator in self.all for one in evaluator.watched}
         evaluators = [
-            (*self._kind(evaluator.made_for), dict(evaluator.captured), _value(instance), starts)
+            (
+                *self._kind(evaluator.made_for),
+                dict(evaluator.captured),
+                _value(instance),
+                bool(evaluator.starters),
+                evaluator in watched,
+            )
             for evaluator, instance in self._entries
-            for starts in (bool(evaluator.starters),)
             if evaluator.made_for is not None and evaluator not in templates
         ]
         return instances, evaluators
@@ -191,7 +197,7 @@ class Evaluators(EvaluatorMaker):
             keyed = self.instances.keyed[name]
             source = keyed.each.value
             keyed.take(Instance(rank, source, value, first) for rank, value, first in found)
-        for name, kind, captured, value, starts in evaluators:
+        for name, kind, captured, value, starts, watched in evaluators:
             compiled = self._by_id[name].judges[kind]
             own = self.instances.keyed.get(name)
             instance = None if own is None else own.doubted if value is None else own.known[value]
@@ -203,7 +209,8 @@ class Evaluators(EvaluatorMaker):
                 self._drive_attempt(evaluator, compiled, captured, instance)
                 parents = (one for one, its in self._entries if one.starters and its is instance)
                 parent = next(parents, self.main)
-                if compared := self._compared(parent, compiled, captured, instance):
+                compared = self._compared(parent, compiled, captured, instance)
+                if compared is not None and watched:
                     compared.follow(evaluator)
                 self._captured.append((evaluator, instance))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rvmon.automaton.machine import Machine
@@ -20,6 +21,7 @@ from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.online.unit_clerks import JudgeClerk, UnitClerk, UnitStanding
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.outages import Outages
+from rvmon.plan.plan import Plan
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.unit import Unit
@@ -33,6 +35,7 @@ _HELD = BUSY + 1
 """As `BUSY`, while the monitor is called itself; behind a call that was interrupted as it ended."""
 
 
+@dataclass(frozen=True, slots=True)
 class Forms:
     """What is generated for one choice of requirements and sources; serves any number of monitors.
 
@@ -42,29 +45,37 @@ class Forms:
         plan: of `requirements`.
         unit: the generated class.
         machines: per requirement, what judges its attempts; `None`: a judge.
+    """
+
+    requirements: Sequence[CompiledRequirement]
+    others: Sequence[CompiledRequirement]
+    plan: Plan
+    unit: type[Unit]
+    machines: Sequence[Machine | None]
+
+
+def forms_of(
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    sources: frozenset[str] | None,
+) -> Forms:
+    """Generate what monitors of some requirements run.
 
     Args:
         compiled: the specification.
         requirements: chosen from it.
         sources: the names that can arrive; `None`: all.
     """
-
-    def __init__(
-        self,
-        compiled: CompiledSpec,
-        requirements: Sequence[CompiledRequirement],
-        sources: frozenset[str] | None,
-    ) -> None:
-        self.requirements = [one for one in requirements if one.is_fed]
-        self.others = [one for one in requirements if not one.is_fed]
-        self.plan = plan_requirements(compiled, self.requirements)
-        self.unit = unit_class(self.plan, sources)
-        self.machines: list[Machine | None] = [
-            None if rule.automaton is None else one.machine("auto")
-            for one, rule in zip(self.requirements, self.plan.rules, strict=True)
-        ]
-        # What judges attempts in doubt is made when one comes up.
-        self.machines += [None for _ in self.plan.hidden_of]
+    fed = [one for one in requirements if one.is_fed]
+    plan = plan_requirements(compiled, fed)
+    machines = [
+        None if rule.automaton is None else one.machine("auto")
+        for one, rule in zip(fed, plan.rules, strict=True)
+    ]
+    # What judges attempts in doubt is made when one comes up.
+    machines += [None for _ in plan.hidden_of]
+    others = [one for one in requirements if not one.is_fed]
+    return Forms(fed, others, plan, unit_class(plan, sources, Unit), machines)
 
 
 class GeneratedEvaluators(Evaluators):

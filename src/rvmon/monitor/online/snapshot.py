@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rvmon.monitor.compiled.specification import CompiledSpec
     from rvmon.spec.checked.specification import CheckedSpec
 
-_KIND = b"rvmon snapshot 1"
+_KIND = b"rvmon snapshot 2"
 
 _UNSAID = ("span", "source", "text", "title", "doc")
 """Fields of a specification that do not change what is judged."""

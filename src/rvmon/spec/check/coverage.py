@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import product
+from itertools import pairwise, product
 from math import prod
 
 from rvmon.spec.check.comparisons import compared
@@ -21,16 +21,26 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     Unary,
     UnaryOp,
+    UpdateFunction,
 )
 from rvmon.spec.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.spec.checked.operators import Connectives, Tense
 from rvmon.spec.checked.reading import read
 from rvmon.spec.checked.tense import end_part, future_part
+from rvmon.spec.print.printer import format_formula
 from rvmon.spec.rules import goals as rules
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import triggers as trigger_rules
 from rvmon.spec.rules.rule import Refusal, Reported
-from rvmon.spec.syntax.expressions import Comparison, Expression, Name, Window
+from rvmon.spec.syntax.expressions import (
+    Call,
+    Comparison,
+    Expression,
+    Ident,
+    Name,
+    Number,
+    Window,
+)
 from rvmon.spec.syntax.items import (
     BinSyntax,
     CoverItem,
@@ -39,8 +49,13 @@ from rvmon.spec.syntax.items import (
     GoalClause,
     GoalClauses,
     SampledClause,
+    StepsSyntax,
     UnwantedClause,
+    WeightClause,
 )
+
+_MOST = 10**9
+"""The largest goal and weight: what a test will never do is a slip of the pen."""
 
 
 def checked_cover(checker: Checker, item: CoverItem) -> Cover | None:
@@ -128,8 +143,15 @@ def checked_cross(
     found = _clauses(checker, item.clauses)
     if found is None:
         return None
+    upon, goal, weight = found
+    if upon is None:
+        sampled = [one for name in names if (one := points[name].upon) is not None]
+        if not all(_alike(one, sampled[0]) for one in sampled):
+            checker.report(rules.sampled_apart(item.span))
+            return None
+        upon = sampled[0] if sampled else None
     ignored, illegal = unwanted[BinKind.IGNORE], unwanted[BinKind.ILLEGAL]
-    return Cross(item.name.text, tuple(names), ignored, illegal, *found, item.span)
+    return Cross(item.name.text, tuple(names), ignored, illegal, upon, goal, weight, item.span)
 
 
 def present(formula: Formula) -> Formula:
@@ -157,18 +179,63 @@ def _bin_formula(
         return _equals(checker, expression, Name(bin_.name.text, bin_.name.span))
     if isinstance(bin_.values, Window):
         return _in_window(checker, expression, bin_.values)
-    if labelled and expression is not None and isinstance(bin_.values, Name):
-        return _equals(checker, expression, bin_.values)
-    (found,) = checker.values((bin_.values,), EVERYWHERE)
+    if isinstance(bin_.values, StepsSyntax):
+        return _stepped(checker, expression, bin_.values, labelled=labelled)
+    return _valued(checker, expression, bin_.values, labelled=labelled)
+
+
+def _valued(
+    checker: Checker, expression: Expression | None, wanted: Expression, *, labelled: bool
+) -> Formula:
+    """That the expression has a value; without one, what is written is the formula."""
+    if labelled and expression is not None and isinstance(wanted, Name):
+        return _equals(checker, expression, wanted)
+    (found,) = checker.values((wanted,), EVERYWHERE)
     if isinstance(found, Quantity) and found.constant is not None:
         if expression is None:
-            raise Refusal(rules.bin_needs_expression(bin_.values.span))
-        return _equals(checker, expression, bin_.values)
-    formula = checker.formula(bin_.values, EVERYWHERE)
+            raise Refusal(rules.bin_needs_expression(wanted.span))
+        return _equals(checker, expression, wanted)
+    formula = checker.formula(wanted, EVERYWHERE)
     if isinstance(formula, Constant) and expression is not None:
         holds = checker.formula(expression, EVERYWHERE)
-        return holds if formula.value else Unary(UnaryOp.NOT, holds, None, bin_.span)
+        return holds if formula.value else Unary(UnaryOp.NOT, holds, None, wanted.span)
     return formula
+
+
+def _stepped(
+    checker: Checker, expression: Expression | None, steps: StepsSyntax, *, labelled: bool
+) -> Formula:
+    """That the last update took the expression to the last value, and those before it to others.
+
+    From each value it came to the next without a third in between.
+    """
+    if expression is None:
+        raise Refusal(rules.bin_needs_expression(steps.span))
+    prev = Ident(UpdateFunction.PREV.value, expression.span)
+    before = Call(prev, (expression,), expression.span)
+    span = steps.span
+    made: Formula | None = None
+    entered: Formula | None = None
+    for start, end in pairwise(steps.values):
+        now = _valued(checker, expression, end, labelled=labelled)
+        was = _valued(checker, before, start, labelled=labelled)
+        if _alike(now, _valued(checker, expression, start, labelled=labelled)):
+            raise Refusal(rules.same_value(end.span))
+        rise = Unary(UnaryOp.RISE, now, None, span)
+        came = Binary(BinaryOp.AND, rise, was, None, span)
+        if made is not None and entered is not None:
+            stayed = Unary(UnaryOp.NOT, entered, None, span)
+            latest = Binary(BinaryOp.SINCE, stayed, made, Interval(), span)
+            came = Binary(BinaryOp.AND, came, latest, None, span)
+        made, entered = came, rise
+    if made is None:
+        raise AssertionError("there are two values at least")
+    return made
+
+
+def _alike(one: Formula, other: Formula) -> bool:
+    """Whether two formulas say the same in the same words, wherever they stand."""
+    return format_formula(one) == format_formula(other)
 
 
 def _equals(checker: Checker, expression: Expression, other: Expression) -> Formula:
@@ -190,10 +257,12 @@ def _in_window(checker: Checker, expression: Expression | None, window: Window) 
     return Binary(BinaryOp.AND, left, right, None, window.span)
 
 
-def _clauses(checker: Checker, clauses: Sequence[GoalClauses]) -> tuple[Formula | None, int] | None:
-    """Where it is sampled and the goal; `None` if one is wrong."""
+def _clauses(
+    checker: Checker, clauses: Sequence[GoalClauses]
+) -> tuple[Formula | None, int, int] | None:
+    """Where it is sampled, the goal and the weight; `None` if one is wrong."""
     upon: Formula | None = None
-    goal = 1
+    goal = weight = 1
     for clause in clauses:
         match clause:
             case SampledClause(trigger=trigger):
@@ -206,12 +275,23 @@ def _clauses(checker: Checker, clauses: Sequence[GoalClauses]) -> tuple[Formula 
                 if upon is None:
                     return None
             case GoalClause(count=count):
-                value = count.value
-                if value is None or count.unit or value.denominator != 1 or value < 1:
+                if not _is_count(count, least=1):
                     checker.report(rules.bad_goal(count.span))
                     return None
-                goal = int(value)
-    return upon, goal
+                goal = int(count.value or 1)
+            case WeightClause(count=count):
+                if not _is_count(count, least=0):
+                    checker.report(rules.bad_weight(count.span))
+                    return None
+                weight = int(count.value or 0)
+    return upon, goal, weight
+
+
+def _is_count(number: Number, least: int) -> bool:
+    value = number.value
+    return (
+        value is not None and not number.unit and value.denominator == 1 and least <= value <= _MOST
+    )
 
 
 def _combinations(

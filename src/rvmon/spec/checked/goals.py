@@ -51,6 +51,7 @@ class Coverpoint:
         bins: in order; they may overlap and need not be exhaustive.
         upon: where bins are looked at; `None`: at every position.
         goal: hits that each bin needs.
+        weight: in the total, beside other coverpoints and crosses; 0: for nothing.
         span: of the item.
     """
 
@@ -58,6 +59,7 @@ class Coverpoint:
     bins: tuple[Bin, ...]
     upon: Formula | None = None
     goal: int = 1
+    weight: int = 1
     span: Span | None = None
 
 
@@ -70,8 +72,10 @@ class Cross:
         points: names of its coverpoints.
         ignored: combinations (one bin name per point) that count for nothing.
         illegal: combinations that are an error.
-        upon: where it is looked at; `None`: at every position.
+        upon: where it is looked at: where its coverpoints are, unless it says so itself; `None`: at
+            every position.
         goal: hits that each combination needs.
+        weight: as of a coverpoint.
         span: of the item.
     """
 
@@ -81,4 +85,5 @@ class Cross:
     illegal: frozenset[tuple[str, ...]] = frozenset()
     upon: Formula | None = None
     goal: int = 1
+    weight: int = 1
     span: Span | None = None

@@ -66,14 +66,21 @@ def names_of_spec(spec: CheckedSpec) -> Iterator[str]:
         yield from names_of_requirement(requirement)
     for found in spec.properties.values():
         yield from names_of_property(found.formula)
-    formulas = [cover.formula for cover in spec.covers.values()]
+    for cover in spec.covers.values():
+        yield from names_read(cover.formula)
+    for _, names in names_of_coverage(spec):
+        yield from names
+
+
+def names_of_coverage(spec: CheckedSpec) -> Iterator[tuple[str, Iterator[str]]]:
+    """Each coverpoint and cross, and the names that it reads itself, with repetitions."""
     for point in spec.coverpoints.values():
-        formulas += [bin_.formula for bin_ in point.bins]
-    sampled = [point.upon for point in spec.coverpoints.values()]
-    sampled += [cross.upon for cross in spec.crosses.values()]
-    formulas += [formula for formula in sampled if formula is not None]
-    for formula in formulas:
-        yield from names_read(formula)
+        asked = [bin_.formula for bin_ in point.bins]
+        asked += [] if point.upon is None else [point.upon]
+        yield point.name, (name for formula in asked for name in names_read(formula))
+    for cross in spec.crosses.values():
+        if cross.upon is not None:
+            yield cross.name, names_read(cross.upon)
 
 
 def names_of_property(formula: StateFormula) -> Iterator[str]:

@@ -20,7 +20,7 @@ _CLAUSES = frozenset(
     {
         *("UPON", "WHENEVER", "THEN", "MONITOR_AS_RESPONSE", "MONITOR_AS_WRITTEN"),
         *("TEXT_CLAUSE", "SEVERITY", "TAGS"),
-        *("LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE", "GOAL", "UNWANTED"),
+        *("LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE", "GOAL", "WEIGHT", "UNWANTED"),
     }
 )
 """Terminals that start a line inside an item."""

@@ -87,6 +87,8 @@ def _wrapped(pieces: Sequence[Piece], indent: int) -> list[str]:
     line = " " * indent + text_of(pieces)
     if len(line) <= WIDTH or len(pieces) == 1:
         return [line]
+    if pieces[0].kind == "COVERPOINT" and any(piece.kind == "RBRACE" for piece in pieces):
+        return _a_line_per_bin(pieces, indent)
     parts = _cut_at_operators(pieces) or _cut_at_commas(pieces, indent)
     if len(parts) < 2:
         return [line]
@@ -94,6 +96,17 @@ def _wrapped(pieces: Sequence[Piece], indent: int) -> list[str]:
     for part in parts[1:]:
         lines += _wrapped(part, indent + 2)
     return lines
+
+
+def _a_line_per_bin(pieces: Sequence[Piece], indent: int) -> list[str]:
+    kinds = [piece.kind for piece in pieces]
+    start, end = kinds.index("LBRACE") + 1, len(kinds) - kinds[::-1].index("RBRACE") - 1
+    depth = pieces[start].depth
+    commas = [n + 1 for n in range(start, end) if kinds[n] == "COMMA" and pieces[n].depth == depth]
+    lines = [" " * indent + text_of(pieces[:start])]
+    for first, last in pairwise([start, *commas, end]):
+        lines += _wrapped(pieces[first:last], indent + 2)
+    return [*lines, " " * indent + text_of(pieces[end:])]
 
 
 def _cut_at_operators(pieces: Sequence[Piece]) -> list[Sequence[Piece]]:

@@ -62,7 +62,7 @@ def bin_without_values(span: Span) -> Diagnostic:
         BIN,
         f"bin `{short(span.text)}` does not say which values it holds",
         span,
-        mend="write `name: value`, `name: [low, high)` or `name: formula`",
+        mend="write `name: value`, `name: [low, high)`, `name: value => value` or `name: formula`",
     )
 
 
@@ -89,6 +89,31 @@ def looks_ahead(span: Span) -> Diagnostic:
 def bad_goal(span: Span) -> Diagnostic:
     """A goal that is no count."""
     return finding(BIN, f"`{short(span.text)}` is no count of hits", span, mend="write `goal 3`")
+
+
+def bad_weight(span: Span) -> Diagnostic:
+    """A weight that is no whole number."""
+    return finding(BIN, f"`{short(span.text)}` is no weight", span, mend="write `weight 2`")
+
+
+def same_value(span: Span) -> Diagnostic:
+    """A step from a value to itself."""
+    return finding(
+        BIN,
+        f"`{short(span.text)}` is where the step began",
+        span,
+        mend="a step leads to another value: `idle => moving`",
+    )
+
+
+def sampled_apart(span: Span) -> Diagnostic:
+    """A cross of coverpoints that are looked at in different places."""
+    return finding(
+        CROSS,
+        "its coverpoints are looked at `upon` different things",
+        span,
+        mend="say where the cross is: add `upon` to it",
+    )
 
 
 def unwanted_in_point(span: Span) -> Diagnostic:

@@ -41,12 +41,14 @@ from rvmon.spec.syntax.items import (
     SampledClause,
     ScopeClause,
     SignalItem,
+    StepsSyntax,
     TagsClause,
     TextClause,
     TimeItem,
     Triggered,
     TypeSyntax,
     UnwantedClause,
+    WeightClause,
     WrittenMonitor,
 )
 
@@ -203,11 +205,18 @@ class Builder(ExpressionBuilder):
         kind = kinds[0] if kinds else BinKind.GOAL
         return BinSyntax(self.ident(names[0]), values, kind, self.span(meta))
 
+    def steps(self, meta: Meta, children: Children) -> StepsSyntax:
+        values = tuple(child for child in children if not isinstance(child, Token))
+        return StepsSyntax(values, self.span(meta))
+
     def sampled(self, meta: Meta, children: Children) -> SampledClause:
         return SampledClause(children[1], self.span(meta))
 
     def goal(self, meta: Meta, children: Children) -> GoalClause:
         return GoalClause(self.number(meta, children[1:]), self.span(meta))
+
+    def weight(self, meta: Meta, children: Children) -> WeightClause:
+        return WeightClause(self.number(meta, children[1:]), self.span(meta))
 
     def unwanted(self, meta: Meta, children: Children) -> UnwantedClause:
         return UnwantedClause(BinKind(str(children[0])), children[1], self.span(meta))

@@ -245,11 +245,19 @@ class CoverItem:
 
 
 @dataclass(frozen=True, slots=True)
+class StepsSyntax:
+    """`value => value => …`: the values that a coverpoint's expression takes in turn."""
+
+    values: tuple[Expression, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class BinSyntax:
-    """A bin: its values are those of a window, an expression, or a label of its own name."""
+    """A bin: its values are those of a window, steps, an expression, or a label of its own name."""
 
     name: Ident
-    values: Window | Expression | None
+    values: Window | StepsSyntax | Expression | None
     kind: BinKind
     span: Span
 
@@ -271,6 +279,14 @@ class GoalClause:
 
 
 @dataclass(frozen=True, slots=True)
+class WeightClause:
+    """`weight N`."""
+
+    count: Number
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class UnwantedClause:
     """`ignore φ` or `illegal φ` of a cross, over its coverpoints."""
 
@@ -279,7 +295,7 @@ class UnwantedClause:
     span: Span
 
 
-GoalClauses = SampledClause | GoalClause | UnwantedClause
+GoalClauses = SampledClause | GoalClause | WeightClause | UnwantedClause
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,7 +72,7 @@ def _sign_mend(found: str, accepted: set[str], before: str) -> str:
     label = re.fullmatch(r'"([^\W\d]\w*)"', found)
     if label and "NAME" in accepted and before.rstrip().endswith(("=", "{", ",")):
         return f"labels have no quotes: `{label[1]}`"
-    if found == ">" and before.endswith("="):
+    if found == "=>":
         return "write `->` for what follows, `>=` to compare"
     return ""
 

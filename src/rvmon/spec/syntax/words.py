@@ -48,7 +48,7 @@ INFIX_WORDS = frozenset(" ".join(OPERATOR_TERMINALS["INFIX"]).split())
 CLAUSE_WORDS = frozenset(
     {
         *("source", "rationale", "severity", "tags", "scope", "at", "let", "monitor"),
-        *("goal", "ignore", "illegal"),
+        *("goal", "weight", "ignore", "illegal"),
     }
 )
 """Words that start a clause of an item; elsewhere they are names."""

@@ -262,3 +262,20 @@ def test_a_run_that_was_torn_at_its_first_step_is_restored():
     report = spec.restore(monitor.snapshot()).finish()
     assert {*report.verdicts.values()} == {"I"}
     assert ("interrupted", None) in {(one.kind.value, one.first) for one in report.health}
+
+
+@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
+def test_a_captured_attempt_that_is_not_looked_after_stays_so(engine):
+    """Between the ticks of a clock, what occurs is judged at the tick that follows, as before."""
+    spec = rvmon.loads(
+        "time sampled every 3 ns\nsignal x : real\nevent f\nevent h(m: real)\n"
+        "requirement R1\n  upon f\n  then h.m >= 1\n  let v = x\n"
+    )
+    samples = [(0, {"f": None}), (2, {"h": {"m": None}}), (7, {"f": None}), (8, {}), (11, {})]
+    whole, torn = spec.monitor(engine=engine), spec.monitor(engine=engine)
+    for t, values in samples:
+        whole.step_ns(t, values)
+        torn.step_ns(t, values)
+        torn = spec.restore(torn.snapshot())
+        assert torn.open == whole.open
+    assert torn.finish_ns() == whole.finish_ns()

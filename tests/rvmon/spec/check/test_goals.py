@@ -24,6 +24,8 @@ def bins(checked, text):
         ),
         ("= d {mid: (1 m, 2 m]}", {"mid": "d > 1 m and d <= 2 m"}),
         ("= d {fast: speed > 1 m/s}", {"fast": "speed > 1 m/s"}),
+        ("= state {go: idle => moving}", {"go": "rise(state == moving) and prev(state) == idle"}),
+        ("= a {off: true => false}", {"off": "rise(not a) and prev(a)"}),
         ("{x: a and once b, y: e}", {"x": "a and once b", "y": "e"}),
     ],
 )
@@ -39,6 +41,20 @@ def test_clauses(checked):
     ]
     assert (format_formula(point.upon), point.goal) == ("e", 3)
     assert [bin_.kind for bin_ in point.bins] == [BinKind.GOAL, BinKind.ILLEGAL]
+
+
+def test_weight(checked):
+    """How much a coverpoint or cross counts."""
+    spec = checked("coverpoint p = a {yes: true} weight 0\ncross c = p weight 3")
+    assert (spec.coverpoints["p"].weight, spec.crosses["c"].weight) == (0, 3)
+
+
+def test_a_cross_is_where_its_coverpoints_are(checked):
+    """Unless it says where itself."""
+    points = "coverpoint p = a {yes: true} upon e\ncoverpoint q = b {yes: true}\n"
+    assert format_formula(checked(f"{points}cross c = p, q").crosses["c"].upon) == "e"
+    own = checked(f"{points}cross c = p, q upon f").crosses["c"]
+    assert format_formula(own.upon) == "f"
 
 
 def test_cross(checked):
@@ -81,6 +97,14 @@ def test_cover(checked):
         ("cross c = p", ["RV061"]),
         ("coverpoint p = a {yes: true}\ncross c = p ignore a", ["RV061"]),
         ("coverpoint p = a {yes: true}\ncross c = p ignore p == maybe", ["RV013"]),
+        ("coverpoint p = state {x: idle => idle}", ["RV060"]),
+        ("coverpoint p {x: idle => moving}", ["RV060"]),
+        ("coverpoint p = x + 1 {y: 1 => 2}", ["RV021"]),
+        ("coverpoint p = a {yes: true} weight 1.5", ["RV060"]),
+        (
+            "coverpoint p = a {y: true} upon e\ncoverpoint q = a {y: true} upon b\ncross c = p, q",
+            ["RV061"],
+        ),
         ("cover C = aa", ["RV012"]),
         ("cover C = end", ["RV041"]),
         ("cover C = a\nrequirement C always a", ["RV011"]),

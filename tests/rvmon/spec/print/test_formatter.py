@@ -120,3 +120,19 @@ def test_file_that_cannot_be_read_is_refused():
 def test_unknown_names_do_not_matter():
     """A layout needs no declarations."""
     assert format_text("requirement R G a") == "requirement R\n  always a\n"
+
+
+def test_many_bins_have_a_line_each():
+    """A coverpoint that is too long is broken behind its bins; comments between them stay."""
+    bins = ["touching: [0 m, 5 cm)", "in_reach: [5 cm, 75 cm)", "away: [75 cm, inf)"]
+    text = f"coverpoint nearness = distance_of_the_hand {{{', '.join(bins)}}} goal 3\n"
+    laid_out = (
+        "coverpoint nearness = distance_of_the_hand {\n"
+        + ",\n".join(f"  {one}" for one in bins)
+        + "\n}\n  goal 3\n"
+    )
+    assert format_text(text) == laid_out
+    assert format_text(laid_out) == laid_out
+    remarked = laid_out.replace("  in_reach", "  # from the shoulder\n  in_reach")
+    assert format_text(format_text(remarked)) == format_text(remarked)
+    assert "# from the shoulder" in format_text(remarked)

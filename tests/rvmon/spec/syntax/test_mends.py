@@ -103,17 +103,17 @@ def test_words_are_found_whole(word, mend):
 
 
 @pytest.mark.parametrize(
-    ("formula", "mend"),
+    ("formula", "mend", "expected"),
     [
-        ('state = "idle"', "labels have no quotes: `idle`"),
-        ("(asked) => (released)", "write `->`"),
+        ('state = "idle"', "labels have no quotes: `idle`", "a number or a name"),
+        ("(asked) => (released)", "write `->`", "the end of the item"),
     ],
 )
-def test_signs_of_other_languages(formula, mend):
+def test_signs_of_other_languages(formula, mend, expected):
     """Labels in quotes and other arrows; what could have stood there is said in words."""
     found = first_finding(f"signal state : {{idle, on}}\nrequirement R\n  always {formula}\n")
     assert mend in found.help
-    assert found.message.endswith("expected a number or a name")
+    assert found.message.endswith(expected)
 
 
 def test_every_terminal_has_words():

@@ -1,0 +1,129 @@
+"""What each kind of requirement that people write costs per sample, in each engine.
+
+    python -m benchmarks.kinds [--rows 4000] [--time sampled] [WORD …]
+
+Thirteen kinds, each demanded at every instant and upon an event that comes in 5 % of the samples,
+over values that are drawn anew and cross at every row, a second apart. Processor time of `step`,
+all in, the least of three passes; `–` where the engine refuses the requirement. The verdicts and
+decision instants of all engines are compared. With words, only kinds that have one of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import statistics
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from rvmon import loads
+from rvmon.errors import RvmonError
+from rvmon.session import Spec
+from rvmon.trace.sample import Value
+
+ENGINES = ("auto", "automaton", "network", "c")
+SECOND = 10**9
+
+KINDS = {
+    "respond": "x > 5 -> within 100 s x < 5",
+    "respond, then hold": "x > 8 -> within 50 s for 30 s x < 6",
+    "hold from now": "x > 9.9 -> for 20 s y < 9.9",
+    "hold after a while": "x > 9.9 -> G[5 s, 20 s] y < 9.9",
+    "delayed window": "x > 8 -> F[2 s, 5 s] y > 5",
+    "soon": "within 10 s x > 5",
+    "recur": "for 100 s within 10 s x > 5",
+    "stabilise": "within 30 s for 20 s y <= 9.9",
+    "until": "(y < 9.9) U[0 s, 20 s] x > 9",
+    "either": "(x < 4) or for 10 s y < 9",
+    "chain": "x > 9 -> within 10 s (y > 5 and within 10 s x < 5)",
+    "not before": "(y < 8) W x > 5",
+    "past": "x > 9 -> once[0 s, 50 s] y > 9",
+}
+
+
+def requirements() -> Iterator[tuple[str, str]]:
+    """Name and text of each."""
+    for name, formula in KINDS.items():
+        yield f"{name}, always", f"always ({formula})"
+        yield f"{name}, upon", f"upon e then ({formula})"
+
+
+def rows_of(count: int) -> list[dict[str, Value]]:
+    """Samples in which all values change, and now and then an event occurs."""
+    rng = random.Random("kinds")
+    rows: list[dict[str, Value]] = []
+    for _ in range(count):
+        row: dict[str, Value] = {"x": rng.uniform(0, 10), "y": rng.uniform(0, 10)}
+        if rng.random() < 0.05:
+            row["e"] = True
+        rows.append(row)
+    return rows
+
+
+def measured(
+    spec: Spec, engine: str, rows: Sequence[dict[str, Value]], seconds: float
+) -> tuple[float, list[object]]:
+    """Nanoseconds per sample, and what was decided when.
+
+    Raises:
+        RvmonError: the engine refuses it.
+    """
+    best = float("inf")
+    decided: list[object] = []
+    for _ in range(3):
+        monitor = spec.monitor(engine=engine)
+        step = monitor.step_ns
+        made = []
+        began = time.process_time_ns()
+        for place, row in enumerate(rows):
+            found = step(place * SECOND, row)
+            if found:
+                made += found
+        spent = time.process_time_ns() - began
+        best = min(best, spent / len(rows))
+        decided = [(a.number, a.triggered, a.decided, a.verdict) for a in made]
+        if spent > seconds * 1e9:
+            break
+    return best, decided
+
+
+def main(argv: Sequence[str]) -> int:
+    """Measure and print; 1 if two engines differ."""
+    parser = argparse.ArgumentParser(description="Kinds of requirements, by engine.")
+    parser.add_argument("--rows", type=int, default=4000)
+    parser.add_argument("--time", choices=("held", "sampled"), default="held")
+    parser.add_argument("--seconds", type=float, default=1.0, help="for more than one pass")
+    parser.add_argument("words", nargs="*")
+    options = parser.parse_args(argv)
+    rows = rows_of(options.rows)
+    print("| kind | " + " | ".join(ENGINES) + " |\n|---|" + "---|" * len(ENGINES))
+    differ = 0
+    figures: dict[str, list[float]] = {engine: [] for engine in ENGINES}
+    for name, text in requirements():
+        if options.words and not any(word in name for word in options.words):
+            continue
+        spec = loads(f"time {options.time}\nsignal x, y : real\nevent e\nrequirement R\n  {text}\n")
+        cells, found = [], []
+        for engine in ENGINES:
+            try:
+                cost, decided = measured(spec, engine, rows, options.seconds)
+            except RvmonError:
+                cells.append("–")
+                continue
+            figures[engine].append(cost)
+            found.append(decided)
+            own = f" ({spec.engines()['R'].online})" if engine == "auto" else ""
+            cells.append(f"{cost:,.0f} ns{own}")
+        differ += any(one != other for one, other in pairwise(found))
+        print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
+    for engine, own in figures.items():
+        if own:
+            print(f"{engine}: {len(own)} judged, median {statistics.median(own):,.0f} ns")
+    print(f"verdicts and instants that differ between engines: {differ}")
+    return 1 if differ else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

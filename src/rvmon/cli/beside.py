@@ -1,0 +1,120 @@
+"""What is found beside verdicts while the samples of a recording go by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rvmon.readers.recording import FileRecording
+from rvmon.session import Spec
+from rvmon.trace.sample import Sample
+from rvmon.verdict.illegal import IllegalHit
+
+if TYPE_CHECKING:
+    from rvmon.coverage.hits import Hits
+    from rvmon.coverage.monitor import CoverageMonitor
+    from rvmon.monitor.robustness.monitor import RobustnessMonitor
+    from rvmon.monitor.robustness.values import Measured
+    from rvmon.verdict.report import Report
+
+Read = Callable[[FileRecording], Iterable[Sample]]
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How to judge.
+
+    Attributes:
+        only: ids of the requirements, or `None` for all.
+        engine: `auto` or the name of one.
+        until: the instant in seconds to which recordings are judged; default their last sample.
+        strict_columns: whether missing and undeclared columns are errors.
+        robustness: whether to find the robustness of each attempt as well.
+        allow_missing: the names that recordings in columns may lack; `True`: all.
+        coverage: whether all that the coverage model has is watched; default: only what of it must
+            not be hit.
+    """
+
+    only: tuple[str, ...] | None = None
+    engine: str = "auto"
+    until: float | None = None
+    strict_columns: bool = False
+    robustness: bool = False
+    allow_missing: bool | tuple[str, ...] = False
+    coverage: bool = False
+
+
+class Beside:
+    """Finds robustness and coverage on one recording.
+
+    Args:
+        spec: has coverpoints, or is asked for more than verdicts.
+        options: say what is asked for.
+        names: that have a source; `None`: all.
+        end: the instant to which the recording is judged, ticks; default its last sample.
+
+    Attributes:
+        hits: what was hit of the coverage model, if all of it was asked for.
+    """
+
+    def __init__(
+        self, spec: Spec, options: Options, names: frozenset[str] | None, end: int | None
+    ) -> None:
+        self.hits: Hits = {}
+        self._spec = spec
+        self._options = options
+        self._end = end
+        self._margins: RobustnessMonitor | None = None
+        self._found: list[Measured] = []
+        self._coverage: CoverageMonitor | None = None
+        if options.robustness:
+            self._margins = spec.robustness_monitor(only=options.only, sources=names)
+        if options.coverage or spec.checked.coverpoints:
+            self._coverage = spec.coverage_model.monitor(
+                sources=names, requirements=options.coverage
+            )
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether there is nothing to find."""
+        return self._margins is None and self._coverage is None
+
+    def reading(self, read: Read) -> Callable[[FileRecording], Iterator[Sample]]:
+        """How to read a recording: each sample is seen here once it was judged."""
+
+        def samples(recording: FileRecording) -> Iterator[Sample]:
+            for sample in read(recording):
+                yield sample
+                if self._end is None or sample.t <= self._end:
+                    self._see(sample.t, sample.values)
+
+        return samples
+
+    def _see(self, t: int, values: Mapping[str, object]) -> None:
+        if self._margins is not None:
+            self._found.extend(self._margins.step_ns(t, values))
+        if self._coverage is not None:
+            self._coverage.step_ns(t, values)
+
+    def finished(self, report: Report) -> Report:
+        """The report with what was found, when all samples went by."""
+        if self._margins is not None:
+            self._found.extend(self._margins.finish_ns(self._end))
+            from rvmon.monitor.robustness.values import margins_from
+
+            margins = margins_from(self._found)
+            attempts = tuple(margins.of(attempt) for attempt in report.attempts)
+            report = replace(report, attempts=attempts)
+        if self._coverage is not None:
+            report = replace(report, illegal=tuple(self._illegal(self._coverage)))
+        return report
+
+    def _illegal(self, coverage: CoverageMonitor) -> Iterator[IllegalHit]:
+        from rvmon.coverage.hits import illegal
+
+        found = coverage.finish_ns(self._end)
+        if self._options.coverage:
+            self.hits = found
+        for group, item, hit in illegal(found, self._spec.coverage_model.bin_model):
+            yield IllegalHit(group.name, item.name, hit.count, hit.first or 0)

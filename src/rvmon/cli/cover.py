@@ -1,0 +1,179 @@
+"""`rvmon cover`: what the tests of databases have covered."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.cli.memory import add_max_memory
+from rvmon.cli.numbers import percentage
+from rvmon.cli.options import add_format
+from rvmon.cli.say import say, say_json, warn
+from rvmon.errors import RvmonError, UnknownNameError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rvmon.coverage.model import Group
+    from rvmon.coverage.record import Coverage
+    from rvmon.report.coverage_summary import Summary
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "cover",
+        help="what tests have covered, what is missing, and what each test is good for",
+        description="Show what the tests of one or several databases of coverage have covered "
+        "together: groups and total, verdicts, and first of all what is wrong.",
+        epilog="example: rvmon cover monday.cov tuesday.cov --holes --require 95%",
+    )
+    parser.add_argument("databases", metavar="DB", nargs="+", help="written by run --coverage")
+    parser.add_argument("--campaign", metavar="NAME", help="show the tests of this one only")
+    parser.add_argument("--holes", action="store_true", help="list what is missing, and why")
+    parser.add_argument(
+        "--bins",
+        metavar="[=GROUP]",
+        help="list the items of a group (default: of all), with hits and who was first; "
+        "a cross is a grid",
+    )
+    parser.add_argument(
+        "--tests",
+        action="store_true",
+        help="list the tests with what each added, and a short order that covers as much",
+    )
+    parser.add_argument(
+        "--compare",
+        metavar="OLD",
+        help="say what is new, lost or judged otherwise since an earlier database, or an earlier "
+        "campaign of this one",
+    )
+    add_format(parser)
+    parser.add_argument("--report", metavar="FILE", help="write a page to look at")
+    parser.add_argument(
+        "--merge", metavar="OUT", help="write all that the databases hold into this one"
+    )
+    parser.add_argument(
+        "--require",
+        metavar="PERCENT",
+        type=percentage,
+        help="exit with 1 if less is covered, or something illegal was hit",
+    )
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit with 1 if something illegal was hit, a test failed or did not complete, or "
+        "--compare shows a loss",
+    )
+    add_max_memory(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read, show, and return the exit code."""
+    from rvmon.coverage.database import merge, read
+    from rvmon.report.coverage_summary import Summary
+
+    coverage = read(arguments.databases)
+    if arguments.merge is not None:
+        merge(arguments.databases, arguments.merge)
+    earlier = None if arguments.compare is None else _earlier(arguments, coverage)
+    if arguments.campaign is not None:
+        coverage = _campaign(coverage, arguments.campaign)
+    name = ", ".join(arguments.databases)
+    summary = Summary(name, coverage, earlier, arguments.compare or "")
+    groups = _groups(coverage, arguments.bins)
+    if arguments.report is not None:
+        _write_page(summary, arguments.report)
+    if arguments.format == "json":
+        import msgspec
+
+        from rvmon.report.coverage_json import coverage_data
+
+        say_json(msgspec.json.encode(coverage_data(summary)).decode())
+    else:
+        _print(summary, arguments, groups)
+    return _code(summary, arguments)
+
+
+def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
+    """What is compared with: a file, or a campaign of what is shown."""
+    from rvmon.coverage.database import read
+    from rvmon.coverage.questions import campaigns
+
+    if Path(arguments.compare).exists() or arguments.compare not in campaigns(coverage):
+        return read([arguments.compare])
+    if arguments.campaign is None:
+        raise RvmonError(
+            f"--compare {arguments.compare} is a campaign: say which other one it is compared "
+            "with, by --campaign"
+        )
+    return _campaign(coverage, arguments.compare)
+
+
+def _campaign(coverage: Coverage, name: str) -> Coverage:
+    from rvmon.coverage.questions import campaigns, only
+    from rvmon.diagnostics.nearest import did_you_mean
+
+    known = campaigns(coverage)
+    if name not in known:
+        listed = ", ".join(f"`{one}`" for one in known) or "none"
+        meant = did_you_mean(name, known, f"there are {listed}")
+        raise UnknownNameError(f"no campaign named `{name}`: {meant}")
+    return only(coverage, lambda record: record.campaign == name)
+
+
+def _groups(coverage: Coverage, name: str | None) -> Sequence[Group]:
+    """The groups whose items are listed."""
+    from rvmon.diagnostics.nearest import did_you_mean
+
+    groups = coverage.model.groups
+    if name is None:
+        return ()
+    if not name:
+        return tuple(groups.values())
+    if name not in groups:
+        meant = did_you_mean(name, list(groups), f"there are {', '.join(groups) or 'none'}")
+        raise UnknownNameError(f"no group named `{name}`: {meant}")
+    return (groups[name],)
+
+
+def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Group]) -> None:
+    from rvmon.report.coverage_text import print_bins, print_holes, print_overview, print_tests
+    from rvmon.report.terminal import Terminal
+
+    console = Terminal()
+    print_overview(summary, console)
+    if arguments.holes:
+        print_holes(summary, console)
+    elif summary.holes and not groups:
+        say("what is missing: --holes")
+    if groups:
+        print_bins(summary, groups, console)
+    if arguments.tests:
+        print_tests(summary, console)
+
+
+def _write_page(summary: Summary, path: str) -> None:
+    from rvmon.report.coverage_page import coverage_page
+    from rvmon.writing import write_whole
+
+    try:
+        write_whole(path, coverage_page(summary))
+    except OSError as error:
+        raise RvmonError(
+            f"cannot write {path}: {error.strerror or error}: name a file in a folder that is there"
+        ) from None
+
+
+def _code(summary: Summary, arguments: argparse.Namespace) -> int:
+    """1 if what was asked for is not reached."""
+    wrong = (arguments.strict or arguments.require is not None) and bool(summary.illegal)
+    if arguments.require is not None:
+        wrong |= summary.is_void or summary.share < arguments.require
+        if summary.is_void:
+            warn("--require: nothing is to be covered: no model was declared, or all weights are 0")
+    if arguments.strict:
+        wrong |= bool(summary.not_fine)
+        wrong |= summary.comparison is not None and bool(summary.comparison.lost)
+    return int(wrong)

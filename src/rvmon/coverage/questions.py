@@ -1,0 +1,148 @@
+"""Questions to coverage: what is hit and by whom, what is missing, what each test is good for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rvmon.coverage.answers import Goals, Step, Totals
+from rvmon.coverage.hits import Score, weighted
+from rvmon.coverage.record import UNKNOWN, Coverage, TestRecord
+from rvmon.spec.checked.goals import BinKind
+
+_MOST = 1 << 62
+"""What a sum of hits is cut off at."""
+
+
+def goals_of(coverage: Coverage) -> Goals:
+    """What is wanted of each item."""
+    groups = list(coverage.model.groups.values())
+    items = [item for group in groups for item in group.items.values()]
+    return Goals(
+        np.array([item.goal for item in items], np.int64),
+        np.array([item.kind is BinKind.GOAL for item in items], np.bool_),
+        np.array([item.kind is BinKind.ILLEGAL for item in items], np.bool_),
+        np.repeat(np.arange(len(groups)), [len(group.items) for group in groups]),
+    )
+
+
+def totals(coverage: Coverage) -> Totals:
+    """How often each item was hit, by how many tests, and by which one first."""
+    size = len(coverage.items)
+    counts, tests = np.zeros(size, np.int64), np.zeros(size, np.int64)
+    first, instants = np.full(size, -1), np.full(size, UNKNOWN)
+    for place, entry in enumerate(coverage.entries):
+        row = entry.row
+        counts[row.items] += np.minimum(row.counts, _MOST - counts[row.items])
+        tests[row.items] += 1
+        is_new = first[row.items] < 0
+        first[row.items[is_new]] = place
+        instants[row.items[is_new]] = row.firsts[is_new]
+    return Totals(counts, tests, first, instants)
+
+
+def scores(coverage: Coverage, counts: NDArray[np.int64]) -> dict[str, Score]:
+    """How much of each group is covered by so many hits of each item."""
+    goals = goals_of(coverage)
+    return _scores(coverage, goals, goals.wanted & (counts >= goals.goal))
+
+
+def share_of(coverage: Coverage, scored: Mapping[str, Score]) -> float:
+    """The share of the model that is covered, from 0 to 1: the groups by their weights."""
+    groups = coverage.model.groups
+    return weighted((groups[name].weight, score) for name, score in scored.items())
+
+
+def holes(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
+    """The items that were hit less often than their goals ask for."""
+    goals = goals_of(coverage)
+    return np.flatnonzero(goals.wanted & (counts < goals.goal)).tolist()
+
+
+def illegal_hits(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
+    """The items that were hit and must not be."""
+    return np.flatnonzero(goals_of(coverage).illegal & (counts > 0)).tolist()
+
+
+def growth(coverage: Coverage, order: Sequence[int] | None = None) -> list[Step]:
+    """What each test adds to those before it.
+
+    Args:
+        coverage: with the tests.
+        order: their places, or those of some of them; default: all, as in their campaigns.
+    """
+    goals = goals_of(coverage)
+    counts = np.zeros(len(coverage.items), np.int64)
+    covered = np.zeros(len(coverage.items), np.bool_)
+    share = share_of(coverage, _scores(coverage, goals, covered))
+    steps = []
+    for place in range(len(coverage.entries)) if order is None else order:
+        row = coverage.entries[place].row
+        counts[row.items] += np.minimum(row.counts, _MOST - counts[row.items])
+        reached = goals.wanted & (counts >= goals.goal)
+        added = np.flatnonzero(reached & ~covered).tolist()
+        if added:
+            covered = reached
+            share = share_of(coverage, _scores(coverage, goals, covered))
+        steps.append(Step(place, added, share))
+    return steps
+
+
+def by_strategy(coverage: Coverage) -> dict[str, list[int]]:
+    """The tests of each strategy, in order."""
+    found: dict[str, list[int]] = {}
+    for place, entry in enumerate(coverage.entries):
+        found.setdefault(entry.record.strategy, []).append(place)
+    return found
+
+
+def unique(coverage: Coverage, counts: NDArray[np.int64]) -> list[list[int]]:
+    """By test, the items that would not be covered without it.
+
+    Args:
+        coverage: with the tests.
+        counts: hits of each item in all.
+    """
+    goals = goals_of(coverage)
+    covered = goals.wanted & (counts >= goals.goal)
+    found = []
+    for entry in coverage.entries:
+        items = entry.row.items
+        needed = covered[items] & (counts[items] - entry.row.counts < goals.goal[items])
+        found.append(items[needed].tolist())
+    return found
+
+
+def hitters(coverage: Coverage, most: int) -> dict[int, list[int]]:
+    """The first tests that hit each item, at most so many."""
+    found: dict[int, list[int]] = {}
+    counts = np.zeros(len(coverage.items), np.int64)
+    for place, entry in enumerate(coverage.entries):
+        items = entry.row.items
+        for item in items[counts[items] < most].tolist():
+            found.setdefault(item, []).append(place)
+        counts[items] += 1
+    return found
+
+
+def only(coverage: Coverage, wanted: Callable[[TestRecord], bool]) -> Coverage:
+    """The same with some of the tests."""
+    return replace(coverage, entries=[entry for entry in coverage.entries if wanted(entry.record)])
+
+
+def campaigns(coverage: Coverage) -> list[str]:
+    """The names of the campaigns, in order."""
+    return list(dict.fromkeys(entry.record.campaign for entry in coverage.entries))
+
+
+def _scores(coverage: Coverage, goals: Goals, covered: NDArray[np.bool_]) -> dict[str, Score]:
+    size = len(coverage.model.groups)
+    wanted = np.bincount(goals.group[goals.wanted], minlength=size)
+    reached = np.bincount(goals.group[covered], minlength=size)
+    return {
+        name: Score(int(wanted[place]), int(reached[place]))
+        for place, name in enumerate(coverage.model.groups)
+    }

@@ -1,0 +1,115 @@
+"""What is kept of a test, and all that a database holds: data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING, ClassVar
+
+from rvmon.coverage.model import Model
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class Ending(StrEnum):
+    """How a test ended."""
+
+    COMPLETED = "completed"
+    CRASHED = "crashed"
+    HUNG = "hung"
+    LOST = "lost"
+
+
+@dataclass(frozen=True, slots=True)
+class TestRecord:
+    """A test of a campaign and what became of it, without what it hit.
+
+    Attributes:
+        name: for people; several tests may have one name.
+        campaign: that it is part of.
+        strategy: that made it; empty if none did, as for a recording from the field.
+        recording: path of what was recorded; empty if that was not kept.
+        seed: that it can be played again with.
+        system: what was tested, such as a robot and its version.
+        verdicts: by requirement.
+        ending: how it ended.
+        error: what went wrong if it did not complete, in words.
+        number: its place in the campaign; tests with the same one are in the order of `when`.
+        seconds: that it took.
+        when: it was recorded, ns since 1970 in UTC; `None`: when it is written.
+    """
+
+    __test__: ClassVar[bool] = False  # to pytest, which goes by names
+
+    name: str
+    campaign: str = ""
+    strategy: str = ""
+    recording: str = ""
+    seed: int | None = None
+    system: str = ""
+    verdicts: Mapping[str, Verdict] = field(default_factory=dict)
+    ending: Ending = Ending.COMPLETED
+    error: str = ""
+    number: int = 0
+    seconds: float = 0.0
+    when: int | None = None
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The requirements that failed."""
+        return tuple(name for name, verdict in self.verdicts.items() if verdict is Verdict.FAIL)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Row:
+    """What a test hit, as columns in step.
+
+    Attributes:
+        items: that were hit, by their places in `Coverage.items`, ascending.
+        counts: how often, at least once each.
+        firsts: instants of the first hits in ticks; `UNKNOWN` where that is not known.
+    """
+
+    items: NDArray[np.int32]
+    counts: NDArray[np.int64]
+    firsts: NDArray[np.int64]
+
+
+UNKNOWN = -(1 << 63)
+"""In place of an instant that is not known: no instant is so early."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A test with what it hit.
+
+    Attributes:
+        digest: tells tests apart by their content.
+        record: the test.
+        row: what it hit.
+    """
+
+    digest: str
+    record: TestRecord
+    row: Row
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """All that a database holds.
+
+    Attributes:
+        model: what is to be covered.
+        items: names of group and item, in the order of the model.
+        entries: the tests, in the order of their campaigns.
+        reasons: why an item is not covered, by group and item, in words.
+    """
+
+    model: Model
+    items: Sequence[tuple[str, str]]
+    entries: Sequence[Entry]
+    reasons: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)

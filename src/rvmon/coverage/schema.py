@@ -1,0 +1,243 @@
+"""The file of a database of coverage: its tables, and how it is opened and what is refused."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from rvmon.errors import CoverageError
+
+APPLICATION = 0x72766376
+"""In the header of the file, so that it is known by what it is: "rvcv"."""
+
+VERSION = 1
+"""Of the tables; raised with each change of them."""
+
+TABLES = (
+    "CREATE TABLE groups (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, "
+    "subject TEXT NOT NULL, weight INTEGER NOT NULL, axes TEXT NOT NULL, "
+    "position INTEGER NOT NULL)",
+    "CREATE TABLE items (id INTEGER PRIMARY KEY, owner INTEGER NOT NULL REFERENCES groups, "
+    "name TEXT NOT NULL, kind TEXT NOT NULL, goal INTEGER NOT NULL, position INTEGER NOT NULL, "
+    "UNIQUE (owner, name))",
+    "CREATE TABLE reasons (item INTEGER NOT NULL REFERENCES items, reason TEXT NOT NULL, "
+    "PRIMARY KEY (item, reason)) WITHOUT ROWID",
+    "CREATE TABLE tests (id INTEGER PRIMARY KEY, digest TEXT NOT NULL UNIQUE, "
+    "campaign TEXT NOT NULL, name TEXT NOT NULL, strategy TEXT NOT NULL, "
+    "recording TEXT NOT NULL, seed TEXT, system TEXT NOT NULL, verdicts TEXT NOT NULL, "
+    "ending TEXT NOT NULL, error TEXT NOT NULL, number INTEGER NOT NULL, seconds REAL NOT NULL, "
+    "recorded INTEGER NOT NULL, hits BLOB NOT NULL)",
+)
+"""What the file holds, and nothing else: a view or a trigger of others would run with our words."""
+
+PATIENCE_S = 60.0
+"""Seconds that a process waits for others that write."""
+
+_LONGEST = 100_000_000
+"""Bytes of a text or of the hits of one test, beyond which a file is not believed."""
+
+
+def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
+    """Open a database of coverage.
+
+    Args:
+        path: of the file; `None`: one in memory that is gone when it is closed.
+        create: make it if there is none, and be ready to write; else it is only read.
+
+    Raises:
+        CoverageError: there is none, it is none, it is damaged or of another version, or it
+            cannot be opened.
+    """
+    if path is not None:
+        _refuse(Path(path), create=create)
+    with told(path):
+        database = _opened(path, create=create)
+        try:
+            if create and _is_new(database):
+                _make(database, path)
+            _check(database, path)
+            if create:
+                _prepare(database)
+            else:
+                database.execute("PRAGMA query_only = ON")
+        except BaseException:
+            database.close()
+            raise
+    return database
+
+
+@contextmanager
+def told(path: str | Path | None) -> Iterator[None]:
+    """Have errors of SQLite, and of what it cannot hold, told for people."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR) & 0xFF
+        why = _WORDS.get(code, f"{error}: {_ANEW}")
+        raise CoverageError(f"error: {name_of(path)}: {why}") from None
+    except UnicodeDecodeError:
+        raise damaged(path, "a text in it is none") from None
+    except UnicodeEncodeError as error:
+        what = f"{error.object!a} has signs that stand for no character: name it otherwise"
+        raise CoverageError(f"error: {name_of(path)}: {what}") from None
+    except OverflowError:
+        raise CoverageError(f"error: {name_of(path)}: a number is beyond 2**63") from None
+
+
+@contextmanager
+def transaction(
+    database: sqlite3.Connection, path: str | Path | None, *, writes: bool = True
+) -> Iterator[None]:
+    """Write all that is said within or nothing of it, or read what there is at one instant.
+
+    Others that write wait for one that writes.
+    """
+    with told(path):
+        database.execute("BEGIN IMMEDIATE" if writes else "BEGIN")
+        try:
+            yield
+            database.execute("COMMIT")
+        except BaseException:
+            if database.in_transaction:
+                database.execute("ROLLBACK")
+            raise
+
+
+def name_of(path: str | Path | None) -> str:
+    """What a database is called in errors."""
+    return "the database in memory" if path is None else str(path)
+
+
+def damaged(path: str | Path | None, what: str) -> CoverageError:
+    """The error that a file holds what was never written there."""
+    return CoverageError(f"error: {name_of(path)} is damaged: {what}: {_ANEW}")
+
+
+_ANEW = "restore a copy of it, or delete it and record again"
+"""What to do about damage."""
+
+_WORDS = {
+    sqlite3.SQLITE_NOTADB: "this is no database: give one that `rvmon run --coverage` wrote",
+    sqlite3.SQLITE_CORRUPT: f"the file is damaged: {_ANEW}",
+    sqlite3.SQLITE_TOOBIG: f"a text in it is longer than {_LONGEST:,} bytes: {_ANEW}",
+    sqlite3.SQLITE_BUSY: f"another process has been writing to it for {PATIENCE_S:g} s: try again "
+    "when that one is done",
+    sqlite3.SQLITE_LOCKED: "it is in use within this process: close it there first",
+    sqlite3.SQLITE_FULL: "the disk is full: make room and record again; what was recorded before "
+    "is kept",
+    sqlite3.SQLITE_READONLY: "it cannot be written: give yourself the right to, or name another",
+    sqlite3.SQLITE_PERM: "it cannot be opened: give yourself the right to, or name another",
+    sqlite3.SQLITE_CANTOPEN: "it cannot be opened: give yourself the right to read and write it "
+    "and its folder, or copy it elsewhere",
+    sqlite3.SQLITE_IOERR: "the disk reports an error: copy the file elsewhere, and look at the "
+    "disk",
+    sqlite3.SQLITE_NOMEM: "the memory is not enough for it",
+}
+"""What to do, by SQLite's codes."""
+
+
+def _refuse(path: Path, *, create: bool) -> None:
+    """Say what SQLite would say in fewer words, or wait for for ever."""
+    try:
+        found = path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        if not create:
+            raise CoverageError(
+                f"error: there is no file {path}: `rvmon run --coverage {path}` makes it"
+            ) from None
+        if not path.parent.is_dir():
+            raise CoverageError(
+                f"error: cannot write {path}: there is no folder {path.parent}: make it first"
+            ) from None
+        return
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise CoverageError(f"error: cannot open {path}: {why}: name another") from None
+    if stat.S_ISDIR(found.st_mode):
+        raise CoverageError(f"error: {path} is a folder: name a database in it")
+    if not stat.S_ISREG(found.st_mode):
+        raise CoverageError(f"error: {path} is no regular file: name one")
+
+
+def _opened(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
+    address = "file::memory:"
+    if path is not None:
+        whole = Path(path).absolute()
+        # Where nothing can be written and nobody writes, SQLite's own files beside it cannot be
+        # made, and are not needed.
+        alone = not os.access(whole.parent, os.W_OK) and not Path(f"{whole}-wal").exists()
+        mode = "rwc" if create else "ro&immutable=1" if alone else "rw"
+        address = f"{whole.as_uri()}?mode={mode}"
+    database = sqlite3.connect(address, uri=True, timeout=PATIENCE_S, isolation_level=None)
+    try:
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
+        # As SQLite advises for files of others: https://sqlite.org/security.html
+        for words in ("trusted_schema = OFF", "cell_size_check = ON", "mmap_size = 0"):
+            database.execute(f"PRAGMA {words}")
+    except BaseException:
+        database.close()
+        raise
+    return database
+
+
+def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
+    """See that the file is ours and of this version.
+
+    Raises:
+        CoverageError: it is not.
+    """
+    if _pragma(database, "application_id") != APPLICATION:
+        empty = "it is empty" if _is_new(database) else "this is a database of something else"
+        raise CoverageError(
+            f"error: {name_of(path)}: {empty}: give one that `rvmon run --coverage` wrote"
+        )
+    version = _pragma(database, "user_version")
+    if version > VERSION:
+        raise CoverageError(
+            f"error: {name_of(path)} was written by a newer rvmon (version {version} of its "
+            f"tables, this one reads {VERSION}): install that one, or record again with this one"
+        )
+    found = {
+        sql
+        for name, sql in database.execute("SELECT name, sql FROM sqlite_schema")
+        if sql is not None or not str(name).startswith("sqlite_autoindex_")
+    }
+    if found != set(TABLES):
+        raise damaged(path, "its tables are not those of a database of coverage")
+
+
+def _is_new(database: sqlite3.Connection) -> bool:
+    """Whether nothing was written yet."""
+    return (
+        _pragma(database, "application_id") == 0
+        and _pragma(database, "user_version") == 0
+        and database.execute("SELECT count(*) FROM sqlite_schema").fetchone() == (0,)
+    )
+
+
+def _make(database: sqlite3.Connection, path: str | Path | None) -> None:
+    with transaction(database, path):
+        if _is_new(database):  # nobody else was faster
+            for table in TABLES:
+                database.execute(table)
+            database.execute(f"PRAGMA application_id = {APPLICATION}")
+            database.execute(f"PRAGMA user_version = {VERSION}")
+
+
+def _prepare(database: sqlite3.Connection) -> None:
+    """Make ready for many small writes.
+
+    Each is one append to a file beside, which costs no wait for the disk and stays if the process
+    is killed. If power is lost, the last tests may be, but not the file.
+    """
+    database.execute("PRAGMA synchronous = NORMAL")
+    with suppress(sqlite3.OperationalError):  # another process is at it: without is as safe
+        database.execute("PRAGMA journal_mode = WAL")
+
+
+def _pragma(database: sqlite3.Connection, name: str) -> int:
+    return int(database.execute(f"PRAGMA {name}").fetchone()[0])

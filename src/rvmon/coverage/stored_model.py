@@ -1,0 +1,197 @@
+"""The groups and items of a database: what of a model is written, and read back."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from rvmon.coverage.model import Group, Item, Model, Subject
+from rvmon.coverage.schema import damaged, name_of
+from rvmon.errors import CoverageError
+from rvmon.spec.checked.goals import BinKind
+
+
+@dataclass(frozen=True, slots=True)
+class StoredItem:
+    """An item, its place in its group, and its id if it has one."""
+
+    kind: BinKind
+    goal: int
+    position: int
+    id: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class StoredGroup:
+    """A group and its place in its model.
+
+    Two models have an order together if each part knows its place: the first of its places counts,
+    whichever of the models came first.
+    """
+
+    subject: Subject
+    weight: int
+    position: int
+    axes: Mapping[str, Mapping[str, int]]
+    items: Mapping[str, StoredItem]
+
+
+Stored = Mapping[str, StoredGroup]
+"""The groups by name, in no order."""
+
+
+def stored_of(model: Model) -> Stored:
+    """A model as it is written."""
+    return {
+        group.name: StoredGroup(
+            group.subject,
+            group.weight,
+            position,
+            {
+                axis: {name: place for place, name in enumerate(bins)}
+                for axis, bins in group.axes.items()
+            },
+            {
+                item.name: StoredItem(item.kind, item.goal, place)
+                for place, item in enumerate(group.items.values())
+            },
+        )
+        for position, group in enumerate(model.groups.values())
+    }
+
+
+def model_from(stored: Stored) -> Model:
+    """The model that was written, in order."""
+    groups = {}
+    for name in sorted(stored, key=lambda name: (stored[name].position, name)):
+        group = stored[name]
+        items = {
+            item: Item(item, one.kind, one.goal)
+            for item, one in sorted(
+                group.items.items(), key=lambda named: (named[1].position, named[0])
+            )
+        }
+        axes = {axis: _in_order(bins) for axis, bins in group.axes.items()}
+        groups[name] = Group(name, group.subject, items, group.weight, axes)
+    return Model(groups)
+
+
+def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored:
+    """What was written.
+
+    Raises:
+        CoverageError: it cannot have been written like that.
+    """
+    items: dict[int, dict[str, StoredItem]] = {}
+    try:
+        for number, owner, name, kind, goal, position in database.execute(
+            "SELECT id, owner, name, kind, goal, position FROM items"
+        ):
+            one = StoredItem(BinKind(kind), int(goal), int(position), int(number))
+            items.setdefault(owner, {})[str(name)] = one
+        return {
+            str(name): StoredGroup(
+                Subject(subject),
+                int(weight),
+                int(position),
+                dict(msgspec.json.decode(axes, type=list[tuple[str, dict[str, int]]])),
+                items.get(number, {}),
+            )
+            for number, name, subject, weight, axes, position in database.execute(
+                "SELECT id, name, subject, weight, axes, position FROM groups"
+            )
+        }
+    except (ValueError, TypeError, msgspec.MsgspecError) as error:
+        raise damaged(path, f"groups and items: {error}") from None
+
+
+def write_groups(
+    database: sqlite3.Connection, path: str | Path | None, known: Stored, more: Stored
+) -> None:
+    """Add to the groups that are known.
+
+    Args:
+        database: within a transaction.
+        path: of what is added, for errors.
+        known: the groups that are there.
+        more: those to be added.
+
+    Raises:
+        CoverageError: an item or a group is known as another; nothing is written.
+    """
+    for name, group in more.items():
+        if (own := known.get(name)) is not None:
+            _refuse_conflict(path, name, own, group)
+    for name, group in more.items():
+        own = known.get(name)
+        axes = _united(own.axes, group.axes) if own is not None else group.axes
+        (number,) = database.execute(
+            "INSERT INTO groups (name, subject, weight, axes, position) VALUES (?, ?, ?, ?, ?) "
+            "ON CONFLICT (name) DO UPDATE SET axes = excluded.axes, "
+            "position = min(position, excluded.position) RETURNING id",
+            (
+                name,
+                group.subject,
+                group.weight,
+                msgspec.json.encode(list(axes.items()), order="deterministic").decode(),
+                group.position,
+            ),
+        ).fetchone()
+        database.executemany(
+            "INSERT INTO items (owner, name, kind, goal, position) VALUES (?, ?, ?, ?, ?) "
+            "ON CONFLICT (owner, name) DO UPDATE SET position = min(position, excluded.position)",
+            ((number, item, one.kind, one.goal, one.position) for item, one in group.items.items()),
+        )
+
+
+def _refuse_conflict(
+    path: str | Path | None, name: str, own: StoredGroup, other: StoredGroup
+) -> None:
+    mend = "keep the two in databases of their own, or give the changed one another name"
+    for what, before, after in (
+        ("is about", own.subject.value, other.subject.value),
+        ("has weight", own.weight, other.weight),
+        ("has the axes", _listed(own.axes), _listed(other.axes)),
+    ):
+        if before != after:
+            raise CoverageError(
+                f"error: {name_of(path)}: group `{name}` {what} {after} here, {before} in "
+                f"what it is added to: {mend}"
+            )
+    for item, one in other.items.items():
+        known = own.items.get(item)
+        if known is not None and (known.kind, known.goal) != (one.kind, one.goal):
+            raise CoverageError(
+                f"error: {name_of(path)}: item `{item}` of group `{name}` is "
+                f"{_meaning(one)} here, {_meaning(known)} in what it is added to: {mend}"
+            )
+
+
+def _meaning(item: StoredItem) -> str:
+    hits = "1 hit" if item.goal == 1 else f"{item.goal} hits"
+    return f"a goal of {hits}" if item.kind is BinKind.GOAL else item.kind.value
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(names) or "none"
+
+
+def _in_order(places: Mapping[str, int]) -> Sequence[str]:
+    return sorted(places, key=lambda name: (places[name], name))
+
+
+def _united(
+    one: Mapping[str, Mapping[str, int]], other: Mapping[str, Mapping[str, int]]
+) -> Mapping[str, Mapping[str, int]]:
+    """The bins of both, each in its first place; the axes are the same."""
+    return {
+        axis: {
+            name: min(places[name] for places in (bins, other[axis]) if name in places)
+            for name in {**bins, **other[axis]}
+        }
+        for axis, bins in one.items()
+    }

@@ -1,0 +1,245 @@
+"""The tests of a database: what is written of one, and read back."""
+
+from __future__ import annotations
+
+import hashlib
+import sqlite3
+import time
+import zlib
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from rvmon.coverage.hits import Hits
+from rvmon.coverage.record import UNKNOWN, Ending, Entry, Row, TestRecord
+from rvmon.coverage.schema import damaged
+from rvmon.errors import CoverageError
+from rvmon.verdict.verdict import Verdict
+
+_BYTES = 20
+"""Of an item that was hit: four of its id, eight of how often, eight of the first instant."""
+
+_COLUMNS = (
+    "digest, campaign, name, strategy, recording, seed, system, verdicts, ending, error, "
+    "number, seconds, recorded, hits"
+)
+_WRITE = (
+    f"INSERT INTO tests ({_COLUMNS}) VALUES ({', '.join('?' * len(_COLUMNS.split(',')))}) "  # noqa: S608 - our words
+    "ON CONFLICT (digest) DO UPDATE SET number = excluded.number, seconds = excluded.seconds, "
+    "recorded = excluded.recorded, recording = excluded.recording "
+    "WHERE (excluded.recorded, excluded.number, excluded.seconds, excluded.recording) "
+    "< (recorded, number, seconds, recording)"
+)
+"""A test that is there already did the same: the earliest record of it stays."""
+
+_READ = f"SELECT {_COLUMNS} FROM tests"  # noqa: S608 - our words
+
+
+def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]) -> Entry:
+    """A test with its hits as it is written.
+
+    Args:
+        test: what became of it.
+        hits: what it hit.
+        places: of the items of the model.
+
+    Raises:
+        CoverageError: it hit what is not in the model, or a figure makes no sense.
+    """
+    flat = sorted(
+        (group, item, hit.count, hit.first)
+        for group, items in hits.items()
+        for item, hit in items.items()
+    )
+    unknown = next(((group, item) for group, item, *_ in flat if (group, item) not in places), None)
+    if unknown is not None:
+        raise CoverageError(
+            f"error: test `{test.name}` hit `{unknown[1]}` of `{unknown[0]}`, which is in no model "
+            "that was declared: declare its model first"
+        )
+    _refuse_nonsense(test, flat)
+    clean = _storable(test)
+    rows = sorted((places[group, item], count, first) for group, item, count, first in flat)
+    row = Row(
+        np.array([place for place, _, _ in rows], np.int32),
+        np.array([count for _, count, _ in rows], np.int64),
+        np.array([UNKNOWN if first is None else first for *_, first in rows], np.int64),
+    )
+    return Entry(_digest(clean, flat), clean, row)
+
+
+def write_entries(
+    database: sqlite3.Connection, entries: Iterable[Entry], ids: NDArray[np.int64]
+) -> None:
+    """Write tests; one that is there already is not written twice.
+
+    Args:
+        database: within a transaction.
+        entries: the tests.
+        ids: of the items, by the places that the entries give.
+    """
+    database.executemany(
+        _WRITE,
+        (
+            (
+                entry.digest,
+                record.campaign,
+                record.name,
+                record.strategy,
+                record.recording,
+                None if record.seed is None else str(record.seed),
+                record.system,
+                msgspec.json.encode(record.verdicts, order="deterministic").decode(),
+                record.ending,
+                record.error,
+                record.number,
+                float(record.seconds),
+                record.when,
+                _packed(entry.row, ids),
+            )
+            for entry in entries
+            for record in [entry.record]
+        ),
+    )
+
+
+def read_entries(
+    database: sqlite3.Connection, path: str | Path | None, ids: NDArray[np.int64]
+) -> list[Entry]:
+    """The tests in the order of their campaigns.
+
+    Args:
+        database: that they are in.
+        path: of it, for errors.
+        ids: of the items, in the order of the model.
+
+    Raises:
+        CoverageError: one cannot have been written like that.
+    """
+    order = np.argsort(ids)
+    entries = []
+    for columns in database.execute(_READ):
+        try:
+            entries.append(_entry(columns, ids, order))
+        except (ValueError, TypeError, zlib.error, msgspec.MsgspecError) as error:
+            raise damaged(path, f"test `{columns[2]}`: {error}") from None
+    starts: dict[str, int] = {}
+    for entry in entries:
+        campaign, when = entry.record.campaign, entry.record.when or 0
+        starts[campaign] = min(when, starts.get(campaign, when))
+    return sorted(
+        entries,
+        key=lambda entry: (
+            starts[entry.record.campaign],
+            entry.record.campaign,
+            entry.record.number,
+            entry.record.when or 0,
+            entry.digest,
+        ),
+    )
+
+
+def _digest(test: TestRecord, flat: list[tuple[str, str, int, int | None]]) -> str:
+    """What tells a test from others: all but where and when it was recorded, and how fast."""
+    content = (
+        test.campaign,
+        test.name,
+        test.strategy,
+        None if test.seed is None else str(test.seed),
+        test.system,
+        test.verdicts,
+        test.ending,
+        test.error,
+        flat,
+    )
+    return hashlib.sha256(msgspec.json.encode(content, order="deterministic")).hexdigest()
+
+
+def _storable(test: TestRecord) -> TestRecord:
+    """The record with the instant of now if it has none, and names of files as text."""
+    return replace(
+        test,
+        name=_text(test.name),
+        campaign=_text(test.campaign),
+        strategy=_text(test.strategy),
+        recording=_text(test.recording),
+        system=_text(test.system),
+        error=_text(test.error),
+        verdicts={name: Verdict(verdict) for name, verdict in test.verdicts.items()},
+        ending=Ending(test.ending),
+        when=time.time_ns() if test.when is None else test.when,
+    )
+
+
+def _text(name: str) -> str:
+    """A text that can be written: a name of a file may hold bytes that are none."""
+    return name if name.isascii() else name.encode("utf-8", "backslashreplace").decode()
+
+
+def _refuse_nonsense(test: TestRecord, flat: list[tuple[str, str, int, int | None]]) -> None:
+    if not 0 <= test.seconds < float("inf"):
+        raise CoverageError(
+            f"error: test `{test.name}` took {test.seconds} s: give seconds, at least 0"
+        )
+    for group, item, count, _ in flat:
+        if count < 1:
+            raise CoverageError(
+                f"error: test `{test.name}` hit `{item}` of `{group}` {count} times: leave out "
+                "what it did not hit"
+            )
+
+
+def _packed(row: Row, ids: NDArray[np.int64]) -> bytes:
+    """The columns of a row, one behind the other, compressed."""
+    own = ids[row.items]
+    order = np.argsort(own)
+    columns = (own.astype("<i4"), row.counts.astype("<i8"), row.firsts.astype("<i8"))
+    return zlib.compress(b"".join(column[order].tobytes() for column in columns), 1)
+
+
+def _entry(columns: tuple[Any, ...], ids: NDArray[np.int64], order: NDArray[np.intp]) -> Entry:
+    digest, campaign, name, strategy, recording, seed, system, verdicts, *rest = columns
+    ending, error, number, seconds, recorded, hits = rest
+    record = TestRecord(
+        str(name),
+        str(campaign),
+        str(strategy),
+        str(recording),
+        None if seed is None else int(seed),
+        str(system),
+        msgspec.json.decode(verdicts, type=dict[str, Verdict]),
+        Ending(ending),
+        str(error),
+        int(number),
+        float(seconds),
+        int(recorded),
+    )
+    return Entry(str(digest), record, _unpacked(hits, ids, order))
+
+
+def _unpacked(hits: bytes, ids: NDArray[np.int64], order: NDArray[np.intp]) -> Row:
+    """Undo `_packed`; no more is unpacked than there can be.
+
+    Raises:
+        ValueError: these are not the hits of a test.
+    """
+    unpacking = zlib.decompressobj()
+    body = unpacking.decompress(hits, _BYTES * len(ids) + 1)
+    count, rest = divmod(len(body), _BYTES)
+    if rest or not unpacking.eof:
+        raise ValueError("its hits are cut off, or too many")
+    own = np.frombuffer(body, "<i4", count)
+    counts = np.frombuffer(body, "<i8", count, 4 * count)
+    firsts = np.frombuffer(body, "<i8", count, 12 * count)
+    if count and (own[-1] > ids[order[-1]] or np.any(np.diff(own) <= 0) or np.any(counts < 1)):
+        raise ValueError("its hits make no sense")
+    places = order[np.searchsorted(ids, own, sorter=order)]
+    if np.any(ids[places] != own):
+        raise ValueError("it hit an item that is not there")
+    sort = np.argsort(places)
+    return Row(places[sort].astype(np.int32), counts[sort], firsts[sort])

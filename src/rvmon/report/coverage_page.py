@@ -1,0 +1,242 @@
+"""The page of coverage, for who decides what to test next: what is wrong, what is missing."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable, Sequence
+
+from rvmon.coverage.answers import Comparison
+from rvmon.report.coverage_chart import growth_chart
+from rvmon.report.coverage_items import groups_sections, hitters_list, item_link
+from rvmon.report.coverage_summary import (
+    Summary,
+    counted,
+    name_of,
+    not_fine,
+    share_text,
+    strategy_name,
+)
+from rvmon.report.coverage_tests import letter, listed_tests, test_link, tests_section
+from rvmon.report.markup import Child, e, page
+from rvmon.report.percent import percent_text
+from rvmon.report.table_html import legend, table_html
+from rvmon.verdict.verdict import Verdict
+
+OPEN = 30
+"""Lines of a list that is shown at once; of a longer one, the rest is behind a click."""
+
+
+def coverage_page(summary: Summary) -> str:
+    """Write the page; it needs no script and nothing but itself."""
+    listed = listed_tests(summary)
+    body: list[Child] = [
+        _header(summary),
+        _wrong(summary),
+        _overview(summary),
+        _comparison(summary),
+        _verdicts(summary),
+        _holes(summary),
+        _growth(summary),
+        *groups_sections(summary),
+        tests_section(summary, listed),
+        e("footer", None, legend()),
+        hitters_list(summary, listed),
+    ]
+    title = f"{share_text(summary.share)} covered: {summary.name}"
+    return page(title, body, styles=["base.css", "report.css", "coverage.css"], scripts=[])
+
+
+def _header(summary: Summary) -> ET.Element:
+    tests = len(summary.coverage.entries)
+    parts = ["nothing to cover" if summary.is_void else f"{share_text(summary.share)} covered"]
+    if summary.illegal:
+        parts.append(f"{counted(len(summary.illegal), 'illegal item')} hit")
+    if summary.not_fine:
+        parts.append(f"{len(summary.not_fine):,} of {counted(tests, 'test')} not fine")
+    if summary.holes:
+        parts.append(counted(len(summary.holes), "hole"))
+    about = e("p", {"class": "soft"}, e("code", None, summary.name), f": {summary.tests_text()}")
+    return e("header", None, e("h1", None, ", ".join(parts)), about)
+
+
+def _wrong(summary: Summary) -> ET.Element | None:
+    """Illegal hits, then tests that failed or did not complete."""
+    parts: list[Child] = []
+    if summary.illegal:
+        lines = [
+            e("li", None, item_link(summary, place), f" {summary.hit_text(place)}")
+            for place in summary.illegal
+        ]
+        parts += [e("h3", None, "Illegal hits"), *_list(lines)]
+    if summary.not_fine:
+        lines = [
+            e("li", None, test_link(summary, place), f" {not_fine(summary.record(place))}")
+            for place in summary.not_fine
+        ]
+        parts += [e("h3", None, "Tests that failed or did not complete"), *_list(lines)]
+    if not parts:
+        return None
+    return e("section", {"class": "wrong", "data-verdict": "F"}, e("h2", None, "Wrong"), *parts)
+
+
+def _overview(summary: Summary) -> ET.Element:
+    rows = [
+        e(
+            "tr",
+            {"class": "total"},
+            e("th", {"scope": "row"}, "total"),
+            e("td", {"class": "text"}),
+            e("td", None, _bar(summary.share)),
+            e("td"),
+            e("td", None, share_text(summary.share)),
+        )
+    ]
+    for place, group in enumerate(summary.coverage.model.groups.values()):
+        score = summary.scores[group.name]
+        share = score.covered / score.items if score.items else 1.0
+        about = group.subject.value
+        about += "" if group.weight == 1 else f", weight {group.weight}" if group.weight else ""
+        about += "" if group.weight else ", not in the total"
+        link = e("a", {"href": f"#g{place}"}, group.name)
+        rows.append(
+            e(
+                "tr",
+                None,
+                e("th", {"scope": "row"}, link),
+                e("td", {"class": "text soft"}, about),
+                e("td", None, _bar(share)),
+                e("td", None, f"{score.covered:,} of {score.items:,}"),
+                e("td", None, percent_text(score.covered, score.items)),
+            )
+        )
+    return e(
+        "section",
+        None,
+        e("h2", None, "Covered"),
+        _scroll(e("table", {"class": "groups"}, e("tbody", None, *rows))),
+    )
+
+
+def _comparison(summary: Summary) -> ET.Element | None:
+    found = summary.comparison
+    if found is None:
+        return None
+    places = {item: place for place, item in enumerate(summary.coverage.items)}
+    change = f": {share_text(found.before)} → {share_text(found.after)}"
+    parts: list[Child] = [e("p", None, e("code", None, summary.earlier_name), change)]
+    for heading, items, verdict in (
+        ("New illegal hits", found.illegal, Verdict.FAIL),
+        ("Lost", found.lost, Verdict.INCONCLUSIVE),
+        ("Newly covered", found.gained, Verdict.PASS),
+        ("No longer in the model", found.dropped, Verdict.NOT_TRIGGERED),
+    ):
+        if items:
+            head = e("h3", {"data-verdict": verdict.value}, f"{heading} ", _count(items))
+            names = (
+                item_link(summary, places[item]) if item in places else name_of(item)
+                for item in items
+            )
+            parts += [head, *_list([e("li", None, name) for name in names])]
+    parts += _changes(found)
+    if len(parts) == 1:
+        parts.append(e("p", {"class": "soft"}, "Nothing else changed."))
+    return e("section", None, e("h2", None, "Since an earlier campaign"), *parts)
+
+
+def _changes(found: Comparison) -> Sequence[Child]:
+    if not found.verdicts:
+        return ()
+    lines = [
+        e(
+            "li",
+            None,
+            f"{one.test}: {one.requirement} ",
+            _verdict(one.before),
+            " → ",
+            _verdict(one.after),
+        )
+        for one in found.verdicts
+    ]
+    return e("h3", None, "Verdicts that changed ", _count(found.verdicts)), *_list(lines)
+
+
+def _verdicts(summary: Summary) -> ET.Element | None:
+    table = summary.verdicts()
+    if not table.requirements:
+        return None
+
+    examples: dict[tuple[str, str, Verdict], str] = {}
+    for place, entry in enumerate(summary.coverage.entries):
+        for name, verdict in entry.record.verdicts.items():
+            key = (strategy_name(entry.record.strategy), name, verdict)
+            examples.setdefault(key, f"#t{place}")
+
+    def link(strategy: str, name: str, verdict: Verdict) -> str | None:
+        return examples.get((strategy, name, verdict))
+
+    return e("section", None, e("h2", None, "Verdicts"), table_html(table, link=link))
+
+
+def _holes(summary: Summary) -> ET.Element | None:
+    if not summary.holes:
+        return None
+    lines = []
+    for place in summary.holes:
+        count, goal = int(summary.totals.counts[place]), int(summary.goals.goal[place])
+        why = "; ".join(summary.coverage.reasons.get(summary.coverage.items[place], ()))
+        of = f"{count:,} of {counted(goal, 'hit')}" if goal > 1 else "never hit"
+        lines.append(
+            e(
+                "li",
+                None,
+                item_link(summary, place),
+                e("span", {"class": "soft"}, f" {of}"),
+                f": {why}" if why else None,
+            )
+        )
+    return e("section", None, e("h2", None, "Holes ", _count(lines)), *_list(lines))
+
+
+def _growth(summary: Summary) -> ET.Element | None:
+    if len(summary.coverage.entries) < 2:
+        return None
+    order = summary.ranking
+    names: list[Child] = []
+    for step in order[:OPEN]:
+        names += [test_link(summary, step.entry), " "]
+    more = f"… and {len(order) - OPEN:,} more" if len(order) > OPEN else None
+    of = f"{len(order):,} of {counted(len(summary.coverage.entries), 'test')}"
+    return e(
+        "section",
+        None,
+        e("h2", None, "Growth"),
+        growth_chart(summary),
+        e("p", {"class": "order"}, f"{of} cover as much: ", *names, more),
+    )
+
+
+def _verdict(verdict: Verdict | None) -> Child:
+    return "–" if verdict is None else letter(verdict)
+
+
+def _list(lines: Sequence[ET.Element]) -> list[ET.Element]:
+    """Lines, the first of them at once."""
+    first = e("ul", {"class": "lines"}, *lines[:OPEN])
+    if len(lines) <= OPEN:
+        return [first]
+    rest = e("ul", {"class": "lines"}, *lines[OPEN:])
+    more = e("summary", None, f"{len(lines) - OPEN:,} more")
+    return [first, e("details", None, more, rest)]
+
+
+def _bar(share: float) -> ET.Element:
+    filled = e("span", {"style": f"width:{share:.2%}"})
+    return e("span", {"class": "bar", "aria-hidden": "true"}, filled)
+
+
+def _scroll(table: ET.Element) -> ET.Element:
+    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table)
+
+
+def _count(items: Iterable[object]) -> ET.Element:
+    return e("small", None, f"{sum(1 for _ in items):,}")

@@ -1,0 +1,263 @@
+"""What terminal, page and JSON show of coverage, each worked out when it is asked for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+
+from rvmon.coverage.answers import Comparison, Goals, Step, Totals
+from rvmon.coverage.compare import compare
+from rvmon.coverage.hits import Score
+from rvmon.coverage.model import Group, Item
+from rvmon.coverage.questions import (
+    by_strategy,
+    campaigns,
+    goals_of,
+    growth,
+    hitters,
+    holes,
+    illegal_hits,
+    scores,
+    share_of,
+    totals,
+    unique,
+)
+from rvmon.coverage.ranking import ranking
+from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
+from rvmon.report.percent import percent_text
+from rvmon.report.table import RunGroup, VerdictTable
+from rvmon.spec.checked.goals import BinKind
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.verdict import Verdict
+
+LISTED = 5
+"""Tests that are named of those that hit an item."""
+
+
+class Summary:
+    """Answers about coverage.
+
+    Args:
+        name: of the database, for people.
+        coverage: what it holds.
+        earlier: what it is compared with.
+        earlier_name: of that, for people.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        coverage: Coverage,
+        earlier: Coverage | None = None,
+        earlier_name: str = "",
+    ) -> None:
+        self.name = name
+        self.coverage = coverage
+        self.earlier_name = earlier_name
+        self._earlier = earlier
+
+    @cached_property
+    def goals(self) -> Goals:
+        """What is wanted of each item."""
+        return goals_of(self.coverage)
+
+    @cached_property
+    def totals(self) -> Totals:
+        """What became of each item."""
+        return totals(self.coverage)
+
+    @cached_property
+    def scores(self) -> Mapping[str, Score]:
+        """How much of each group is covered."""
+        return scores(self.coverage, self.totals.counts)
+
+    @cached_property
+    def share(self) -> float:
+        """The share that is covered in all, from 0 to 1."""
+        return share_of(self.coverage, self.scores)
+
+    @property
+    def is_void(self) -> bool:
+        """Whether there is nothing to cover, so that a share says nothing."""
+        groups = self.coverage.model.groups
+        return not any(one.items for name, one in self.scores.items() if groups[name].weight)
+
+    @cached_property
+    def holes(self) -> Sequence[int]:
+        """Items that were hit too rarely."""
+        return holes(self.coverage, self.totals.counts)
+
+    @cached_property
+    def illegal(self) -> Sequence[int]:
+        """Items that were hit and must not be."""
+        return illegal_hits(self.coverage, self.totals.counts)
+
+    @cached_property
+    def steps(self) -> Sequence[Step]:
+        """What each test added."""
+        return growth(self.coverage)
+
+    @cached_property
+    def unique(self) -> Sequence[Sequence[int]]:
+        """What only each test covers."""
+        return unique(self.coverage, self.totals.counts)
+
+    @cached_property
+    def ranking(self) -> Sequence[Step]:
+        """A short order of tests that cover as much."""
+        return ranking(self.coverage)
+
+    @cached_property
+    def comparison(self) -> Comparison | None:
+        """What is different, if there is something to compare with."""
+        return None if self._earlier is None else compare(self._earlier, self.coverage)
+
+    @cached_property
+    def hitters(self) -> Mapping[int, Sequence[int]]:
+        """The first tests that hit each item."""
+        return hitters(self.coverage, LISTED)
+
+    @cached_property
+    def strategies(self) -> Mapping[str, Sequence[int]]:
+        """The tests of each strategy, in order."""
+        return by_strategy(self.coverage)
+
+    @cached_property
+    def alone(self) -> Mapping[str, Sequence[Step]]:
+        """What the tests of each strategy add to each other, without those of the others."""
+        return {name: growth(self.coverage, order) for name, order in self.strategies.items()}
+
+    @cached_property
+    def not_fine(self) -> Sequence[int]:
+        """Tests that failed a requirement or did not complete."""
+        entries = self.coverage.entries
+        return [place for place, entry in enumerate(entries) if not_fine(entry.record)]
+
+    @cached_property
+    def campaigns(self) -> Sequence[str]:
+        """Their names, in order."""
+        return campaigns(self.coverage)
+
+    @cached_property
+    def starts(self) -> Mapping[str, int]:
+        """The place of the first item of each group."""
+        starts, place = {}, 0
+        for group in self.coverage.model.groups.values():
+            starts[group.name] = place
+            place += len(group.items)
+        return starts
+
+    def verdicts(self) -> VerdictTable:
+        """Tests by strategy, requirement and verdict."""
+        counts: dict[str, dict[str, Counter[Verdict]]] = {}
+        tests: Counter[str] = Counter()
+        names: dict[str, str] = {}
+        for entry in self.coverage.entries:
+            strategy = strategy_name(entry.record.strategy)
+            tests[strategy] += 1
+            for name, verdict in entry.record.verdicts.items():
+                names[name] = ""
+                own = counts.setdefault(strategy, {}).setdefault(name, Counter())
+                own[verdict] += 1
+        groups = tuple(RunGroup(name, count, counts.get(name, {})) for name, count in tests.items())
+        return VerdictTable("", names, groups)
+
+    def record(self, place: int) -> TestRecord:
+        """A test."""
+        return self.coverage.entries[place].record
+
+    def places(self, group: Group) -> Iterator[tuple[int, Item]]:
+        """The items of a group with their places."""
+        return enumerate(group.items.values(), self.starts[group.name])
+
+    def item_name(self, place: int) -> str:
+        """An item for people, with its group."""
+        return name_of(self.coverage.items[place])
+
+    def hit_text(self, place: int) -> str:
+        """How often an item was hit, by whom and when first."""
+        found = self.totals
+        count, tests = int(found.counts[place]), int(found.tests[place])
+        if not count:
+            return "never hit"
+        return (
+            f"{counted(count, 'hit')} by {counted(tests, 'test')}, first {self.first_text(place)}"
+        )
+
+    def first_text(self, place: int) -> str:
+        """Which test hit an item first, and when if that is known; empty if none did."""
+        first = int(self.totals.first[place])
+        if first < 0:
+            return ""
+        name = self.record(first).name
+        instant = int(self.totals.instants[place])
+        return name if instant == UNKNOWN else f"{name} at {format_ticks(instant)}"
+
+    def tests_text(self) -> str:
+        """How many tests there are, of how many campaigns, and how they ended."""
+        endings = Counter(entry.record.ending for entry in self.coverage.entries)
+        ended = ", ".join(f"{endings[one]:,} {one}" for one in Ending if endings[one])
+        parts = [counted(len(self.coverage.entries), "test")]
+        if len(self.campaigns) > 1:
+            parts.append(f"of {len(self.campaigns)} campaigns")
+        return " ".join(parts) + (f": {ended}" if ended else "")
+
+
+def name_of(item: tuple[str, str]) -> str:
+    """An item for people, with its group.
+
+    >>> name_of(("gaze", "yes"))
+    'gaze: yes'
+    """
+    return f"{item[0]}: {item[1]}"
+
+
+def strategy_name(strategy: str) -> str:
+    """A strategy for people."""
+    return strategy or "no strategy"
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "test"), counted(2000, "test")
+    ('1 test', '2,000 tests')
+    """
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
+
+
+def share_text(share: float) -> str:
+    """A share for people, that claims neither none nor all where that is not so.
+
+    >>> share_text(0.99999), share_text(0.5)
+    ('> 99 %', '50 %')
+    """
+    return percent_text(share, 1)
+
+
+def not_fine(record: TestRecord) -> str:
+    """What is wrong with a test, in words; empty if nothing is."""
+    parts = []
+    if record.ending is not Ending.COMPLETED:
+        parts.append(f"{record.ending}: {record.error}" if record.error else record.ending.value)
+    if record.failed:
+        parts.append(f"F {', '.join(record.failed)}")
+    return "; ".join(parts)
+
+
+def cell_text(kind: BinKind, goal: int, count: int) -> str:
+    """An item in a grid: its hits, of how many where they are too few.
+
+    >>> cell_text(BinKind.GOAL, 1, 7), cell_text(BinKind.GOAL, 3, 1)
+    ('7', '1/3')
+    >>> cell_text(BinKind.ILLEGAL, 1, 2), cell_text(BinKind.ILLEGAL, 1, 0)
+    ('2 !', '!')
+    """
+    match kind:
+        case BinKind.IGNORE:
+            return "–"
+        case BinKind.ILLEGAL:
+            return f"{count:,} !" if count else "!"
+        case BinKind.GOAL:
+            return f"{count:,}" if count >= goal or goal == 1 else f"{count:,}/{goal:,}"

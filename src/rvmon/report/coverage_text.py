@@ -1,0 +1,277 @@
+"""Coverage as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import product
+from typing import TYPE_CHECKING
+
+from rvmon.coverage.answers import Comparison
+from rvmon.coverage.hits import Score
+from rvmon.coverage.model import Group, combination
+from rvmon.report.coverage_summary import (
+    Summary,
+    cell_text,
+    counted,
+    name_of,
+    not_fine,
+    share_text,
+)
+from rvmon.report.percent import percent_text
+from rvmon.report.wrapped import wrapped
+from rvmon.spec.checked.goals import BinKind
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+SHOWN = 10
+"""Of a list, where not all of it was asked for."""
+
+BAR, WIDE = 20, 64
+"""Columns of a bar, and of a terminal that has room for one."""
+
+
+def print_overview(summary: Summary, console: Console) -> None:
+    """Print the groups, the total, verdicts, and what is wrong."""
+    from rich.text import Text
+
+    from rvmon.report.table_text import table_text
+
+    heading = Text.assemble((summary.name, "bold"), f"  {summary.tests_text()}")
+    console.print(heading, soft_wrap=True)
+    console.print(_groups(summary, console))
+    table = summary.verdicts()
+    if table.requirements:
+        console.print(table_text(table))
+        console.print()
+    _print_list(
+        console,
+        "illegal hits:",
+        [f"{summary.item_name(place)}  {summary.hit_text(place)}" for place in summary.illegal],
+        style="bold red",
+    )
+    records = [summary.record(place) for place in summary.not_fine]
+    _print_list(
+        console,
+        "not fine:",
+        [f"{record.name}  {not_fine(record)}" for record in records],
+        style="bold red",
+    )
+    if summary.comparison is not None:
+        _print_comparison(summary.comparison, summary.earlier_name, console)
+
+
+def print_holes(summary: Summary, console: Console) -> None:
+    """Print what was hit too rarely, with reasons where there are some."""
+    if not summary.holes:
+        console.print("no holes")
+        return
+    console.print(f"{counted(len(summary.holes), 'hole')}:", style="bold")
+    for place in summary.holes:
+        item = summary.coverage.items[place]
+        count, goal = int(summary.totals.counts[place]), int(summary.goals.goal[place])
+        line = f"{name_of(item)}  {count:,} of {counted(goal, 'hit')}"
+        why = "; ".join(summary.coverage.reasons.get(item, ()))
+        console.print(wrapped(f"{line}: {why}" if why else line, console.width))
+
+
+def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> None:
+    """Print the items of some groups: how often each was hit, and who was first."""
+    from rich.text import Text
+
+    for group in groups:
+        score = summary.scores[group.name]
+        heading = f"  {group.subject.value}, {score.covered:,} of {score.items:,} covered"
+        console.print(Text.assemble((group.name, "bold"), heading))
+        grid = _grid(summary, group) if group.axes else None
+        if grid is not None and _fits(grid, console):
+            console.print(grid)
+            console.print("  – ignored   ! illegal   1/3: one hit of three", style="dim")
+        else:
+            console.print(_bins(summary, group))
+
+
+def print_tests(summary: Summary, console: Console) -> None:
+    """Print the tests, what each added, and the shortest order that is known."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    wide = console.width >= WIDE
+    table.add_column("test", overflow="fold")
+    if wide:
+        table.add_column("strategy", overflow="fold")
+        table.add_column("ended", overflow="fold")
+    table.add_column("alone", justify="right", no_wrap=True)
+    table.add_column("share", justify="right", no_wrap=True)
+    table.add_column("added", ratio=1, overflow="fold")
+    steps = zip(summary.coverage.entries, summary.steps, summary.unique, strict=True)
+    for entry, step, only in steps:
+        record, wrong = entry.record, not_fine(entry.record)
+        ended = Text(wrong or record.ending.value, style="bold red" if wrong else "")
+        table.add_row(
+            record.name,
+            *((record.strategy, ended) if wide else ()),
+            f"{len(only):,}" if only else "",
+            share_text(step.share) if step.added else "",
+            _first_of(summary.item_name(place) for place in step.added),
+        )
+    console.print(table)
+    console.print("alone: items that no other test covers", style="dim")
+    order = summary.ranking
+    names = [summary.record(step.entry).name for step in order]
+    of = counted(len(summary.coverage.entries), "test")
+    console.print(f"{len(order):,} of {of} cover as much: {_first_of(names)}")
+
+
+def _groups(summary: Summary, console: Console) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_footer=True)
+    table.add_column("", "total", overflow="fold")
+    wide = console.width >= WIDE
+    if wide:
+        table.add_column("what")
+    table.add_column("covered", justify="right")
+    total = "–" if summary.is_void else share_text(summary.share)
+    table.add_column("share", total, justify="right", no_wrap=True)
+    if wide:
+        table.add_column("", "" if summary.is_void else _bar(summary.share, console), no_wrap=True)
+    for group in summary.coverage.model.groups.values():
+        score = summary.scores[group.name]
+        name = group.name if group.weight else f"{group.name} (not in the total)"
+        cells: list[str | Text] = [name]
+        cells += [group.subject.value] if wide else []
+        cells += [f"{score.covered:,} of {score.items:,}", _percent(score)]
+        cells += [_bar(score.covered / score.items if score.items else 1, console)] if wide else []
+        table.add_row(*cells)
+    return table
+
+
+def _percent(score: Score) -> str:
+    return percent_text(score.covered, score.items)
+
+
+def _bar(share: float, console: Console) -> Text:
+    """A share as a bar: full only if all is covered, empty only if nothing is."""
+    from rich.text import Text
+
+    filled = round(share * BAR)
+    if 0 < share < 1:
+        filled = min(max(filled, 1), BAR - 1)
+    full, empty = ("#", ".") if console.options.ascii_only else ("█", "░")
+    return Text.assemble((full * filled, "green"), (empty * (BAR - filled), "dim"))
+
+
+def _fits(table: Table, console: Console) -> bool:
+    """Whether no cell would be cut: rich never says that one needs more than the width it has."""
+    endless = console.options.update(max_width=1_000_000)
+    return console.measure(table, options=endless).minimum <= console.width
+
+
+def _grid(summary: Summary, group: Group) -> Table:
+    """A cross: the bins of the last axis from left to right, of the others downwards."""
+    from rich import box
+    from rich.table import Table
+
+    *down, (across, columns) = group.axes.items()
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for axis, _ in down:
+        table.add_column(axis, no_wrap=True)
+    if not down:
+        table.add_column(across)
+    for name in columns:
+        table.add_column(name, justify="right", no_wrap=True)
+    places = {item.name: place for place, item in summary.places(group)}
+    last: Sequence[str] = ()
+    for bins in product(*(names for _, names in down)):
+        # A bin of an outer axis stands once, above those that it goes together with.
+        heads = ["" if last[: i + 1] == bins[: i + 1] else name for i, name in enumerate(bins[:-1])]
+        row: list[str | Text] = [*heads, *bins[-1:]] if down else [""]
+        for name in columns:
+            place = places.get(combination([*bins, name]))
+            row.append("" if place is None else _cell(summary, group, place))
+        table.add_row(*row)
+        last = bins
+    return table
+
+
+def _cell(summary: Summary, group: Group, place: int) -> Text:
+    from rich.text import Text
+
+    item = group.items[summary.coverage.items[place][1]]
+    count = int(summary.totals.counts[place])
+    match item.kind:
+        case BinKind.IGNORE:
+            style = "dim"
+        case BinKind.ILLEGAL:
+            style = "bold red" if count else "dim"
+        case BinKind.GOAL:
+            style = "green" if count >= item.goal else "bold yellow"
+    return Text(cell_text(item.kind, item.goal, count), style=style)
+
+
+def _bins(summary: Summary, group: Group) -> Table:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("")
+    table.add_column("hits", justify="right", no_wrap=True)
+    table.add_column("tests", justify="right", no_wrap=True)
+    table.add_column("first")
+    for place, item in summary.places(group):
+        tests = int(summary.totals.tests[place])
+        name = item.name if item.kind is BinKind.GOAL else f"{item.name} ({item.kind})"
+        table.add_row(
+            Text(name),
+            _cell(summary, group, place),
+            f"{tests:,}" if tests else "",
+            summary.first_text(place),
+        )
+    return table
+
+
+def _print_comparison(found: Comparison, name: str, console: Console) -> None:
+    from rich.text import Text
+
+    change = f": {share_text(found.before)} → {share_text(found.after)}"
+    console.print(Text.assemble("since ", (name, "bold"), change), soft_wrap=True)
+    for heading, items, style in (
+        ("new illegal hits:", found.illegal, "bold red"),
+        ("lost:", found.lost, "bold yellow"),
+        ("newly covered:", found.gained, "bold green"),
+        ("no longer in the model:", found.dropped, "dim"),
+    ):
+        _print_list(console, heading, [name_of(item) for item in items], style=style)
+    changes = [
+        f"{one.test}  {one.requirement}  {_letter(one.before)} → {_letter(one.after)}"
+        for one in found.verdicts
+    ]
+    _print_list(console, "verdicts that changed:", changes, style="bold")
+
+
+def _print_list(console: Console, heading: str, lines: Sequence[str], *, style: str) -> None:
+    if not lines:
+        return
+    console.print(heading, style=style)
+    for line in lines[:SHOWN]:
+        console.print(wrapped(line, console.width))
+    if len(lines) > SHOWN:
+        console.print(f"  … and {len(lines) - SHOWN:,} more: --format json has all", style="dim")
+
+
+def _first_of(names: Iterable[str], most: int = 3) -> str:
+    every = list(names)
+    more = f", … and {len(every) - most:,} more" if len(every) > most else ""
+    return ", ".join(every[:most]) + more
+
+
+def _letter(verdict: Verdict | None) -> str:
+    return "–" if verdict is None else verdict.value

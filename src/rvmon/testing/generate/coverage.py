@@ -1,0 +1,52 @@
+"""Random coverpoints and crosses over the vocabulary of random specifications."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
+from rvmon.spec.checked.goals import Bin, BinKind, Coverpoint, Cross
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.generate.spec import Profile, random_spec
+
+
+def with_random_coverage(rng: Rng, profile: Profile) -> CheckedSpec:
+    """A random specification that has coverpoints and, if there are several, a cross.
+
+    What bins ask for is asked for by its requirements, too, so that traces are drawn for it.
+
+    Args:
+        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        profile: of the requirements.
+    """
+    spec = random_spec(rng, profile)
+    shape = Shape(step=spec.time is not TimeModel.HELD, future=False)
+    points = {
+        name: Coverpoint(name, _bins(rng, shape), _upon(rng, shape), rng.randint(1, 3))
+        for name in (f"C{place}" for place in range(rng.randint(1, 3)))
+    }
+    crosses = {}
+    if len(points) > 1:
+        crosses["X"] = Cross("X", tuple(points), upon=_upon(rng, shape))
+    asked = {
+        f"{point.name}.{one.name}": one.formula for point in points.values() for one in point.bins
+    }
+    requirements = {
+        name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), wanted)
+        for name, wanted in asked.items()
+    }
+    return replace(spec, requirements=requirements, coverpoints=points, crosses=crosses)
+
+
+def _bins(rng: Rng, shape: Shape) -> tuple[Bin, ...]:
+    kinds = (BinKind.GOAL, BinKind.GOAL, BinKind.IGNORE, BinKind.ILLEGAL)
+    return tuple(
+        Bin(f"b{place}", formula(rng, shape, rng.randint(0, 2)), pick(rng, kinds))
+        for place in range(rng.randint(1, 3))
+    )
+
+
+def _upon(rng: Rng, shape: Shape) -> Formula | None:
+    return formula(rng, shape, rng.randint(0, 2)) if chance(rng, 40) else None

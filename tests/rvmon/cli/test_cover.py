@@ -1,0 +1,258 @@
+"""`rvmon cover` as a person uses it."""
+
+import json
+from pathlib import Path
+
+import pytest
+from tests.tools.covered import door_model, dump, fill, hits_of
+from tests.tools.hostile import STEERING, hostile_names
+
+from rvmon.cli import main
+from rvmon.coverage.database import Database, read
+from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
+from rvmon.coverage.record import TestRecord
+
+
+@pytest.fixture
+def door(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with Database.open("door.cov") as database:
+        fill(database)
+    return "door.cov"
+
+
+def shown(capsys, *words):
+    """What is printed to standard output, without the columns' padding."""
+    code = main(["cover", *words])
+    lines = capsys.readouterr().out.splitlines()
+    return code, [" ".join(line.split()) for line in lines]
+
+
+def test_the_overview(door, capsys):
+    """Groups, total, verdicts by strategy, and what is wrong."""
+    code, lines = shown(capsys, door)
+    assert code == 0
+    assert lines[0] == f"{door} 4 tests: 3 completed, 1 crashed"
+    assert "gaze coverpoint 2 of 2 100 % ████████████████████" in lines
+    assert "situation cross 1 of 4 25 % █████░░░░░░░░░░░░░░░" in lines
+    assert "total 46 % █████████░░░░░░░░░░░" in lines
+    assert "D1 2 · · · · 1 · ·" in lines
+    assert "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s" in lines
+    assert "wild-2 crashed: ZeroDivisionError: the gap is 0" in lines
+    assert lines[-1] == "what is missing: --holes"
+
+
+def test_holes_stand_with_their_reasons(door, capsys):
+    """What is missing, how much of it, and why."""
+    _, lines = shown(capsys, door, "--holes")
+    at = lines.index("6 holes:")
+    assert lines[at + 1] == "near: reach 0 of 1 hit"
+    assert lines[at + 2] == "near: far 0 of 1 hit: the arm is 1 m long: `far` begins at 1 m"
+
+
+def test_bins_and_crosses(door, capsys):
+    """Who was first; a cross is a grid; a group that is not there is named."""
+    _, lines = shown(capsys, door, "--bins=gaze")
+    assert lines[-3:-1] == ["yes 3 2 calm-1 at 1 s", "no 3 2 wild-1 at 7 s"]
+    _, lines = shown(capsys, door, "--bins=situation")
+    grid = lines.index("gaze touch reach far")
+    assert lines[grid + 2 : grid + 4] == ["yes 1 0 –", "no 1 ! 0 0"]
+    _, lines = shown(capsys, "--bins", door)
+    assert "D1 requirement, 1 of 2 covered" in lines
+    assert main(["cover", door, "--bins=gase"]) == 2
+    assert "no group named `gase`: did you mean `gaze`?" in capsys.readouterr().err
+
+
+def test_a_cross_of_three_has_nested_rows(tmp_path, capsys, monkeypatch):
+    """A bin of the first axis stands once; a grid that is too wide is a list."""
+    axes = {"x": ["a", "b"], "y": ["c", "d"], "z": ["e", "f"]}
+    names = [combination([x, y, z]) for x in "ab" for y in "cd" for z in "ef"]
+    cross = Group("xyz", Subject.CROSS, {name: Item(name) for name in names}, axes=axes)
+    path = str(tmp_path / "a.cov")
+    with Database.open(path) as database:
+        database.declare(model_of([cross]))
+        database.record(TestRecord("t"), hits_of(("xyz", names[3]), count=12345))
+    _, lines = shown(capsys, path, "--bins")
+    grid = lines.index("x y e f")
+    assert lines[grid + 2 : grid + 6] == ["a c 0 0", "d 0 12,345", "b c 0 0", "d 0 0"]
+    monkeypatch.setenv("COLUMNS", "15")
+    _, lines = shown(capsys, path, "--bins")
+    assert "x y e f" not in lines
+
+
+def test_tests_with_what_they_added(door, capsys, monkeypatch):
+    """Each test's part, and a short order; a narrow terminal has the same in fewer columns."""
+    _, lines = shown(capsys, door, "--tests")
+    assert "calm-2 random completed 1 33 % near: touch," in lines
+    assert lines[-1] == "3 of 4 tests cover as much: calm-2, wild-2, wild-1"
+    monkeypatch.setenv("COLUMNS", "40")
+    main(["cover", door, "--tests", "--bins", "--holes"])
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines[1:])) <= 40
+    assert not [line for line in lines if "…" in line]
+
+
+def test_json_has_all(door, capsys):
+    """Items with hits and first tests, tests with what they added, a short order."""
+    assert main(["cover", door, "--format", "json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["share"] == pytest.approx(0.4583, abs=1e-4)
+    gaze = document["groups"][0]
+    assert (gaze["name"], gaze["covered"], gaze["items"]) == ("gaze", 2, 2)
+    assert gaze["bins"][0]["first"] == {"test": 0, "name": "calm-1", "at": 1_000_000_000}
+    assert document["illegal"] == [["situation", "no × touch"]]
+    assert document["tests"][3]["added"] == [["gaze", "no"]]
+    assert [one["name"] for one in document["shortest_known_order"]] == [
+        "calm-2",
+        "wild-2",
+        "wild-1",
+    ]
+    assert document["compared"] is None
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        (["--require", "40%"], 1),  # an illegal hit
+        (["--strict"], 1),
+        (["--campaign", "week 2", "--require", "20"], 0),
+        (["--campaign", "week 2", "--require", "20.9%"], 1),
+        (["--campaign", "week 2", "--strict"], 0),
+        (["--campaign", "week 2", "--strict", "--compare", "week 1"], 1),  # a loss
+    ],
+)
+def test_exit_codes(door, capsys, options, code):
+    """What is asked for is reached, or not."""
+    with Database.open(door) as database:
+        database.record(
+            TestRecord("calm-1", "week 2"), hits_of(("near", "touch"), ("situation", "no × far"))
+        )
+    assert main(["cover", door, *options]) == code
+
+
+def test_databases_are_merged(door, capsys):
+    """Shown together, and written into one; the same again changes nothing."""
+    other, out = "other.cov", "out.cov"
+    with Database.open(other) as database:
+        database.declare(door_model())
+        database.record(TestRecord("more", "week 2"), hits_of(("near", "reach")))
+    for _ in range(2):
+        code, lines = shown(capsys, door, other, "--merge", out)
+        assert code == 0
+        assert lines[0].endswith("5 tests of 2 campaigns: 4 completed, 1 crashed")
+    with Database.open(out) as database:
+        assert len(database.coverage().entries) == 5
+        before = dump(database)
+    assert main(["cover", out, door, "--merge", out]) == 0
+    with Database.open(out) as database:
+        assert dump(database) == before
+
+
+def test_campaigns_are_compared(door, capsys):
+    """With an earlier file, or an earlier campaign of the same one."""
+    later = "later.cov"
+    with Database.open(later) as database:
+        database.declare(door_model())
+        database.record(
+            TestRecord("calm-1", "week 2", "random", seed=1, verdicts={"D1": "F"}),
+            hits_of(("near", "reach"), ("gaze", "yes")),
+        )
+    _, lines = shown(capsys, later, "--compare", door)
+    at = lines.index(f"since {door}: 46 % → 21 %")
+    assert lines[at + 1] == "lost:"
+    assert (
+        lines[-6:]
+        == [
+            "newly covered:",
+            "near: reach",
+            "verdicts that changed:",
+            "calm-1 D1 P → F",
+            "",
+            "what is missing: --holes",
+        ][-6:]
+        or "calm-1 D1 P → F" in lines
+    )
+    _, both = shown(capsys, door, later, "--campaign", "week 2", "--compare", "week 1")
+    assert "since week 1: 46 % → 21 %" in both
+    assert main(["cover", door, later, "--compare", "week 1"]) == 2
+    assert "by --campaign" in capsys.readouterr().err
+    assert main(["cover", door, "--campaign", "weak 1"]) == 2
+    assert "did you mean `week 1`?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["none.cov"], "there is no file none.cov: `rvmon run --coverage none.cov` makes it"),
+        (["."], "is a folder"),
+        (["{door}", "--require", "much"], "expected a percentage, such as 95%, not much"),
+        (["{door}", "--require", "101"], "expected a percentage"),
+        (["{door}", "--compare", "none"], "there is no file none"),
+        (["{door}", "--merge", "/none/a.cov"], "there is no folder"),
+    ],
+)
+def test_mistakes_are_named(door, capsys, words, told):
+    """Exit 2, with place and mend."""
+    assert main(["cover", *(word.format(door=door) for word in words)]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_conflict_leaves_what_is_there(door, tmp_path, capsys):
+    """Of models that contradict each other; nothing is made, nothing is changed."""
+    other = str(tmp_path / "other.cov")
+    with Database.open(other) as database:
+        database.declare(model_of([group_of("gaze", Subject.COVERPOINT, [Item("yes", goal=9)])]))
+    assert main(["cover", door, other, "--merge", str(tmp_path / "out.cov")]) == 2
+    told = capsys.readouterr().err
+    assert "item `yes` of group `gaze` is a goal of 9 hits here, a goal of 1 hit in" in told
+    assert not (tmp_path / "out.cov").exists()
+    assert main(["cover", door, "--merge", other]) == 2
+    assert len(read([other]).entries) == 0
+
+
+def test_names_steer_no_terminal(tmp_path, capsys):
+    """Whatever groups, items and tests are called."""
+    path = str(tmp_path / "a.cov")
+    names = list(hostile_names(80))
+    axes = {names[0]: names, names[1]: names[:2]}
+    crossed = [combination([one, two]) for one in names for two in names[:2]]
+    groups = [
+        group_of(names[5], Subject.COVERPOINT, [Item(name) for name in names]),
+        Group(names[6], Subject.CROSS, {name: Item(name) for name in crossed}, axes=axes),
+    ]
+    with Database.open(path) as database:
+        database.declare(model_of(groups))
+        for name in names:
+            verdicts = {name: "F"}
+            record = TestRecord(name, name, name, error=name, ending="hung", verdicts=verdicts)
+            database.record(record, hits_of((names[5], name)))
+            database.explain(names[6], crossed[0], name)
+    for words in (["--holes", "--bins", "--tests"], ["--format", "json"]):
+        assert main(["cover", path, *words]) == 0
+        assert not STEERING.search(capsys.readouterr().out)
+
+
+def test_a_page_is_written(door, capsys):
+    """Beside what is printed; a place that is none is named."""
+    assert main(["cover", door, "--report", "door.html"]) == 0
+    assert "46 % covered" in Path("door.html").read_text(encoding="utf-8")
+    assert main(["cover", door, "--report", "none/door.html"]) == 2
+    assert "cannot write none/door.html: No such file" in capsys.readouterr().err
+
+
+def test_an_empty_database_is_shown(tmp_path, capsys):
+    """Nothing was recorded yet."""
+    path = str(tmp_path / "a.cov")
+    Database.open(path).close()
+    code, lines = shown(capsys, path, "--holes", "--bins", "--tests")
+    assert code == 0
+    assert lines[0] == f"{path} 0 tests"
+    assert "no holes" in lines
+
+
+def test_nothing_reaches_no_share(tmp_path, capsys):
+    """A gate does not pass because nobody said what is to be covered."""
+    path = str(tmp_path / "a.cov")
+    Database.open(path).close()
+    assert main(["cover", path, "--require", "0%"]) == 1
+    assert "nothing is to be covered" in capsys.readouterr().err

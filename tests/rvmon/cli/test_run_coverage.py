@@ -1,0 +1,96 @@
+"""`rvmon run` with coverpoints: what must not be hit, and the database."""
+
+import io
+import json
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from rvmon.cli import main
+from rvmon.coverage.database import read
+
+SPEC = """
+spec arm "An arm"
+signal near : bool
+signal state : {idle, moving}
+requirement A1
+  upon near
+  then within 1 s state == idle
+
+coverpoint person = near {yes: true, no: false}
+coverpoint arm = state {idle, moving, stops: moving => idle}
+cross both = person, arm
+  illegal person == yes and arm == moving
+cover parked = near and state == idle
+"""
+CALM = "t,near,state\n0,false,moving\n1,,idle\n2,true,\n3,false,\n"
+WILD = "t,near,state\n0,false,idle\n1,true,moving\n1.5,,idle\n4,,moving\n"
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    """A specification, a recording that is calm, and one that is not."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "arm.rv").write_text(SPEC)
+    (tmp_path / "calm.csv").write_text(CALM)
+    (tmp_path / "wild.csv").write_text(WILD)
+    return tmp_path
+
+
+def test_an_illegal_bin_is_an_error_of_the_run(files, capsys):
+    """It is named with its first instant in text, JSON, JUnit; the exit code is 1."""
+    assert main(["run", "arm.rv", "calm.csv"]) == 0
+    assert "illegal" not in capsys.readouterr().out
+    assert main(["run", "arm.rv", "wild.csv", "--junit", "j.xml", "--report", "pages"]) == 1
+    line = "illegal: `yes × moving` of `both` was hit at 1 s, 2 times in all"
+    assert line in capsys.readouterr().out
+    (failure,) = ET.parse("j.xml").getroot().iter("failure")  # noqa: S314 - our own
+    assert failure.get("message") == line
+    assert line in next((files / "pages").glob("*wild*.html")).read_text()
+    assert main(["run", "arm.rv", "wild.csv", "--format", "json"]) == 1
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["illegal"] == [
+        {"group": "both", "item": "yes × moving", "count": 2, "first": 10**9}
+    ]
+    assert shown["requirements"]["A1"]["verdict"] == "P"
+
+
+def test_up_to_an_instant(files):
+    """What comes behind `--until` was not hit."""
+    assert main(["run", "arm.rv", "wild.csv", "--until", "0.5"]) == 0
+
+
+def test_a_column_that_a_coverpoint_reads(files, capsys):
+    """Without it, no bin would be hit in silence."""
+    (files / "few.csv").write_text("t,state\n0,idle\n")
+    spec = SPEC.replace("  upon near\n", "  upon state == moving\n")
+    (files / "arm.rv").write_text(spec)
+    assert main(["run", "arm.rv", "few.csv"]) == 2
+    assert "`near`, read by person" in capsys.readouterr().err
+    assert main(["run", "arm.rv", "few.csv", "--allow-missing"]) == 1
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_the_database(files, jobs):
+    """All recordings are in it, with verdicts and hits; the same ones again add nothing."""
+    command = ["run", "arm.rv", "calm.csv", "wild.csv", "--coverage", "c.db", "--jobs", jobs]
+    assert main(command) == 1
+    assert main(command) == 1
+    coverage = read(["c.db"])
+    assert [entry.record.name for entry in coverage.entries] == ["calm.csv", "wild.csv"]
+    assert coverage.entries[0].record.verdicts == {"A1": "P"}
+
+
+def test_a_place_that_cannot_be_written(files, capsys):
+    """It is told before anything is judged."""
+    assert main(["run", "arm.rv", "calm.csv", "--coverage", "none/c.db"]) == 2
+    shown = capsys.readouterr()
+    assert "there is no folder none" in shown.err
+    assert not shown.out
+
+
+def test_from_standard_input(files, monkeypatch):
+    """A stream is watched as it goes by."""
+    lines = ['{"t": 0, "near": true, "state": "moving"}', '{"t": 1, "state": "idle"}']
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO("\n".join(lines).encode())))
+    assert main(["run", "arm.rv", "-"]) == 1

@@ -1,0 +1,153 @@
+"""Which bins and combinations runs hit, by hand."""
+
+import pytest
+
+from rvmon import loads
+from rvmon.coverage.hits import illegal
+
+SIGNALS = """signal p, q : bool
+signal x : real
+signal state : {idle, moving, done}
+event e, pick(id: int)
+"""
+
+
+def counts(goals, samples, group="c", time="held", end=None):
+    """By item, how often it was hit."""
+    spec = loads(f"time {time}\n{SIGNALS}{goals}\n")
+    recording = spec.recording([(t, values) for t, values in samples])
+    hits = spec.coverage_model.of(recording, end)
+    return {item: hit.count for item, hit in hits.get(group, {}).items()}
+
+
+def states(*names):
+    """A sample a second."""
+    return [(t, {"state": name}) for t, name in enumerate(names)]
+
+
+@pytest.mark.parametrize(
+    ("bins", "samples", "expected"),
+    [
+        ("p {yes: true, no: false}", [(0, {"p": True}), (1, {"p": False})], {"yes": 1, "no": 1}),
+        ("p {yes: true}", [(t, {"p": True}) for t in range(5)], {"yes": 1}),
+        (
+            "x {low: [0, 1), high: [1, inf)}",
+            [(0, {"x": 1.0}), (1, {"x": 0.5})],
+            {"low": 1, "high": 1},
+        ),
+        ("x {two: 2, ignore three: 3}", [(0, {"x": 2}), (1, {"x": 3})], {"two": 1, "three": 1}),
+        ("state {idle, on: moving}", states("idle", "moving", "idle"), {"idle": 2, "on": 1}),
+        ("{both: p and q}", [(0, {"p": True}), (1, {"q": True})], {"both": 1}),
+        ("{often: e}", [(t, {"e": True}) for t in range(3)], {"often": 3}),
+        ("{second: pick.id == 2}", [(t, {"pick": {"id": t}}) for t in range(4)], {"second": 1}),
+        ("{one: p, same: p}", [(0, {"p": True})], {"one": 1, "same": 1}),
+        ("{late: held(p, 2 s)}", [(0, {"p": True}), (5, {"p": False})], {"late": 1}),
+    ],
+)
+def test_forms_of_bins(bins, samples, expected):
+    """A truth value, a range, a value, a label, a formula, an event, a payload, time alone."""
+    if "{" in bins and not bins.startswith("{"):
+        bins = f"= {bins}"
+    assert counts(f"coverpoint c {bins}", samples) == expected
+
+
+STEPS = (
+    "coverpoint c = state {go: idle => moving, all: idle => moving => done, back: moving => idle}"
+)
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("idle", "moving", "done"), {"go": 1, "all": 1}),
+        (("idle", "idle", "moving", "moving", "done"), {"go": 1, "all": 1}),
+        (("done", "moving", "done"), {}),
+        (("idle", "moving", "idle", "moving", "done"), {"go": 2, "all": 1, "back": 1}),
+        (("idle", "moving", "done", "moving", "done"), {"go": 1, "all": 1}),
+        (("moving", "idle"), {"back": 1}),
+        (("idle",), {}),
+    ],
+)
+def test_steps(time, names, expected):
+    """The values that a signal takes in turn, without another in between."""
+    assert counts(STEPS, states(*names), time=time) == expected
+
+
+def test_steps_of_truth_values():
+    """The first value of a run is no step."""
+    samples = [(t, {"p": value}) for t, value in enumerate([True, False, True, True, False])]
+    bins = "coverpoint c = p {down: true => false, pulse: false => true => false}"
+    assert counts(bins, samples) == {"down": 2, "pulse": 1}
+
+
+def test_unknown_hits_nothing_and_ends_nothing():
+    """A dropout within a stretch: it has surely been entered once only."""
+    samples = [(t, {"p": value}) for t, value in enumerate([None, True, None, True, False, True])]
+    assert counts("coverpoint c = p {yes: true, no: false}", samples) == {"yes": 2, "no": 1}
+
+
+def test_upon():
+    """Where an attempt would start: not where it is unknown since when the occasion is there."""
+    goals = "coverpoint c = p {yes: true, no: false}\n  upon q"
+    values = [(True, False), (False, True), (True, True), (True, None), (True, True), (True, False)]
+    samples = [(t, {"p": p, "q": q}) for t, (p, q) in enumerate(values)]
+    assert counts(goals, samples) == {"no": 1}
+
+
+CROSS = """coverpoint a = p {yes: true, no: false}
+coverpoint b = state {idle, moving, ignore done}
+cross c = a, b
+"""
+
+
+def test_cross():
+    """A combination is hit once for each stretch on which all of its bins are true."""
+    samples = [
+        (0, {"p": True, "state": "idle"}),
+        (1, {"state": "moving"}),
+        (2, {"p": False}),
+        (3, {"p": True}),
+    ]
+    assert counts(CROSS, samples) == {"yes × idle": 1, "yes × moving": 2, "no × moving": 1}
+
+
+def test_cross_is_where_its_points_are():
+    """Unless it says so itself."""
+    goals = CROSS.replace("{yes: true, no: false}", "{yes: true, no: false}\n  upon e")
+    samples = [(0, {"p": True, "state": "idle"}), (1, {"e": True}), (2, {"e": True})]
+    assert counts(goals, samples) == {"yes × idle": 2}
+    assert counts(f"{goals}  upon pick\n", samples) == {}
+
+
+def test_illegal_is_told():
+    """With its first instant; a combination that is none of its model's goals has no goal."""
+    spec = loads(
+        f"{SIGNALS}{CROSS}  illegal a == no and b == moving\n  ignore a == no and b == idle\n"
+    )
+    hits = spec.coverage([(0, {"p": False, "state": "idle"}), (7, {"state": "moving"})])
+    ((group, item, hit),) = illegal(hits, spec.coverage_model.model)
+    assert (group.name, item.name, hit.first) == ("c", "no × moving", 7 * 10**9)
+    kinds = {name: one.kind.value for name, one in group.items.items()}
+    assert kinds["no × idle"] == kinds["yes × done"] == "ignore"
+
+
+def test_online_is_offline():
+    """Sample by sample, with time told in between, and once more."""
+    spec = loads(f"{SIGNALS}{STEPS}\n")
+    monitor = spec.coverage_model.monitor()
+    for _ in range(2):
+        for t, values in states("idle", "moving", "done"):
+            monitor.step(t, values)
+            monitor.advance(t + 0.5)
+        assert monitor.hits == {"c": monitor.finish(9)["c"]}
+        assert monitor.finish() == spec.coverage(states("idle", "moving", "done"))
+        monitor.reset()
+
+
+def test_combinations_have_names_of_their_own():
+    """Whatever bins are called."""
+    bins = "= p {x: true, `y × z`: false}", "= q {`x × y`: true, z: false}"
+    points = "".join(f"coverpoint {n} {own}\n" for n, own in zip("ab", bins, strict=True))
+    spec = loads(f"{SIGNALS}{points}cross c = a, b\n")
+    assert len(spec.coverage_model.model.groups["c"].items) == 4

@@ -1,0 +1,179 @@
+"""Databases of coverage: what is written is read back, whole, once, and by name."""
+
+from dataclasses import replace
+
+import pytest
+from tests.tools.covered import door_model, dump, fill, hits_of
+from tests.tools.hostile import hostile_names
+
+from rvmon.coverage.database import Database, read
+from rvmon.coverage.hits import Hit
+from rvmon.coverage.model import Group, Item, Subject, group_of, model_of
+from rvmon.coverage.record import Ending, TestRecord
+from rvmon.errors import CoverageError
+from rvmon.spec.checked.goals import BinKind
+from rvmon.verdict.verdict import Verdict
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "door.cov"
+
+
+def test_what_is_written_is_read_back(path):
+    """The model in its order, the tests in theirs, their hits and the reasons."""
+    with Database.open(path) as database:
+        fill(database)
+        before = dump(database)
+    with Database.open(path) as database:
+        assert dump(database) == before
+    coverage = read([path])
+    assert coverage.model == door_model()
+    assert [entry.record.name for entry in coverage.entries] == [
+        "calm-1",
+        "calm-2",
+        "wild-1",
+        "wild-2",
+    ]
+    last = coverage.entries[-1].record
+    assert (last.ending, last.error) == (Ending.CRASHED, "ZeroDivisionError: the gap is 0")
+    assert coverage.reasons == {("near", "far"): ["the arm is 1 m long: `far` begins at 1 m"]}
+
+
+def test_one_file_is_left(path):
+    """What SQLite keeps beside the file is gone when it is closed."""
+    with Database.open(path) as database:
+        fill(database)
+    read([path])
+    assert [one.name for one in path.parent.iterdir()] == [path.name]
+
+
+def test_a_test_is_written_once(path):
+    """The same test, recorded again: the earlier record stays; another seed is another test."""
+    test = TestRecord("t", "k", seed=2**70, when=5, seconds=1.0)
+    hits = hits_of(("gaze", "yes"), first=3)
+    with Database.open(path) as database:
+        database.declare(door_model())
+        for one in (test, replace(test, when=9, seconds=0.5), replace(test, when=2, seconds=3.0)):
+            database.record(one, hits)
+        [entry] = database.coverage().entries
+        assert (entry.record.when, entry.record.seconds, entry.record.seed) == (2, 3.0, 2**70)
+        assert entry.row.firsts.tolist() == [3]
+        database.record(replace(test, seed=-1), hits)
+        assert len(database.coverage().entries) == 2
+        database.record(test, {})
+        assert len(database.coverage().entries) == 3
+
+
+def test_tests_are_in_the_order_of_their_campaigns():
+    """A campaign after the one that began before it; within one, by number, then by time."""
+    with Database.in_memory() as database:
+        database.declare(door_model())
+        for name, campaign, number, when in [
+            ("d", "a", 0, 10),
+            ("b", "z", 2, 1),
+            ("a", "z", 1, 3),
+            ("c", "z", 2, 2),
+        ]:
+            database.record(TestRecord(name, campaign, number=number, when=when), {})
+        order = "".join(entry.record.name for entry in database.coverage().entries)
+    assert order == "abcd"
+
+
+def test_a_model_may_grow(path):
+    """What is declared later is added, in its place; what was hit stays."""
+    small = group_of("g", Subject.COVERPOINT, [Item("b")])
+    large = group_of("g", Subject.COVERPOINT, [Item("a"), Item("b"), Item("c")])
+    with Database.open(path) as database, Database.open(path) as other:
+        database.declare(model_of([small]))
+        database.record(TestRecord("t", when=0), hits_of(("g", "b")))
+        other.declare(model_of([large]))
+        database.record(TestRecord("u", when=1), hits_of(("g", "a"), ("g", "c")))
+    coverage = read([path])
+    hit = [[coverage.items[place][1] for place in one.row.items] for one in coverage.entries]
+    assert hit == [["b"], ["a", "c"]]
+    assert sorted(coverage.model.groups["g"].items) == ["a", "b", "c"]
+
+
+@pytest.mark.parametrize(
+    ("other", "told"),
+    [
+        (group_of("g", Subject.COVERPOINT, [Item("a", goal=2)]), "item `a` of group `g` is a goal"),
+        (group_of("g", Subject.COVERPOINT, [Item("a", BinKind.ILLEGAL)]), "is illegal here"),
+        (group_of("g", Subject.STATES, [Item("a")]), "is about states here, coverpoint in"),
+        (group_of("g", Subject.COVERPOINT, [Item("a")], weight=3), "has weight 3 here, 1 in"),
+        (
+            Group("g", Subject.COVERPOINT, {"a": Item("a")}, 1, {"x": ["a"]}),
+            "has the axes x here, none in",
+        ),
+    ],
+)
+def test_a_contradiction_is_refused_by_name(tmp_path, other, told):
+    """Between what is declared and what is there, and between two files; nothing is written."""
+    own = group_of("g", Subject.COVERPOINT, [Item("a")])
+    for name, group in (("own.cov", own), ("other.cov", other)):
+        with Database.open(tmp_path / name) as database:
+            database.declare(model_of([group]))
+    new = group_of("new", Subject.COVERPOINT, [Item("n")])
+    with Database.open(tmp_path / "own.cov") as database:
+        with pytest.raises(CoverageError, match=told):
+            database.declare(model_of([new, other]))
+        assert database.coverage().model == model_of([own])
+    with pytest.raises(CoverageError, match="other.cov: .*" + told):
+        read([tmp_path / "own.cov", tmp_path / "other.cov"])
+
+
+def test_what_makes_no_sense_is_refused():
+    """Hits of what is in no model, of none, numbers too large, and seconds that are none."""
+    with Database.in_memory() as database:
+        with pytest.raises(CoverageError, match="hit `yes` of `gaze`, which is in no model"):
+            database.record(TestRecord("t"), hits_of(("gaze", "yes")))
+        database.declare(door_model())
+        with pytest.raises(CoverageError, match="0 times"):
+            database.record(TestRecord("t"), hits_of(("gaze", "yes"), count=0))
+        with pytest.raises(CoverageError, match="beyond 2"):
+            database.record(TestRecord("t"), {"gaze": {"yes": Hit(2**64)}})
+        with pytest.raises(CoverageError, match="beyond 2"):
+            database.record(TestRecord("t", number=2**64), {})
+        with pytest.raises(CoverageError, match="nan s"):
+            database.record(TestRecord("t", seconds=float("nan")), {})
+        with pytest.raises(CoverageError, match="no item `x` of `gaze`"):
+            database.explain("gaze", "x", "why")
+        assert database.coverage().entries == []
+
+
+def test_names_are_data(path):
+    """Names that would be something else in SQL, JSON or a path come back as they were."""
+    names = [*hostile_names(60), "'; DROP TABLE tests; --", '"', "%s", "NULL", ""]
+    group = group_of(names[-5], Subject.COVERPOINT, [Item(name) for name in names])
+    with Database.open(path) as database:
+        database.declare(model_of([group]))
+        for when, name in enumerate(names):
+            record = TestRecord(
+                name, name, name, name, system=name, error=name, when=when, verdicts={name: "P"}
+            )
+            database.record(record, hits_of((group.name, name)))
+            database.explain(group.name, name, name)
+    coverage = read([path])
+    assert coverage.model == model_of([group])
+    assert [entry.record.name for entry in coverage.entries] == names
+    assert [*coverage.entries[3].record.verdicts.items()] == [(names[3], Verdict.PASS)]
+
+
+def test_a_name_of_a_file_that_is_no_text_is_kept_readable():
+    """Bytes that are no UTF-8 stand written out."""
+    with Database.in_memory() as database:
+        database.record(TestRecord("t", recording="a\udcff.csv"), {})
+        [entry] = database.coverage().entries
+    assert entry.record.recording == "a\\udcff.csv"
+
+
+def test_a_name_that_is_no_text_is_refused():
+    """Of what is declared, and of a reason."""
+    group = group_of("g", Subject.COVERPOINT, [Item("a"), Item("\udc00")])
+    with Database.in_memory() as database:
+        with pytest.raises(CoverageError, match=r"'\\udc00' has signs that stand for no character"):
+            database.declare(model_of([group]))
+        database.declare(door_model())
+        with pytest.raises(CoverageError, match="stand for no character"):
+            database.explain("gaze", "yes", "\udc00")

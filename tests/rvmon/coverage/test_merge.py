@@ -1,0 +1,36 @@
+"""Merging databases: in any order, in any groups, any number of times, the same comes out."""
+
+import random
+
+import pytest
+from tests.tools.covered import dump, fill, merged, random_database
+
+from rvmon.coverage.database import Database
+
+ORDERS = 500
+
+
+@pytest.mark.slow
+def test_merging_is_commutative_associative_and_idempotent():
+    """Random orders, random brackets, repetitions: equal dumps."""
+    rng = random.Random(5)
+    pools = []
+    for pool in range(40):
+        some = [random_database(10 * pool + one) for one in range(rng.randint(2, 4))]
+        pools.append((some, dump(merged(some))))
+    for _ in range(ORDERS):
+        some, expected = rng.choice(pools)
+        chosen = [*some, *rng.choices(some, k=rng.randint(0, 2))]
+        rng.shuffle(chosen)
+        at = rng.randint(0, len(chosen) - 1)
+        together = merged([*chosen[:at], merged(chosen[at:])] if at else chosen)
+        assert dump(together) == expected
+        together.close()
+
+
+def test_a_database_merged_with_itself_stays():
+    """No hit counts twice."""
+    with Database.in_memory() as database:
+        fill(database)
+        assert dump(merged([database, database])) == dump(database)
+        assert dump(merged([Database.in_memory(), database])) == dump(database)

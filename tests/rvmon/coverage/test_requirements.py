@@ -1,0 +1,111 @@
+"""What runs show of requirements."""
+
+from rvmon import loads
+from rvmon.coverage.hits import score
+
+ANSWER = """signal a, b, c : bool
+requirement R
+  upon a
+  then within 2 s b
+"""
+
+
+def seen(text, samples, group="R", end=None):
+    """By item, how often it was hit."""
+    spec = loads(text)
+    hits = spec.coverage_model.of(spec.recording(samples), end)
+    return {item: hit.count for item, hit in hits.get(group, {}).items()}
+
+
+def answered(after):
+    """A trigger at 1 s and an answer so many seconds later."""
+    return [(0, {"a": False, "b": False}), (1, {"a": True}), (1 + after, {"b": True}), (9, {})]
+
+
+def test_deadlines():
+    """The last tenth, the last instant, and a tick too late."""
+    assert seen(ANSWER, answered(1)) == {"triggered": 1, "passed": 1}
+    assert "just before the deadline" in seen(ANSWER, answered(1.8))
+    assert "just before the deadline" not in seen(ANSWER, answered(2))
+    assert "at the deadline" in seen(ANSWER, answered(2))
+    assert seen(ANSWER, answered(2.000000001)) == {"triggered": 1, "after the deadline": 1}
+
+
+def test_what_only_a_failure_shows_has_no_goal():
+    """A run without failure can show all that is wanted."""
+    spec = loads(ANSWER)
+    groups = spec.coverage_model.model.groups
+    early = [(0, {"a": True, "b": True}), (0.5, {"a": False, "b": False})]
+    late = [(t + 1, values) for t, values in [*answered(2)]]
+    near = [(t + 20, values) for t, values in answered(1.9)]
+    hits = spec.coverage([*early, *late, *near])
+    for name in ("R", "`R` locations", "`R` edges"):
+        found = score(hits, groups[name])
+        assert found.covered == found.items > 0
+
+
+def test_parts_that_decide():
+    """A part of a trigger, and of what is owed, in instants as in verdicts."""
+    text = """signal a, b, c : bool
+requirement R
+  upon a and c
+  then within 2 s (b and c)
+"""
+    always_c = [(0, {"a": False, "b": False, "c": True}), (1, {"a": True}), (2, {"b": True})]
+    assert seen(text, always_c) == {
+        "triggered": 1,
+        "passed": 1,
+        "`a` decides": 2,
+        "`b` decides": 2,
+    }
+    never_c = [(0, {"a": False, "b": True, "c": False}), (1, {"a": True}), (5, {})]
+    assert seen(text, never_c) == {"`c` decides": 1}
+
+
+def test_automata():
+    """Where attempts were, and how they went on."""
+    found = seen(ANSWER, answered(1), "`R` edges")
+    assert found == {"start → A": 1, "A → P": 1}
+    assert seen(ANSWER, answered(1), "`R` locations").keys() == {"start", "A", "P"}
+
+
+def test_attempts_in_doubt_show_nothing():
+    """Neither is it known that there was one, nor where it went."""
+    samples = [(0, {"a": None, "b": False}), (1, {"b": True}), (5, {})]
+    assert seen(ANSWER, samples) == {}
+    assert seen(ANSWER, samples, "`R` edges") == {}
+
+
+def test_requirements_without_automaton_and_with_instances():
+    """What a network judges has no locations; all instances of a requirement are one."""
+    text = """signal a, b : bool
+event pick(id: int)
+event put(id: int)
+requirement Net
+  whenever a then F[2 s, 5 s] b
+requirement Each
+  upon pick.id == i
+  then within 2 s put.id == i
+  for each i in pick.id
+"""
+    spec = loads(text)
+    assert {"Net", "Each", "`Each` edges"} <= spec.coverage_model.model.groups.keys()
+    assert "`Net` edges" not in spec.coverage_model.model.groups
+    samples = [(0, {"a": False, "b": False}), (1, {"pick": {"id": 1}}), (1.5, {"pick": {"id": 2}})]
+    samples += [(2, {"put": {"id": 1}}), (2.5, {"put": {"id": 2}})]
+    hits = spec.coverage(samples)
+    assert hits["Each"]["passed"].count == hits["`Each` edges"]["A → P"].count == 2
+
+
+def test_goals():
+    """A cover goal is shown once in a run."""
+    text = "signal a, b : bool\ncover met = a and b\n"
+    assert seen(text, [(0, {"a": True, "b": True})], "met") == {"shown": 1}
+    assert seen(text, [(0, {"a": True, "b": False})], "met") == {}
+
+
+def test_names_of_groups_are_not_names_of_requirements():
+    """A requirement may be called as the edges of another are not."""
+    text = ANSWER + "requirement `R edges`\n  always a\n"
+    groups = loads(text).coverage_model.model.groups
+    assert {"R", "`R` edges", "R edges", "`R edges` edges"} <= groups.keys()

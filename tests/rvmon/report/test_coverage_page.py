@@ -1,0 +1,172 @@
+"""The page of coverage: what it says, where its links lead, and that names are only names."""
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+from tests.tools.covered import SECOND, door_model, fill, hits_of
+from tests.tools.hostile import hostile_names
+
+from rvmon.coverage.database import Database
+from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
+from rvmon.coverage.record import TestRecord
+from rvmon.report import coverage_tests
+from rvmon.report.coverage_page import coverage_page
+from rvmon.report.coverage_summary import Summary
+
+
+class Reader(HTMLParser):
+    """Elements with their attributes, and the text of the page."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.tags = []
+        self.words = []
+        self.feed(page)
+        self.text = " ".join(" ".join(self.words).split())
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    def dangling(self):
+        """Addresses within the page that are nowhere on it."""
+        ids = {attributes.get("id") for _, attributes in self.tags}
+        links = {attributes["href"] for tag, attributes in self.tags if tag == "a"}
+        return {link for link in links if link.removeprefix("#") not in ids}
+
+
+@pytest.fixture
+def door():
+    with Database.in_memory() as database:
+        fill(database)
+        yield database
+
+
+def page_of(database, earlier=None):
+    before = None if earlier is None else earlier.coverage()
+    return coverage_page(Summary("door.cov", database.coverage(), before, "old.cov"))
+
+
+def test_what_is_wrong_stands_first(door):
+    """Illegal hits, failures, then what is covered, then holes with reasons."""
+    read = Reader(page_of(door))
+    parts = [
+        "46 % covered, 1 illegal item hit, 2 of 4 tests not fine, 6 holes",
+        "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s",
+        "wild-2 crashed: ZeroDivisionError: the gap is 0",
+        "total 46 %",
+        "Holes 6",
+        "near: far never hit : the arm is 1 m long: `far` begins at 1 m",
+        "3 of 4 tests cover as much: calm-2 wild-2 wild-1",
+        "Number of tests: P passed F failed NT not triggered I inconclusive",
+    ]
+    places = [read.text.find(part) for part in parts]
+    assert -1 not in places, dict(zip(parts, places, strict=True))
+    assert places == sorted(places)
+
+
+def test_every_link_leads_somewhere(door):
+    """Cells to the tests that hit them, counts of verdicts to an example, groups to items."""
+    page = page_of(door)
+    read = Reader(page)
+    assert read.dangling() == set()
+    links = [attributes["href"] for tag, attributes in read.tags if tag == "a"]
+    look = door.coverage().items.index(("gaze", "yes"))
+    assert f"#i{look}" in links
+    assert {"#t0", "#t1", "#t2", "#t3", "#g2"} <= set(links)
+    assert not re.search(r"https?:|<script|<link|url\(", page)
+
+
+def test_a_cross_is_a_heat_map(door):
+    """Its cells say by look and sign what they are."""
+    looks = [
+        attributes.get("class")
+        for tag, attributes in Reader(page_of(door)).tags
+        if tag == "td" and attributes.get("class") in {"covered", "hole", "ignored", "illegal hit"}
+    ]
+    assert looks[:6] == ["covered", "hole", "ignored", "illegal hit", "hole", "hole"]
+
+
+def test_the_growth_of_all_and_of_each_strategy(door):
+    """A line each, and a dot at every test that added something."""
+    read = Reader(page_of(door))
+    lines = [attributes for tag, attributes in read.tags if tag == "polyline"]
+    assert [line["class"] for line in lines] == ["all", "s0", "s1"]
+    assert lines[0]["points"].startswith("0,100 250,100 250,")
+    dots = [a for tag, a in read.tags if tag == "a" and a.get("class", "").startswith("dot")]
+    assert [(dot["class"], dot["href"]) for dot in dots] == [
+        ("dot s0", "#t0"),
+        ("dot s0", "#t1"),
+        ("dot s1", "#t3"),
+    ]
+    assert "random alone: 33 % with 2 tests" in read.text
+
+
+def test_campaigns_are_compared(door):
+    """What is new, lost, and judged otherwise."""
+    with Database.in_memory() as later:
+        later.declare(door_model())
+        later.record(
+            TestRecord("calm-1", "week 2", "random", seed=1, verdicts={"D1": "F"}),
+            hits_of(("near", "far")),
+        )
+        read = Reader(page_of(later, door))
+    assert "old.cov : 46 % → 8 %" in read.text
+    assert "Newly covered 1 near: far" in read.text
+    assert "calm-1: D1 P → F" in read.text
+    assert read.dangling() == set()
+
+
+def test_of_many_tests_those_have_a_line_that_are_spoken_of(door, monkeypatch):
+    """And every link still leads somewhere."""
+    monkeypatch.setattr(coverage_tests, "MOST", 10)
+    for number in range(50):
+        record = TestRecord(f"dull-{number}", "week 2", number=number, when=90 * SECOND)
+        door.record(record, hits_of(("gaze", "yes")))
+    read = Reader(page_of(door))
+    assert "50 tests that added nothing and went well" in read.text
+    assert read.dangling() == set()
+
+
+def test_names_are_no_markup():
+    """Whatever groups, items and tests are called, the page has the same elements."""
+
+    def elements(names):
+        axes = {names[0]: names[:9], names[1]: names[9:12], names[2]: names[:2]}
+        crossed = [
+            combination([one, two, three])
+            for one in names[:9]
+            for two in names[9:12]
+            for three in names[:2]
+        ]
+        groups = [
+            group_of(names[5], Subject.COVERPOINT, [Item(name) for name in names]),
+            Group(names[6], Subject.CROSS, {name: Item(name) for name in crossed}, axes=axes),
+        ]
+        with Database.in_memory() as database:
+            database.declare(model_of(groups))
+            for when, name in enumerate(names):
+                record = TestRecord(
+                    name, name, name, error=name, ending="hung", verdicts={name: "F"}, when=when
+                )
+                database.record(record, hits_of((names[5], name)))
+                database.explain(names[6], crossed[0], name)
+            read = Reader(page_of(database))
+        assert read.dangling() == set()
+        return [tag for tag, _ in read.tags]
+
+    hostile = list(hostile_names(40))
+    assert elements(hostile) == elements([f"n{number:02}" for number in range(40)])
+
+
+def test_nothing_is_a_page_too():
+    """An empty database, and a model without tests."""
+    with Database.in_memory() as database:
+        assert "nothing to cover" in Reader(page_of(database)).text
+        database.declare(door_model())
+        read = Reader(page_of(database))
+    assert "0 % covered, 11 holes" in read.text
+    assert read.dangling() == set()
