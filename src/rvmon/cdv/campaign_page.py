@@ -44,7 +44,7 @@ def campaign_page(
     body.extend(
         _coverage(figures, presentation, summary.kind)
         for figures in summary.robots.values()
-        if any(one.statements for one in figures.strategies.values())
+        if any(one.statements or one.states for one in figures.strategies.values())
     )
     body.extend(
         _known(robot, figures, tests) for robot, figures in summary.robots.items() if figures.known
@@ -117,8 +117,8 @@ def _coverage(figures: RobotSummary, presentation: Presentation, kind: str) -> E
                 "figcaption",
                 None,
                 e("b", None, name),
-                f" {strategy.tests} tests, {_unbroken(strategy.total)} of "
-                f"{strategy.total.statements} statements",
+                f" {strategy.tests} tests",
+                _share_of_statements(strategy.total) if kind else None,
             ),
             presentation.chart(strategy),
         )
@@ -127,15 +127,16 @@ def _coverage(figures: RobotSummary, presentation: Presentation, kind: str) -> E
     return e(
         "section",
         None,
-        e("h2", None, f"{figures.title}: statement coverage by {kind}"),
+        e("h2", None, f"{figures.title}: {f'statement coverage by {kind}' if kind else 'states'}"),
         e("p", {"class": "soft"}, presentation.chart_legend),
         e("div", {"class": "charts"}, *charts),
     )
 
 
-def _unbroken(total: BlockCoverage) -> str:
+def _share_of_statements(total: BlockCoverage) -> str:
     """The share that ran; a line does not end before its sign."""
-    return percent_text(total.covered, total.statements).replace(" ", "\N{NO-BREAK SPACE}")
+    share = percent_text(total.covered, total.statements).replace(" ", "\N{NO-BREAK SPACE}")
+    return f", {share} of {total.statements} statements"
 
 
 def _known(robot: str, figures: RobotSummary, tests: Mapping[tuple[str, str], str]) -> ET.Element:

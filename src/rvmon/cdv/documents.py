@@ -128,5 +128,6 @@ def _coverage(figures: StrategySummary, kind: str) -> dict[str, object]:
     document["transitions"] = [
         {"from": source, "to": target, "tests": tests}
         for (source, target), tests in sorted(figures.transitions.items())
+        if tests
     ]
     return document

@@ -88,4 +88,4 @@ def _without_result(
     """The outcome of a test whose process was ended: nothing is known of it."""
     ending = Ending.HUNG if ended.timed_out else Ending.LOST
     verdicts = dict.fromkeys(requirements[job.robot], Verdict.INCONCLUSIVE)
-    return Outcome(verdicts, {}, ending, ended.why, 0, {}, ended.seconds), None
+    return Outcome(verdicts, {}, {}, ending, ended.why, 0, {}, ended.seconds), None

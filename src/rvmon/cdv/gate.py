@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure
 from rvmon.cdv.outcome import Ending, Played, Results
 from rvmon.errors import UnknownNameError
+from rvmon.loading import load
 from rvmon.verdict.verdict import Verdict
 
 
@@ -63,40 +64,41 @@ def judge_campaign(
     test was played in which it could.
 
     Args:
-        results: what was played.
+        results: what was played; of a campaign that was cut short only the tests are judged.
         requirements: by robot, the ids of those that were judged.
         strict: verdicts that are inconclusive are wrong as well, unless the test knows them, and so
             are requirements that were never triggered: that no test passed or failed.
-
-    Raises:
-        UnknownNameError: a failure is expected of what does not exist.
     """
-    campaign = results.plan.campaign
-    _refuse_unknown(campaign, requirements)
-    tests = tuple(_judged(one, campaign.expected_failures, strict) for one in results.played)
-    checks = dict(_expected_failures(campaign.expected_failures, results.played))
-    if strict and not results.cut_short:
-        checks |= _triggered(requirements, results.played)
+    expected = results.plan.campaign.expected_failures
+    tests = tuple(_judged(one, expected, strict=strict) for one in results.played)
+    checks: dict[str, str] = {}
+    if not results.cut_short:
+        checks |= _expected_failures(expected, results.played)
+        checks |= _triggered(requirements, results.played) if strict else {}
     return CampaignJudgement(tests, checks)
 
 
-def _judged(one: Played, expected: Sequence[ExpectedFailure], strict: bool) -> TestJudgement:
+def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -> TestJudgement:
     test, outcome = one.job.test, one.outcome
-    wrong, known = [], []
+    wrong: list[str] = []
+    known: list[str] = []
     if outcome.ending is not Ending.FINISHED and test.mutation is None:
         wrong.append(f"{outcome.ending}: {outcome.error}")
+    for name, answer in test.expected.items() if outcome.verdicts else ():
+        if name not in outcome.verdicts:
+            wrong.append(f"{name} is to be {answer}, and there is no such requirement")
+        elif outcome.verdicts[name] != answer:
+            wrong.append(f"{name} is {outcome.verdicts[name]}, not {answer}")
     for name, verdict in outcome.verdicts.items():
-        answer = test.expected.get(name)
-        if answer is not None:
-            if answer != verdict:
-                wrong.append(f"{name} is {verdict}, not {answer}")
-        elif verdict is Verdict.FAIL and test.mutation is None:
+        if name in test.expected or test.mutation is not None:
+            continue  # a planted fault says nothing about the robot
+        if verdict is Verdict.FAIL:
             reasons = [why.reason for why in expected if _is_about(why, one, name)]
             if reasons:
                 known.append(f"{name} failed, as expected: {reasons[0]}")
             else:
-                wrong.append(f"{name} failed")
-        elif verdict is Verdict.INCONCLUSIVE and strict and test.mutation is None:
+                wrong.append(outcome.reasons.get(name, f"{name} failed"))
+        elif verdict is Verdict.INCONCLUSIVE and strict:
             wrong.append(f"{name} is inconclusive")
     return TestJudgement(one, tuple(wrong), tuple(known))
 
@@ -115,7 +117,8 @@ def _is_about(why: ExpectedFailure, one: Played, requirement: str) -> bool:
 
 def _expected_failures(
     expected: Sequence[ExpectedFailure], played: Sequence[Played]
-) -> Iterator[tuple[str, str]]:
+) -> dict[str, str]:
+    checks = {}
     for why in expected:
         verdicts = [
             one.outcome.verdicts[why.requirement]
@@ -124,7 +127,8 @@ def _expected_failures(
         ]
         if verdicts:
             missing = "" if Verdict.FAIL in verdicts else f"it did not, in {len(verdicts)} tests"
-            yield f"{_told(why)} is expected to fail ({why.reason})", missing
+            checks[f"{_told(why)} is expected to fail ({why.reason})"] = missing
+    return checks
 
 
 def _told(why: ExpectedFailure) -> str:
@@ -150,19 +154,26 @@ def _triggered(
     return checks
 
 
-def _refuse_unknown(campaign: Campaign, requirements: Mapping[str, Sequence[str]]) -> None:
-    """A misspelt name would expect nothing; a test's is not known beforehand."""
-    names = {name for several in requirements.values() for name in several}
-    kinds: dict[str, set[str]] = {
-        "requirement": names,
-        "strategy": {*campaign.strategies},
-        "robot": {*campaign.robots},
+def refuse_unknown(campaign: Campaign) -> None:
+    """See that all that is expected to fail exists; a test's name is only known with the tests.
+
+    Args:
+        campaign: as it was written.
+
+    Raises:
+        UnknownNameError: a failure is expected of what there is not.
+        SpecError: the requirements of a robot are wrong.
+    """
+    specs = [load(robot.spec) for robot in campaign.robots.values() if robot.spec is not None]
+    there_is = {
+        "requirement": {name for spec in specs for name in spec.requirements},
+        "strategy": {"", *campaign.strategies},
+        "robot": {"", *campaign.robots},
     }
     for why in campaign.expected_failures:
-        for kind, known in kinds.items():
-            name = getattr(why, kind)
-            if name and known and name not in known:
+        for kind, known in there_is.items():
+            if (name := getattr(why, kind)) not in known:
+                names = ", ".join(sorted(known - {""}))
                 raise UnknownNameError(
-                    f"a failure is expected of the {kind} `{name}`: there are "
-                    f"{', '.join(sorted(known))}"
+                    f"a failure is expected of the {kind} `{name}`: there are {names}"
                 )

@@ -77,7 +77,7 @@ class Meter:
 
 
 def code_groups(code: Code) -> list[Group]:
-    """What there is to be covered, a group of statements, and one of branches, for each block.
+    """What there is to be covered: statements of each block, and branches where it has some.
 
     Args:
         code: the blocks.
@@ -110,8 +110,9 @@ def _groups(code: Code, files: Mapping[str, _File]) -> list[tuple[Group, str]]:
         groups.append((group, block.path))
         if code.branches:
             items = [Item(_arc(*arc)) for arc in sorted(file.branches) if arc[0] in block.lines]
-            group = group_of(branches_name(block.name), Subject.BRANCHES, items)
-            groups.append((group, block.path))
+            if items:
+                group = group_of(branches_name(block.name), Subject.BRANCHES, items)
+                groups.append((group, block.path))
     return groups
 
 

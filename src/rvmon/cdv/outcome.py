@@ -27,6 +27,7 @@ class Outcome:
     Attributes:
         verdicts: by requirement; empty if nothing was judged. Of a test that hung or was lost
             nothing is known: it is inconclusive.
+        reasons: by requirement that failed, when and why it did first.
         hits: of states, transitions, code, and what the campaign collects beside.
         ending: `finished`; `crashed` if code raised an exception, in which case it is judged as
             far as it went; `hung` if it was ended; `lost` if its process was.
@@ -37,6 +38,7 @@ class Outcome:
     """
 
     verdicts: Mapping[str, Verdict]
+    reasons: Mapping[str, str]
     hits: Hits
     ending: Ending
     error: str | None

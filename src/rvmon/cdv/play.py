@@ -6,18 +6,18 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from rvmon.cdv.campaign import Collector, Robot
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.code import Code
 from rvmon.cdv.files import TestError
+from rvmon.cdv.measured import hits_of_states
 from rvmon.cdv.meter import Meter
 from rvmon.cdv.outcome import Ending, Outcome
 from rvmon.cdv.plan import Job
 from rvmon.cdv.system import Observer, Run, System
-from rvmon.coverage.hits import Hit
+from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import RvmonError
 from rvmon.loading import load
 from rvmon.verdict.verdict import Verdict
@@ -25,10 +25,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.cdv.abstract_test import Test
     from rvmon.session import Spec
-
-STATES = "states"
-TRANSITIONS = "transitions"
-"""Names of groups of coverage."""
+    from rvmon.verdict.report import Report
 
 
 def player(
@@ -88,15 +85,18 @@ class _Bench:
         )
         with nullcontext() if self._marked else measured:
             run = run_of(self._system, test, observer)
-        hits: dict[str, Mapping[str, Hit]] = {**_hits_of_states(run)}
+        hits = hits_of_states(run)
         if self._meter is not None:
             hits |= self._meter.hits()
         verdicts: Mapping[str, Verdict] = {}
+        reasons: Mapping[str, str] = {}
         if self._checker is not None:
-            verdicts = self._checker.finish(run.end_ns).verdicts
+            report = self._checker.finish(run.end_ns)
+            verdicts, reasons = report.verdicts, _reasons(report)
             hits |= self._checker.hits(run.end_ns)
         return Outcome(
             verdicts=verdicts,
+            reasons=reasons,
             hits=hits,
             ending=Ending.FINISHED if run.error is None else Ending.CRASHED,
             error=run.error,
@@ -140,34 +140,12 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
     return run
 
 
+def _reasons(report: Report) -> dict[str, str]:
+    """The first failure of each requirement that failed."""
+    failed = (name for name, verdict in report.verdicts.items() if verdict is Verdict.FAIL)
+    first = {name: next(report.of(name, Verdict.FAIL), None) for name in failed}
+    return {name: shown_line(str(attempt)) for name, attempt in first.items() if attempt}
+
+
 def _told(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
-
-
-def transition(source: str, target: str) -> str:
-    """The name of a transition."""
-    return f"{source} → {target}"
-
-
-def source_and_target(name: str) -> tuple[str, str]:
-    """The states of a transition of that name."""
-    source, _, target = name.partition(" → ")
-    return source, target
-
-
-def _hits_of_states(run: Run) -> dict[str, dict[str, Hit]]:
-    """How often each state was entered and each transition taken, and when first."""
-    entered = [(t_ns, state) for t_ns, state in run.states]
-    taken = [
-        (t_ns, transition(source, target)) for (_, source), (t_ns, target) in pairwise(entered)
-    ]
-    found = {STATES: _counted(entered), TRANSITIONS: _counted(taken)}
-    return {group: items for group, items in found.items() if items}
-
-
-def _counted(happened: list[tuple[int, str]]) -> dict[str, Hit]:
-    hits: dict[str, Hit] = {}
-    for t_ns, name in happened:
-        known = hits.get(name)
-        hits[name] = Hit(1, t_ns) if known is None else Hit(known.count + 1, known.first)
-    return hits

@@ -10,7 +10,7 @@ from pathlib import Path
 from rvmon.cdv.documents import table_document
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, StrategySummary
 from rvmon.cdv.tables import RobotTables, robot_tables
-from rvmon.report.markup import Child, e
+from rvmon.report.markup import e
 from rvmon.report.percent import percent_text
 from rvmon.report.table import VerdictTable
 
@@ -21,28 +21,38 @@ def work_done(summary: CampaignSummary) -> str:
 
 
 def block_chart(figures: StrategySummary) -> ET.Element:
-    """A table of the shares of all blocks under one strategy, and of the transitions taken."""
-    rows = [
-        e(
-            "tr",
-            None,
-            e("th", {"scope": "row"}, name),
-            _share(one),
-            _share(figures.branches.get(name)),
-        )
+    """Tables of one strategy: shares of the blocks, tests that entered states, and went on."""
+    blocks = [
+        _row(name, _share(one), _share(figures.branches.get(name, NOTHING)))
         for name, one in figures.statements.items()
     ]
-    head = e("tr", None, *(e("th", None, name) for name in ("", "statements", "branches")))
-    taken: list[Child] = []
-    for (source, target), tests in figures.transitions.items():
-        taken += [e("dt", None, f"{source} → {target}"), e("dd", None, f"{tests} tests")]
-    blocks = e("table", None, e("thead", None, head), e("tbody", None, *rows))
-    return e("div", None, blocks, e("dl", {"class": "facts"}, *taken) if taken else None)
+    states = [_row(state, str(tests)) for state, tests in figures.states.items()]
+    transitions = [
+        _row(f"{source} → {target}", str(tests))
+        for (source, target), tests in figures.transitions.items()
+    ]
+    return e(
+        "div",
+        None,
+        _table(("", "statements", "branches"), blocks),
+        _table(("state", "tests"), states),
+        _table(("transition", "tests"), transitions),
+    )
 
 
-def _share(block: BlockCoverage | None) -> ET.Element:
-    shown = "" if block in (None, NOTHING) else percent_text(block.covered, block.statements)
-    return e("td", None, shown)
+def _table(titles: Sequence[str], rows: Sequence[ET.Element]) -> ET.Element | None:
+    if not rows:
+        return None
+    head = e("tr", None, *(e("th", None, title) for title in titles))
+    return e("table", None, e("thead", None, head), e("tbody", None, *rows))
+
+
+def _row(name: str, *cells: str) -> ET.Element:
+    return e("tr", None, e("th", {"scope": "row"}, name), *(e("td", None, cell) for cell in cells))
+
+
+def _share(block: BlockCoverage) -> str:
+    return percent_text(block.covered, block.statements) if block.statements else ""
 
 
 def _option_of_robot(robot: str) -> Sequence[str]:
@@ -79,6 +89,9 @@ class Presentation:
     work: Callable[[CampaignSummary], str] = work_done
     page_work: Callable[[CampaignSummary], str] = work_done
     chart: Callable[[StrategySummary], ET.Element] = block_chart
-    chart_legend: str = "The share of statements that ran and of branches that were taken."
+    chart_legend: str = (
+        "The share of statements that ran and of branches that were taken; how many tests entered "
+        "a state, and went from one to another."
+    )
     robot_words: Callable[[str], Sequence[str]] = _option_of_robot
     write_more: Callable[[Path, frozenset[str]], None] = _nothing_more

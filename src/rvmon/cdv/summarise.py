@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 
-from rvmon.cdv.meter import branches_name, code_groups, statements_name
+from rvmon.cdv.measured import STATES, TRANSITIONS, measured_groups, source_and_target
+from rvmon.cdv.meter import branches_name, statements_name
 from rvmon.cdv.outcome import Ending, Outcome, Played, Results
-from rvmon.cdv.play import STATES, TRANSITIONS, source_and_target
 from rvmon.cdv.summary import (
     BlockCoverage,
     CampaignSummary,
@@ -29,7 +30,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
         specs: by robot, what judged it; one that is missing was not judged.
     """
     campaign = results.plan.campaign
-    groups = {} if campaign.code is None else {one.name: one for one in code_groups(campaign.code)}
+    groups = {group.name: group for group in measured_groups(campaign)}
     blocks = [] if campaign.code is None else [block.name for block in campaign.code.blocks]
     robots = {}
     for name, robot in campaign.robots.items():
@@ -38,7 +39,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
         by_strategy = _by_strategy(played)
         robots[name] = RobotSummary(
             title=robot.title or name,
-            spec=robot.spec_name or str(robot.spec or ""),
+            spec=robot.spec_name or _shown(robot.spec),
             requirements=texts,
             strategies={
                 strategy: _strategy(several, tuple(texts), groups, blocks)
@@ -65,6 +66,14 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
         kind="" if campaign.code is None else campaign.code.kind,
         control="" if campaign.control is None else campaign.control.name,
     )
+
+
+def _shown(path: str | Path | None) -> str:
+    """A path as people would write it here."""
+    here = Path.cwd()
+    if path is None or not Path(path).is_relative_to(here):
+        return str(path or "")
+    return str(Path(path).relative_to(here))
 
 
 def _texts(spec: Spec | None) -> Mapping[str, str]:
@@ -100,10 +109,10 @@ def _strategy(
         counts=_counts(outcomes, requirements),
         statements=statements,
         branches=branches,
-        states=_tests_that_hit(STATES, outcomes),
+        states=_counted(groups[STATES], outcomes),
         transitions={
             source_and_target(name): tests
-            for name, tests in _tests_that_hit(TRANSITIONS, outcomes).items()
+            for name, tests in _counted(groups[TRANSITIONS], outcomes).items()
         },
         crashes=_errors(played, Ending.CRASHED),
         hung=_errors(played, Ending.HUNG),
@@ -130,6 +139,11 @@ def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> dict[st
 
 def _tests_that_hit(group: str, outcomes: Sequence[Outcome]) -> Counter[str]:
     return Counter(item for one in outcomes for item in one.hits.get(group, ()))
+
+
+def _counted(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
+    """How many tests hit each item: the declared ones, then what else was seen."""
+    return {**dict.fromkeys(group.items, 0), **_tests_that_hit(group.name, outcomes)}
 
 
 def _coverage(group: Group, outcomes: Sequence[Outcome]) -> BlockCoverage:

@@ -53,8 +53,8 @@ class StrategySummary:
         counts: of tests per verdict, by requirement.
         statements: of the measured code, by block; empty if none is measured.
         branches: by block; empty if they are not measured.
-        states: how many tests entered each.
-        transitions: how many tests took each.
+        states: how many tests entered each, of those that are declared also none.
+        transitions: how many tests took each, likewise.
         crashes: what the code under test raised, by test.
         hung: why, by test that was ended.
         lost: why, by test whose process was ended.

@@ -30,7 +30,7 @@ def write_pages(
     results: Results,
     specs: Mapping[str, Spec],
     command: str,
-) -> None:
+) -> list[str]:
     """Write `report.html`, and a page per example to `runs/`.
 
     Args:
@@ -40,10 +40,15 @@ def write_pages(
         results: its outcomes.
         specs: by robot, what judged it; empty if nothing was judged.
         command: runs the campaign again.
+
+    Returns:
+        The tests that came out otherwise when they were played again for their pages.
     """
     campaign = results.plan.campaign
     replays = _Replays(campaign, specs)
+    verdicts = {(one.job.robot, one.job.test.name): one.outcome.verdicts for one in results.played}
     addresses: dict[tuple[str, str], str] = {}
+    otherwise: list[str] = []
     examples = choose_examples(results.played)
     (folder / RUNS).mkdir(parents=True, exist_ok=True)
     for job in examples.jobs if specs else ():
@@ -56,6 +61,8 @@ def write_pages(
             others=_others(job, replay, results.played, replays),
             back=f"../{REPORT}",
         )
+        if replay.report.verdicts != verdicts[job.robot, job.test.name]:
+            otherwise.append(job.test.name)
         address = f"{RUNS}/{job.robot}-{job.test.name}.html"
         write_whole(folder / address, text)
         addresses[job.robot, job.test.name] = address
@@ -67,6 +74,7 @@ def write_pages(
         summary, tables, campaign.presentation, command=command, examples=cells, tests=addresses
     )
     write_whole(folder / REPORT, page)
+    return otherwise
 
 
 class _Replays:
@@ -99,6 +107,6 @@ def _others(
 
 def _command(folder: Path, job: Job, campaign: Campaign) -> str:
     words: list[object] = ["replay", folder / TESTS / f"{job.test.name}.json"]
-    if job.test.robot is None:
+    if job.test.robot is None and len(campaign.robots) > 1:
         words += campaign.presentation.robot_words(job.robot)
     return typed(campaign.program, words)

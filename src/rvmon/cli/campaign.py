@@ -144,9 +144,11 @@ def judged_by(campaign: Campaign, spec: str | None) -> Campaign:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    from rvmon.cdv.gate import refuse_unknown
     from rvmon.cdv.junit import junit_xml
     from rvmon.cli.campaign_run import conduct, show
 
+    refuse_unknown(arguments.campaign)
     campaign = judged_by(arguments.campaign, arguments.spec)
     robots = names_of(arguments.robot, tuple(campaign.robots), "robot")
     campaign = replace(campaign, robots={name: campaign.robots[name] for name in robots})

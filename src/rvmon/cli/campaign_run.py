@@ -95,7 +95,12 @@ def conduct(
             write_tests(folder, results)
             played = frozenset(one.job.test.strategy for one in results.played)
             campaign.presentation.write_more(folder, played)
-            write_pages(folder, summary, tables, results, specs, again)
+            otherwise = write_pages(folder, summary, tables, results, specs, again)
+        if otherwise:
+            warn(
+                f"played again, these came out otherwise: {', '.join(otherwise)}: a run must "
+                "depend on its test alone, and its random numbers on the test's seed"
+            )
         if remark := left_over(folder, before):
             warn(remark)
     if kept is not None and results.cut_short:

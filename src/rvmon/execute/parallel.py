@@ -13,6 +13,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import islice
+from math import inf
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rvmon.errors import RvmonError, WorkerLostError
@@ -27,6 +28,9 @@ _Result = TypeVar("_Result")
 
 MOST_TASKS = 256
 """Tasks that a worker is given at a time, at most."""
+
+BEGIN_S = 60.0
+"""Seconds that a worker may take to begin, beside those for a task."""
 
 
 def execute(
@@ -53,7 +57,8 @@ def execute(
         what: the word for a task in messages.
         instead: the result of a task whose process was ended; the other tasks are done all the
             same, by other processes.
-        timeout_s: with `instead`, seconds after which the process of a task is ended.
+        timeout_s: with `instead`, seconds after which the process of a task is ended; that it
+            begins may take a minute more.
 
     Raises:
         WorkerLostError: a process was ended from outside, and there is no `instead`; the task that
@@ -88,6 +93,7 @@ class _Worker:
         given: tasks of its last chunk.
         size: tasks of its next chunk.
         since: when it had begun the first of these at the latest, on the clock that only goes on.
+        is_ready: whether it has begun at all.
     """
 
     process: BaseProcess
@@ -96,6 +102,7 @@ class _Worker:
     given: int = 0
     size: int = 1
     since: float = 0.0
+    is_ready: bool = False
 
 
 class _Pool:
@@ -218,7 +225,8 @@ class _Pool:
             self._lose(worker, timed_out=False)
             return
         worker.since = time.monotonic()
-        if answer is None:  # it is ready for its first task
+        if answer is None:
+            worker.is_ready = True
             return
         failed, is_last, result = answer
         number, _ = worker.tasks.popleft()
@@ -235,12 +243,18 @@ class _Pool:
         """Seconds until the first task will have taken too long."""
         if self._timeout_s is None:
             return None
-        return max(0.0, min(one.since for one in busy) + self._timeout_s - time.monotonic())
+        return max(0.0, min(self._left_s(worker) for worker in busy))
+
+    def _left_s(self, worker: _Worker) -> float:
+        """Seconds that a worker's task may still take."""
+        if self._timeout_s is None:
+            return inf
+        most = self._timeout_s if worker.is_ready else self._timeout_s + BEGIN_S
+        return worker.since + most - time.monotonic()
 
     def _end_if_late(self, worker: _Worker) -> None:
         """End a worker whose task takes too long, unless its answer has just come."""
-        late = self._timeout_s is not None and time.monotonic() - worker.since >= self._timeout_s
-        if late and not worker.connection.poll():
+        if self._left_s(worker) <= 0 and not worker.connection.poll():
             worker.process.kill()
             self._lose(worker, timed_out=True)
 

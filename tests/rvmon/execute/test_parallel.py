@@ -203,3 +203,53 @@ def test_many_traces_are_judged_alike_by_processes(tmp_path: Path):
         assert found == alone[:50]
         assert isinstance(error, TraceError)
         assert "50.csv" in str(error)
+
+
+def told(task, ended):
+    """The task and how its process ended, in the place of a result."""
+    return task, ended.timed_out, ended.why
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_a_task_whose_process_ends_can_have_a_result(jobs):
+    """Also one that takes too long, and those that come behind are done by others."""
+
+    def work(number):
+        if number == 20:
+            time.sleep(600)
+        if number == 40:
+            os._exit(3)
+        return halved(number)
+
+    tasks = [*range(0, 20, 2), 13, 20, *range(22, 40, 2), 40, 50, 60]
+    found = [*execute(tasks, doing(work), jobs=jobs, instead=told, timeout_s=1)]
+    assert found == [
+        *range(10),
+        (13, False, "its process was ended by signal SIGKILL"),
+        (20, True, "it took more than 1 s"),
+        *range(11, 20),
+        (40, False, "its process ended, with exit code 3"),
+        25,
+        30,
+    ]
+
+
+@pytest.mark.process
+def test_an_error_is_no_result(tmp_path):
+    """A task that raises ends the work, whatever stands for those whose process ended."""
+    found, error = given(execute([2, 7, 8], doing(halved), jobs=2, instead=told))
+    assert found == [1]
+    assert isinstance(error, TraceError)
+
+
+@pytest.mark.process
+def test_to_begin_takes_no_time_of_a_task(tmp_path):
+    """What is slow to begin does its tasks all the same."""
+
+    def begin():
+        time.sleep(0.6)
+        return str
+
+    found = [*execute([1, 2], begin, jobs=1, instead=told, timeout_s=0.5)]
+    assert found == ["1", "2"]

@@ -1,0 +1,103 @@
+"""Tests of the base in a simulated corridor: `python campaign.py run --tests 50 --out out`."""
+
+import random
+import sys
+from functools import partial
+from math import hypot
+from pathlib import Path
+
+import msgspec
+from base import Base, BrakesLate
+
+from rvmon import cdv
+from rvmon.cli.campaign import main
+
+HERE = Path(__file__).parent
+STEP_NS = 50_000_000
+HORIZON_NS = 60_000_000_000
+CORRIDOR_M = 12.0
+
+
+class Person(msgspec.Struct, frozen=True):
+    """Somebody who crosses the corridor."""
+
+    start_s: float
+    at_m: float
+    pace: float
+
+    def distance(self, x_m: float, seconds: float) -> float:
+        """Metres from the base while the person is there."""
+        y_m = self.pace * (seconds - self.start_s) - 3
+        return hypot(self.at_m - x_m, y_m) if abs(y_m) <= 3 else 100.0
+
+
+class Walk(cdv.Test):
+    """A test: who crosses where and when."""
+
+    people: tuple[Person, ...]
+
+
+class Corridor:
+    """The system under test: `play` is all that a campaign asks of it."""
+
+    def play(self, test: Walk, observer: cdv.Observer) -> cdv.Run:
+        """Drive until the base has arrived, or time is over."""
+        base = BrakesLate(CORRIDOR_M) if test.mutation == "brakes-late" else Base(CORRIDOR_M)
+        states = []
+        for t_ns in range(0, HORIZON_NS, STEP_NS):
+            person = min(one.distance(base.x_m, t_ns / 1e9) for one in test.people)
+            base.step(person, STEP_NS / 1e9)
+            if not states or states[-1][1] != base.state:
+                states.append((t_ns, base.state))
+            observer(t_ns, {"speed": base.speed, "person": person})
+            if base.state == "arrived" and base.speed == 0:
+                observer(t_ns + 1, {"arrived": True})
+                return cdv.Run(end_ns=t_ns + 1, states=states, figures={"metres": base.x_m})
+        return cdv.Run(end_ns=HORIZON_NS, states=states, figures={"metres": base.x_m})
+
+
+def walks(strategy: str, count: int, seed: int) -> list[Walk]:
+    """Up to three people, anywhere and at any time, or about where the base will be then."""
+    tests = []
+    for number in range(count):
+        rng = random.Random(f"{strategy}/{seed}/{number}")
+        people = []
+        for _ in range(rng.randint(1, 3)):
+            at_m = rng.uniform(0, CORRIDOR_M)
+            start_s = rng.uniform(0, 60) if strategy == "anyone" else at_m - rng.uniform(1, 5)
+            people.append(Person(start_s, at_m, rng.uniform(0.5, 1.5)))
+        name = f"{strategy}-{number:03}"
+        tests.append(Walk(name=name, strategy=strategy, seed=number, people=tuple(people)))
+    return tests
+
+
+def directed(_count: int, _seed: int) -> list[Walk]:
+    """Two people come so near that the base has to wait: one with a planted fault does not."""
+    people = (Person(0.0, 5.0, 0.4), Person(2.0, 3.4, 0.4))
+    good = Walk(
+        name="gives-way",
+        strategy="directed",
+        seed=0,
+        people=people,
+        expected={"B1": "P", "B2": "P", "B3": "P"},
+    )
+    bad = {"name": "brakes-late", "mutation": "brakes-late", "expected": {"B2": "F"}}
+    return [good, msgspec.structs.replace(good, **bad)]
+
+
+campaign = cdv.Campaign(
+    name="base and people",
+    test=Walk,
+    strategies={
+        "anyone": partial(walks, "anyone"),
+        "in-the-way": partial(walks, "in-the-way"),
+        "directed": directed,
+    },
+    robots={"base": cdv.Robot(Corridor, HERE / "people.rv")},
+    code=cdv.Code(cdv.blocks_of(HERE / "base.py")),
+    states=("drive", "slow", "wait", "arrived"),
+    sources=(HERE,),
+)
+
+if __name__ == "__main__":
+    sys.exit(main(campaign))

@@ -1,0 +1,56 @@
+"""What a campaign measures itself: states and transitions of the robot, and its code."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from itertools import pairwise
+
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.meter import code_groups
+from rvmon.cdv.system import Run
+from rvmon.coverage.hits import Hit
+from rvmon.coverage.model import Group, Item, Subject, group_of
+
+STATES = "states"
+TRANSITIONS = "transitions"
+"""Names of groups."""
+
+_ARROW = " → "
+
+
+def measured_groups(campaign: Campaign) -> list[Group]:
+    """What there is to be covered; a group of which nothing is declared has no items.
+
+    Raises:
+        RvmonError: code is measured, and coverage.py is not installed, or a file is no Python.
+    """
+    transitions = [_ARROW.join(pair) for pair in campaign.transitions]
+    return [
+        group_of(STATES, Subject.STATES, [*map(Item, campaign.states)]),
+        group_of(TRANSITIONS, Subject.TRANSITIONS, [*map(Item, transitions)]),
+        *(code_groups(campaign.code) if campaign.code is not None else ()),
+    ]
+
+
+def source_and_target(transition: str) -> tuple[str, str]:
+    """The states of a transition, from its name."""
+    source, _, target = transition.partition(_ARROW)
+    return source, target
+
+
+def hits_of_states(run: Run) -> dict[str, Mapping[str, Hit]]:
+    """How often each state was entered and each transition taken, and when first."""
+    taken = (
+        (t_ns, _ARROW.join((source, target)))
+        for (_, source), (t_ns, target) in pairwise(run.states)
+    )
+    found = {STATES: _counted(run.states), TRANSITIONS: _counted(taken)}
+    return {group: items for group, items in found.items() if items}
+
+
+def _counted(happened: Iterable[tuple[int, str]]) -> dict[str, Hit]:
+    hits: dict[str, Hit] = {}
+    for t_ns, name in happened:
+        known = hits.get(name)
+        hits[name] = Hit(1, t_ns) if known is None else Hit(known.count + 1, known.first)
+    return hits

@@ -1,0 +1,132 @@
+"""Whatever a test does, it has a result, and the others go on."""
+
+import multiprocessing
+
+import msgspec
+import pytest
+
+from rvmon import cdv
+from rvmon.cdv.execute import execute
+from rvmon.cdv.outcome import Ending
+from rvmon.cdv.plan import plan
+from rvmon.cdv.summarise import summarise
+from rvmon.cdv.tables import verdict_table
+from rvmon.coverage.hits import Hit
+from rvmon.errors import RvmonError
+from rvmon.loading import load
+
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(
+        multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
+    ),
+]
+
+BAD = ("hang", "kill", "exit", "crash", "go back", "end early")
+TESTS = [(f"{number}-{what.replace(' ', '-')}", {"does": what}) for number, what in enumerate(BAD)]
+GOOD = [(f"good-{number}", {"level": float(number)}) for number in range(8)]
+MIXED = [*GOOD[:3], *TESTS[:3], *GOOD[3:6], *TESTS[3:], *GOOD[6:]]
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_bad_tests_are_results_and_the_others_go_on(campaign, jobs):
+    """Those that hang, kill their process or leave it, raise, or tell nonsense."""
+    results = execute(plan(campaign(*MIXED, timeout_s=1.0)), jobs=jobs)
+    assert [one.job.test.name for one in results.played] == [name for name, _ in MIXED]
+    found = {one.job.test.name[2:]: one.outcome for one in results.played}
+    endings = {name[2:]: found[name[2:]].ending for name, _ in TESTS}
+    assert endings == {
+        "hang": Ending.HUNG,
+        "kill": Ending.LOST,
+        "exit": Ending.LOST,
+        "crash": Ending.CRASHED,
+        "go-back": Ending.CRASHED,
+        "end-early": Ending.CRASHED,
+    }
+    assert found["hang"].error == "it took more than 1 s"
+    assert found["kill"].error == "its process was ended by signal SIGKILL"
+    assert found["exit"].error == "its process ended, with exit code 5"
+    assert found["crash"].error == "ZeroDivisionError: by zero"
+    assert "before its last sample" in found["end-early"].error
+    assert not results.cut_short
+    good = {name: one for name, one in found.items() if name.startswith("od-")}
+    assert [one.ending for one in good.values()] == [Ending.FINISHED] * 8
+    assert good["od-6"].verdicts == {"T1": "F", "T2": "P", "T3": "P"}
+
+
+def test_of_a_test_without_result_nothing_is_known(campaign, spec):
+    """It is inconclusive in all tables, which say so below."""
+    results = execute(plan(campaign(*TESTS[:2], *GOOD[:1], timeout_s=1.0)), jobs=2)
+    assert set(results.played[0].outcome.verdicts.values()) == {"I"}
+    table = verdict_table(summarise(results, {"toy": load(spec)}), "toy")
+    assert table.groups[0].counts["T3"] == {"P": 1, "F": 0, "NT": 0, "I": 2}
+    assert any("0-hang hung: it took more than 1 s" in note for note in table.notes)
+    assert any("1-kill was lost" in note for note in table.notes)
+
+
+def test_the_number_of_processes_changes_nothing(campaign):
+    """The same outcomes, in the same order."""
+    chosen = plan(campaign(*GOOD))
+    assert execute(chosen, jobs=1).played == execute(chosen, jobs=3).played
+
+
+def test_states_and_transitions_are_hits(campaign):
+    """How often, and when first."""
+    (one,) = execute(plan(campaign(GOOD[0])), jobs=1).played
+    states, transitions = one.outcome.hits["states"], one.outcome.hits["transitions"]
+    assert {name: (hit.count, hit.first) for name, hit in states.items()} == {
+        "down": (2, 0),
+        "up": (1, 1_000_000_000),
+    }
+    assert list(transitions) == ["down → up", "up → down"]
+    assert one.outcome.figures == {"metres": 2.0}
+
+
+def test_a_control_is_played_beside_its_test(campaign, spec):
+    """Its verdicts stand in a table of their own, in the place of the test's."""
+
+    def lower(test):
+        return None if test.level < 5 else msgspec.structs.replace(test, level=0.0)
+
+    control = cdv.Control("lowered", lower)
+    results = execute(plan(campaign(GOOD[1], GOOD[6], control=control)), jobs=1)
+    assert [one.control is None for one in results.played] == [True, False]
+    figures = summarise(results, {"toy": load(spec)}).robots["toy"]
+    assert figures.strategies["climbs"].counts["T1"]["F"] == 1
+    assert figures.controls["climbs"]["T1"]["F"] == 0
+
+
+class Collector:
+    """Counts samples that have declared names."""
+
+    def __init__(self, spec):
+        self.samples = 0
+
+    def step_ns(self, t_ns, values):
+        self.samples += set(values) <= {"level", "over"}
+
+    def finish_ns(self, t_ns):
+        return {"mine": {"samples": Hit(self.samples, t_ns)}}
+
+
+def test_a_collector_gathers_what_it_likes(campaign):
+    """Each run anew: it gets the declared names, and its hits stand beside the others."""
+    played = execute(plan(campaign(*GOOD[:2], collect=Collector)), jobs=1).played
+    assert [one.outcome.hits["mine"] for one in played] == [{"samples": Hit(4, 3_000_000_000)}] * 2
+
+
+def test_a_system_that_cannot_be_made_is_told(campaign, spec):
+    """Before its first test, with the robot's name and the cause."""
+
+    def broken():
+        raise OSError("no simulator")
+
+    robots = {"toy": cdv.Robot(broken, spec)}
+    with pytest.raises(RvmonError, match=r"robot `toy`: what plays its tests.*OSError: no sim"):
+        execute(plan(campaign(GOOD[0], robots=robots)), jobs=1)
+
+
+def test_a_test_that_no_system_can_play_is_told(campaign):
+    """It is a mistake of who made it, and no result."""
+    with pytest.raises(cdv.TestError, match="no mutation `rust`"):
+        execute(plan(campaign(("rusty", {"mutation": "rust"}))), jobs=1)

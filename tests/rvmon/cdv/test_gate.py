@@ -1,0 +1,103 @@
+"""A campaign passes if all went as expected, also failures that are known."""
+
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from rvmon import cdv
+from rvmon.cdv.execute import execute
+from rvmon.cdv.gate import judge_campaign, refuse_unknown
+from rvmon.cdv.junit import junit_xml
+from rvmon.cdv.plan import plan
+from rvmon.errors import UnknownNameError
+
+pytestmark = pytest.mark.process
+
+REQUIREMENTS = {"toy": ("T1", "T2", "T3")}
+LOW, HIGH = ("low", {"level": 3.0}), ("high", {"level": 6.0})
+CRASH = ("crash", {"does": "crash"})
+TOO_HIGH = "T1 #1 FAIL at 1 s: `level < 5` became false at 1 s; it had to be true at all times"
+
+
+def judged(campaign, *, strict=False):
+    """The judgement on a campaign that is played."""
+    return judge_campaign(execute(plan(campaign), jobs=1), REQUIREMENTS, strict=strict)
+
+
+@pytest.mark.parametrize(
+    ("tests", "wrong"),
+    [
+        ([LOW], []),
+        ([LOW, HIGH], [f"high (toy): {TOO_HIGH}"]),
+        ([("known", {"level": 6.0, "expected": {"T1": "F"}})], []),
+        ([("known", {"level": 3.0, "expected": {"T1": "F"}})], ["known (toy): T1 is P, not F"]),
+        (
+            [("known", {"expected": {"T9": "P"}})],
+            ["known (toy): T9 is to be P, and there is no such requirement"],
+        ),
+        ([CRASH], ["crash (toy): crashed: ZeroDivisionError: by zero"]),
+        ([("b", {"does": "exit"})], ["b (toy): lost: its process ended, with exit code 5"]),
+    ],
+)
+def test_what_is_not_as_expected_is_wrong(campaign, tests, wrong):
+    """A failure that nobody knows, a known answer that came out otherwise, a test without end."""
+    assert judged(campaign(*tests)).wrong == wrong
+
+
+@pytest.mark.parametrize("where", [{}, {"strategy": "climbs"}, {"test": "high"}, {"robot": "toy"}])
+def test_an_expected_failure_is_none(campaign, where):
+    """Where it is expected; it is told with its reason."""
+    known = cdv.ExpectedFailure("T1", "the motor is too strong", **where)
+    found = judged(campaign(LOW, HIGH, expected_failures=[known]))
+    assert found.wrong == []
+    assert found.tests[1].known == ("T1 failed, as expected: the motor is too strong",)
+
+
+def test_an_expected_failure_elsewhere_excuses_nothing(campaign):
+    """That of another test, or of another requirement."""
+    known = [cdv.ExpectedFailure("T1", "why", test="low"), cdv.ExpectedFailure("T2", "why")]
+    wrong = judged(campaign(LOW, HIGH, expected_failures=known)).wrong
+    assert wrong == [
+        f"high (toy): {TOO_HIGH}",
+        "T1 of test low is expected to fail (why): it did not, in 1 tests",
+        "T2 is expected to fail (why): it did not, in 2 tests",
+    ]
+
+
+def test_an_expected_failure_that_no_test_could_show_is_none(campaign):
+    """As where another strategy is played."""
+    known = cdv.ExpectedFailure("T1", "why", strategy="other")
+    assert judged(campaign(LOW, expected_failures=[known])).wrong == []
+
+
+def test_strict_wants_all_decided(campaign):
+    """What is inconclusive, and what no test triggered."""
+    found = judged(campaign(("flat", {"level": 1.0}), ("known", {"does": "crash"})), strict=True)
+    assert "known (toy): T3 is inconclusive" in found.wrong
+    assert "T2 is triggered (toy): no test passed or failed it" in found.wrong
+    assert judged(campaign(LOW), strict=True).wrong == []
+
+
+@pytest.mark.parametrize("what", [{"requirement": "T9"}, {"strategy": "luck"}, {"robot": "r"}])
+def test_a_failure_of_what_there_is_not_is_told(campaign, what):
+    """A misspelt name would excuse nothing, and nobody would know why."""
+    known = cdv.ExpectedFailure(**{"requirement": "T1", "reason": "why", **what})
+    with pytest.raises(UnknownNameError, match="there are"):
+        refuse_unknown(campaign(LOW, expected_failures=[known]))
+
+
+def test_junit_has_a_case_per_test_and_per_expectation(campaign, golden):
+    """Failures, errors, known failures as skipped; a campaign that was cut short is an error."""
+    known = [cdv.ExpectedFailure("T1", "too strong", test="high")]
+    known += [cdv.ExpectedFailure("T2", "mended since")]
+    tests = (LOW, HIGH, ("higher", {"level": 7.0, "text": "far up"}), CRASH)
+    text = junit_xml("toys", judged(campaign(*tests, expected_failures=known)), "interrupted")
+    root = ET.fromstring(text)  # noqa: S314 - our own
+    for case in root.iter("testcase"):
+        if "time" in case.attrib:
+            case.set("time", "0.0")
+    golden("junit.xml", ET.tostring(root, encoding="unicode"))
+    assert [
+        (suite.get("name"), suite.get("tests"), suite.get("failures"), suite.get("errors"))
+        for suite in root
+    ] == [("toys.toy.climbs", "4", "1", "1"), ("toys", "3", "1", "1")]

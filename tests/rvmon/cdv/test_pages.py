@@ -1,0 +1,74 @@
+"""Files and pages of a campaign."""
+
+import pytest
+
+from rvmon import cdv
+from rvmon.cdv.files import load
+from rvmon.cli.campaign import main
+
+pytestmark = pytest.mark.process
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """Where campaigns are run."""
+    monkeypatch.chdir(tmp_path)
+
+
+def test_a_test_that_hung_has_no_page(campaign, tmp_path, capsys):
+    """It could not be played again; the campaign's page says that it hung."""
+    tests = (("hangs", {"does": "hang"}), ("fine", {"level": 3.0}))
+    assert main(campaign(*tests), ["run", "--timeout", "1", "--jobs", "2", "--out", "out"]) == 1
+    assert "not as expected: hangs (toy): hung: it took more than 1 s" in capsys.readouterr().err
+    out = tmp_path / "out"
+    assert [path.name for path in (out / "runs").iterdir()] == ["toy-fine.html"]
+    assert "hangs hung: it took more than 1 s" in (out / "report.html").read_text()
+    assert '"hung"' in (out / "table.json").read_text()
+    assert load(out / "tests" / "hangs.json", campaign().test).does == "hang"
+
+
+def test_a_system_that_is_not_repeatable_is_told(campaign, tmp_path, spec, capsys):
+    """Its pages would show other runs than its table counts."""
+
+    class Moody:
+        def play(self, test, observer):
+            mood = tmp_path / "mood"
+            level = 6.0 if mood.exists() else 1.0
+            mood.touch()
+            observer(0, {"level": level})
+            return cdv.Run(1_000_000_000)
+
+    robots = {"toy": cdv.Robot(Moody, spec)}
+    assert main(campaign(("moody", {}), robots=robots), ["run", "--out", "out"]) == 0
+    assert "played again, these came out otherwise: moody" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["run", "--strategy", "luck"], "no strategy `luck`: there are climbs"),
+        (["run", "--robot", "r"], "no robot `r`: there are toy"),
+        (["run", "--spec", "gone.rv"], "gone.rv"),
+        (["run", "--timeout", "soon"], "expected a time in seconds"),
+        (["replay", "gone.json"], "gone.json: No such file"),
+        (["fly"], "invalid choice"),
+    ],
+)
+def test_wrong_use_is_told(campaign, capsys, words, told):
+    """Exit 2 and the reason, before anything is played."""
+    assert main(campaign(("fine", {})), words) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_names_of_tests_do_not_steer_a_terminal(campaign, capsys):
+    """What a test's code raises is shown, and not obeyed."""
+
+    class Loud:
+        def play(self, test, observer):
+            raise ValueError("\x1b[31mred [bold]not[/]")
+
+    robots = {"toy": cdv.Robot(Loud, None)}
+    assert main(campaign(("loud", {}), robots=robots), ["run", "--jobs", "1"]) == 1
+    told = capsys.readouterr()
+    assert "\x1b" not in told.err + told.out
+    assert "[bold]not[/]" in told.err

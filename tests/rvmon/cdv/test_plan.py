@@ -1,0 +1,39 @@
+"""Which tests a campaign plays."""
+
+import pytest
+
+from rvmon import cdv
+from rvmon.cdv.plan import plan
+from rvmon.errors import UnknownNameError
+
+
+def test_tests_are_played_on_the_robots_that_they_are_written_for(campaign, spec):
+    """One without a robot on all of them, in the order of robots, strategies and tests."""
+    robots = {name: cdv.Robot(object, spec) for name in ("a", "b")}
+    chosen = plan(campaign(("any", {}), ("for-b", {"robot": "b"}), robots=robots))
+    assert [(job.robot, job.test.name) for job in chosen.jobs()] == [
+        ("a", "any"),
+        ("b", "any"),
+        ("b", "for-b"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        (["twice", "twice"], "two tests are called `twice`"),
+        (["../../evil"], "name it with letters"),
+        ([".hidden"], "name it with letters"),
+        (["a b"], "name it with letters"),
+    ],
+)
+def test_a_name_is_that_of_a_file_and_unique(campaign, names, told):
+    """Or one test would be written over the other, or anywhere."""
+    with pytest.raises(cdv.TestError, match=told):
+        plan(campaign(*((name, {}) for name in names)))
+
+
+def test_an_unknown_strategy_is_told(campaign):
+    """With those that there are."""
+    with pytest.raises(UnknownNameError, match="no strategy `luck`: there are climbs"):
+        plan(campaign(("a", {})), ["luck"])
