@@ -2,51 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.campaign import Collector
 from rvmon.cdv.system import Values
-from rvmon.coverage.hits import Hits
+from rvmon.coverage.hits import Hit, Hits
+from rvmon.verdict.report import Report, report_of
 
 if TYPE_CHECKING:
-    from rvmon.monitor import Monitor
+    from rvmon.coverage.monitor import SpecCoverage
     from rvmon.session import Spec
-    from rvmon.verdict.report import Report
+    from rvmon.spec.checked.specification import CheckedSpec
 
 
 class Checker:
     """Judges one test after the other: `begin`, `observe` each sample, `finish`.
 
+    Names that a specification does not declare are passed over.
+
     Args:
-        spec: what to judge by; names that it does not declare are passed over.
-        collect: makes of it what gathers coverage of one run beside.
+        spec: what to judge by; `None` judges nothing.
+        coverages: what is gathered of the coverage models of specifications.
     """
 
-    def __init__(self, spec: Spec, collect: Callable[[Spec], Collector] | None = None) -> None:
-        self._spec = spec
-        self._names = frozenset((*spec.checked.signals, *spec.checked.events))
-        self._monitor: Monitor = spec.monitor()
-        self._collect = collect
-        self._collector: Collector | None = None
+    def __init__(self, spec: Spec | None, coverages: Sequence[SpecCoverage] = ()) -> None:
+        self._monitor = None if spec is None else spec.monitor()
+        self._collectors = [one.monitor() for one in coverages]
+        takers: list[tuple[CheckedSpec, Callable[[int, Values], object]]] = [
+            (one.spec, taker.step_ns)
+            for one, taker in zip(coverages, self._collectors, strict=True)
+        ]
+        if spec is not None and self._monitor is not None:
+            takers.append((spec.checked, self._monitor.step_ns))
+        self._takers = [
+            (frozenset((*checked.signals, *checked.events)), take) for checked, take in takers
+        ]
 
     def begin(self) -> None:
         """Forget the last test."""
-        self._monitor.reset()
-        self._collector = None if self._collect is None else self._collect(self._spec)
+        if self._monitor is not None:
+            self._monitor.reset()
+        for one in self._collectors:
+            one.reset()
 
     def observe(self, t_ns: int, values: Values) -> None:
         """Take one whole sample."""
-        known = {name: value for name, value in values.items() if name in self._names}
-        if known:
-            self._monitor.step_ns(t_ns, known)
-            if self._collector is not None:
-                self._collector.step_ns(t_ns, known)
+        for names, take in self._takers:
+            known = {name: value for name, value in values.items() if name in names}
+            if known:
+                take(t_ns, known)
 
     def finish(self, end_ns: int) -> Report:
         """The verdicts on a test that was observed up to `end_ns`."""
+        if self._monitor is None:
+            return report_of((), ())
         return self._monitor.finish_ns(end_ns)
 
     def hits(self, end_ns: int) -> Hits:
         """What a test hit that was observed up to `end_ns`."""
-        return {} if self._collector is None else self._collector.finish_ns(end_ns)
+        hits: dict[str, Mapping[str, Hit]] = {}
+        for one in self._collectors:
+            hits |= one.finish_ns(end_ns)
+        return hits

@@ -8,10 +8,11 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from functools import partial
 
-from rvmon.cdv.outcome import Ending, Outcome, Played, Results
+from rvmon.cdv.outcome import Outcome, Played, Results
 from rvmon.cdv.plan import Job, Plan
 from rvmon.cdv.play import player
 from rvmon.cdv.unfinished import Unfinished
+from rvmon.coverage.record import Ending
 from rvmon.execute import parallel
 from rvmon.execute.ended import Ended
 from rvmon.loading import load
@@ -56,7 +57,7 @@ def execute(
         with closing(
             parallel.execute(
                 left,
-                partial(player, campaign.robots, campaign.code, control, campaign.collect),
+                partial(player, campaign.robots, campaign.code, control),
                 jobs=jobs or os.cpu_count() or 1,
                 what="test",
                 instead=partial(_without_result, _requirements(plan)),

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure
-from rvmon.cdv.outcome import Ending, Played, Results
+from rvmon.cdv.outcome import Played, Results
+from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.loading import load
 from rvmon.verdict.verdict import Verdict
@@ -82,7 +83,7 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
     test, outcome = one.job.test, one.outcome
     wrong: list[str] = []
     known: list[str] = []
-    if outcome.ending is not Ending.FINISHED and test.mutation is None:
+    if outcome.ending is not Ending.COMPLETED and test.mutation is None:
         wrong.append(f"{outcome.ending}: {outcome.error}")
     for name, answer in test.expected.items() if outcome.verdicts else ():
         if name not in outcome.verdicts:
