@@ -13,7 +13,7 @@ from handover.campaign.paper import paper_table
 from handover.campaign.strategies import STRATEGIES
 from handover.campaign.system import Handover, without_loss
 from handover.campaign.tables import robot_tables
-from handover.checker import SPECS, spec_path
+from handover.checker import SPECS, situations_path, spec_path
 from handover.collector.code import robot_code
 from handover.collector.transitions import TRANSITIONS
 from handover.generator.abstract_test import AbstractTest
@@ -48,6 +48,7 @@ def handover_campaign(robots: Sequence[str] = tuple(ROBOTS), *, monitors: bool =
                 spec_path(robot) if monitors else None,
                 title=ROBOTS[robot],
                 spec_name=SPECS[robot],
+                situations=situations_path(),
             )
             for robot in robots
         },

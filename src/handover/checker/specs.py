@@ -14,8 +14,21 @@ def spec_path(robot: str) -> Path:
     >>> spec_path("correct").name
     'handover.rv'
     """
+    return _found(SPECS[robot])
+
+
+def situations_path() -> Path:
+    """The file of the situations that handovers should show.
+
+    >>> situations_path().name
+    'handover_situations.rv'
+    """
+    return _found("specs/handover_situations.rv")
+
+
+def _found(name: str) -> Path:
     package = Path(__file__).parents[1]
-    packaged = package / SPECS[robot]
-    path = packaged if packaged.exists() else package.parents[1] / SPECS[robot]
+    packaged = package / name
+    path = packaged if packaged.exists() else package.parents[1] / name
     here = Path.cwd()
     return path.relative_to(here) if path.is_relative_to(here) else path  # as people would write it

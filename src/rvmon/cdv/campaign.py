@@ -5,29 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.code import Code
 from rvmon.cdv.presentation import Presentation
-from rvmon.cdv.system import System, Values
-from rvmon.coverage.hits import Hits
-from rvmon.session import Spec
+from rvmon.cdv.system import System
 
 Strategy = Callable[[int, int], Sequence[Test]]
 """Makes tests from `(count, seed)`: the same arguments, the same tests."""
-
-
-class Collector(Protocol):
-    """Gathers coverage of one run from its samples, beside what a campaign measures itself."""
-
-    def step_ns(self, t_ns: int, values: Values, /) -> object:
-        """Take one sample, with the declared names only."""
-        ...
-
-    def finish_ns(self, t_ns: int, /) -> Hits:
-        """What was hit in a run that is judged up to `t_ns`."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +25,14 @@ class Robot:
         spec: file of its requirements; `None` judges nothing.
         title: what tables and pages call it; default: its name in the campaign.
         spec_name: what they call its requirements; default: the path.
+        situations: file of a coverage model, watched beside that of the requirements.
     """
 
     system: Callable[[], System[Any]]
     spec: str | Path | None
     title: str = ""
     spec_name: str = ""
+    situations: str | Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +84,8 @@ class Campaign:
         control: what is played beside a test.
         expected_failures: that do not fail it.
         timeout_s: seconds that a test may take before it is ended; `None`: any.
-        collect: makes of the requirements what gathers further coverage, once for each run.
+        watch_all: whether all that coverage models have is watched; else, of the requirements' own,
+            the coverpoints, as some must not be hit.
         sources: files and folders that runs depend on, beside those that define tests, strategies
             and systems: where one has changed, an unfinished campaign is not gone on with.
         packages: whose versions runs depend on, likewise.
@@ -114,7 +103,7 @@ class Campaign:
     control: Control | None = None
     expected_failures: Sequence[ExpectedFailure] = ()
     timeout_s: float | None = 600.0
-    collect: Callable[[Spec], Collector] | None = None
+    watch_all: bool = False
     sources: Sequence[str | Path] = ()
     packages: Sequence[str] = ()
     program: str = ""

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 from msgspec import structs
 
-from rvmon.cdv.outcome import Ending, Played
+from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import Job
+from rvmon.coverage.record import Ending
 from rvmon.verdict.verdict import Verdict
 
 Cell = tuple[str, str, str, Verdict]

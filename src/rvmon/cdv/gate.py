@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure
-from rvmon.cdv.outcome import Ending, Played, Results
+from rvmon.cdv.outcome import Played, Results
+from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.loading import load
 from rvmon.verdict.verdict import Verdict
@@ -59,9 +60,9 @@ def judge_campaign(
     """Hold all tests against what was expected of them.
 
     A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
-    to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, its code
-    crashed, it hung or was lost. An expected failure that did not occur is wrong as well, unless no
-    test was played in which it could.
+    to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, something was
+    hit that must not be, its code crashed, it hung or was lost. An expected failure that did not
+    occur is wrong as well, unless no test was played in which it could.
 
     Args:
         results: what was played; of a campaign that was cut short only the tests are judged.
@@ -82,13 +83,15 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
     test, outcome = one.job.test, one.outcome
     wrong: list[str] = []
     known: list[str] = []
-    if outcome.ending is not Ending.FINISHED and test.mutation is None:
+    if outcome.ending is not Ending.COMPLETED and test.mutation is None:
         wrong.append(f"{outcome.ending}: {outcome.error}")
     for name, answer in test.expected.items() if outcome.verdicts else ():
         if name not in outcome.verdicts:
             wrong.append(f"{name} is to be {answer}, and there is no such requirement")
         elif outcome.verdicts[name] != answer:
             wrong.append(f"{name} is {outcome.verdicts[name]}, not {answer}")
+    if test.mutation is None:
+        wrong.extend(outcome.illegal)
     for name, verdict in outcome.verdicts.items():
         if name in test.expected or test.mutation is not None:
             continue  # a planted fault says nothing about the robot

@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 
 from rvmon.cdv.gate import CampaignJudgement, TestJudgement
-from rvmon.cdv.outcome import Ending
+from rvmon.coverage.record import Ending
 from rvmon.diagnostics.shown import shown
 
 
@@ -63,7 +63,7 @@ def _case(one: TestJudgement) -> ET.Element:
         if value:
             ET.SubElement(properties, "property", name=shown(name), value=shown(value))
     if one.wrong:
-        ended = outcome.ending is not Ending.FINISHED and test.mutation is None
+        ended = outcome.ending is not Ending.COMPLETED and test.mutation is None
         element = ET.SubElement(case, "error" if ended else "failure", message=shown(one.wrong[0]))
         element.text = shown("\n".join(one.wrong))
     elif one.known:

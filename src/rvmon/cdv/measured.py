@@ -11,9 +11,9 @@ from rvmon.cdv.system import Run
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
 
-STATES = "states"
-TRANSITIONS = "transitions"
-"""Names of groups."""
+STATES = "states entered"
+TRANSITIONS = "transitions taken"
+"""Names of groups, which no coverpoint can have."""
 
 _ARROW = " → "
 

@@ -4,20 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 from rvmon.cdv.plan import Job, Plan
 from rvmon.coverage.hits import Hits
+from rvmon.coverage.record import Ending
 from rvmon.verdict.verdict import Verdict
-
-
-class Ending(StrEnum):
-    """How a test ended."""
-
-    FINISHED = "finished"
-    CRASHED = "crashed"
-    HUNG = "hung"
-    LOST = "lost"
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +19,11 @@ class Outcome:
         verdicts: by requirement; empty if nothing was judged. Of a test that hung or was lost
             nothing is known: it is inconclusive.
         reasons: by requirement that failed, when and why it did first.
-        hits: of states, transitions, code, and what the campaign collects beside.
-        ending: `finished`; `crashed` if code raised an exception, in which case it is judged as
+        illegal: what was hit of coverage models and must not be, in words.
+        hits: of states, transitions, code, and the coverage models that watched.
+        ending: `completed`; `crashed` if code raised an exception, in which case it is judged as
             far as it went; `hung` if it was ended; `lost` if its process was.
-        error: why it did not finish.
+        error: why it did not complete.
         end_ns: up to which it was judged.
         figures: what the system tells of the run, to be added up.
         seconds: wall time that it took.
@@ -39,6 +31,7 @@ class Outcome:
 
     verdicts: Mapping[str, Verdict]
     reasons: Mapping[str, str]
+    illegal: tuple[str, ...]
     hits: Hits
     ending: Ending
     error: str | None

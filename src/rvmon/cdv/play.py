@@ -8,15 +8,17 @@ from contextlib import nullcontext
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rvmon.cdv.campaign import Collector, Robot
+from rvmon.cdv.campaign import Robot
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.code import Code
 from rvmon.cdv.files import TestError
 from rvmon.cdv.measured import hits_of_states
 from rvmon.cdv.meter import Meter
-from rvmon.cdv.outcome import Ending, Outcome
+from rvmon.cdv.outcome import Outcome
 from rvmon.cdv.plan import Job
 from rvmon.cdv.system import Observer, Run, System
+from rvmon.cdv.watch import watches_of
+from rvmon.coverage.record import Ending
 from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import RvmonError
 from rvmon.loading import load
@@ -24,7 +26,6 @@ from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cdv.abstract_test import Test
-    from rvmon.session import Spec
     from rvmon.verdict.report import Report
 
 
@@ -32,7 +33,7 @@ def player(
     robots: Mapping[str, Robot],
     code: Code | None,
     control: Callable[[Any], Test | None] | None,
-    collect: Callable[[Spec], Collector] | None,
+    watch_all: bool,
 ) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
     """What plays a job in this process: its outcome, and that of its control.
 
@@ -40,12 +41,14 @@ def player(
         robots: by name.
         code: whose coverage is measured.
         control: makes the control of a test.
-        collect: makes of the requirements what gathers further coverage.
+        watch_all: whether all that coverage models have is watched.
 
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
     """
-    benches = {name: _Bench(name, robot, code, collect) for name, robot in robots.items()}
+    benches = {
+        name: _Bench(name, robot, code, watch_all=watch_all) for name, robot in robots.items()
+    }
 
     def played(job: Job) -> tuple[Outcome, Outcome | None]:
         bench = benches[job.robot]
@@ -64,10 +67,14 @@ class _Bench:
         name: str,
         robot: Robot,
         code: Code | None,
-        collect: Callable[[Spec], Collector] | None,
+        *,
+        watch_all: bool,
     ) -> None:
         self._system = system_of(name, robot)
-        self._checker = None if robot.spec is None else Checker(load(robot.spec), collect)
+        self._checker: Checker | None = None
+        if robot.spec is not None:
+            spec = load(robot.spec)
+            self._checker = Checker(spec, watches_of(robot, spec, everything=watch_all))
         self._meter = None if code is None else Meter(code)
         self._marked = code is not None and code.marked
 
@@ -90,15 +97,18 @@ class _Bench:
             hits |= self._meter.hits()
         verdicts: Mapping[str, Verdict] = {}
         reasons: Mapping[str, str] = {}
+        illegal: tuple[str, ...] = ()
         if self._checker is not None:
             report = self._checker.finish(run.end_ns)
             verdicts, reasons = report.verdicts, _reasons(report)
-            hits |= self._checker.hits(run.end_ns)
+            illegal = tuple(map(str, report.illegal))
+            hits |= self._checker.hits
         return Outcome(
             verdicts=verdicts,
             reasons=reasons,
+            illegal=illegal,
             hits=hits,
-            ending=Ending.FINISHED if run.error is None else Ending.CRASHED,
+            ending=Ending.COMPLETED if run.error is None else Ending.CRASHED,
             error=run.error,
             end_ns=run.end_ns,
             figures=run.figures,

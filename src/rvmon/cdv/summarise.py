@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rvmon.cdv.measured import STATES, TRANSITIONS, measured_groups, source_and_target
 from rvmon.cdv.meter import branches_name, statements_name
-from rvmon.cdv.outcome import Ending, Outcome, Played, Results
+from rvmon.cdv.outcome import Outcome, Played, Results
 from rvmon.cdv.summary import (
     BlockCoverage,
     CampaignSummary,
@@ -17,6 +17,7 @@ from rvmon.cdv.summary import (
     StrategySummary,
 )
 from rvmon.coverage.model import Group
+from rvmon.coverage.record import Ending
 from rvmon.report.table import Counts
 from rvmon.session import Spec
 from rvmon.verdict.verdict import Verdict

@@ -16,9 +16,9 @@ from handover.generator.files import directed
 from rvmon.cdv.documents import coverage_document, to_json
 from rvmon.cdv.examples import choose_examples, comparable_jobs
 from rvmon.cdv.execute import execute
-from rvmon.cdv.outcome import Ending
 from rvmon.cdv.plan import plan
 from rvmon.cdv.summarise import summarise
+from rvmon.coverage.record import Ending
 from rvmon.loading import load
 from rvmon.verdict.verdict import Verdict
 

@@ -7,11 +7,10 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.execute import execute
-from rvmon.cdv.outcome import Ending
 from rvmon.cdv.plan import plan
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import verdict_table
-from rvmon.coverage.hits import Hit
+from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError
 from rvmon.loading import load
 
@@ -50,7 +49,7 @@ def test_bad_tests_are_results_and_the_others_go_on(campaign, jobs):
     assert "before its last sample" in found["end-early"].error
     assert not results.cut_short
     good = {name: one for name, one in found.items() if name.startswith("od-")}
-    assert [one.ending for one in good.values()] == [Ending.FINISHED] * 8
+    assert [one.ending for one in good.values()] == [Ending.COMPLETED] * 8
     assert good["od-6"].verdicts == {"T1": "F", "T2": "P", "T3": "P"}
 
 
@@ -73,7 +72,7 @@ def test_the_number_of_processes_changes_nothing(campaign):
 def test_states_and_transitions_are_hits(campaign):
     """How often, and when first."""
     (one,) = execute(plan(campaign(GOOD[0])), jobs=1).played
-    states, transitions = one.outcome.hits["states"], one.outcome.hits["transitions"]
+    states, transitions = one.outcome.hits["states entered"], one.outcome.hits["transitions taken"]
     assert {name: (hit.count, hit.first) for name, hit in states.items()} == {
         "down": (2, 0),
         "up": (1, 1_000_000_000),
@@ -94,25 +93,6 @@ def test_a_control_is_played_beside_its_test(campaign, spec):
     figures = summarise(results, {"toy": load(spec)}).robots["toy"]
     assert figures.strategies["climbs"].counts["T1"]["F"] == 1
     assert figures.controls["climbs"]["T1"]["F"] == 0
-
-
-class Collector:
-    """Counts samples that have declared names."""
-
-    def __init__(self, spec):
-        self.samples = 0
-
-    def step_ns(self, t_ns, values):
-        self.samples += set(values) <= {"level", "over"}
-
-    def finish_ns(self, t_ns):
-        return {"mine": {"samples": Hit(self.samples, t_ns)}}
-
-
-def test_a_collector_gathers_what_it_likes(campaign):
-    """Each run anew: it gets the declared names, and its hits stand beside the others."""
-    played = execute(plan(campaign(*GOOD[:2], collect=Collector)), jobs=1).played
-    assert [one.outcome.hits["mine"] for one in played] == [{"samples": Hit(4, 3_000_000_000)}] * 2
 
 
 def test_a_system_that_cannot_be_made_is_told(campaign, spec):
