@@ -93,7 +93,7 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
         ):
             one = StoredItem(BinKind(kind), int(goal), int(position), int(number))
             items.setdefault(owner, {})[str(name)] = one
-        return {
+        stored = {
             str(name): StoredGroup(
                 Subject(subject),
                 int(weight),
@@ -105,6 +105,9 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
                 "SELECT id, name, subject, weight, axes, position FROM groups"
             )
         }
+        for name, group in stored.items():
+            _refuse_nonsense(name, group)
+        return stored
     except (ValueError, TypeError, msgspec.MsgspecError) as error:
         raise damaged(path, f"groups and items: {error}") from None
 
@@ -121,9 +124,14 @@ def write_groups(
         more: those to be added.
 
     Raises:
-        CoverageError: an item or a group is known as another; nothing is written.
+        CoverageError: an item or a group is known as another, or a figure makes no sense; nothing
+            is written.
     """
     for name, group in more.items():
+        try:
+            _refuse_nonsense(name, group)
+        except ValueError as error:
+            raise CoverageError(f"error: {name_of(path)}: {error}") from None
         if (own := known.get(name)) is not None:
             _refuse_conflict(path, name, own, group)
     for name, group in more.items():
@@ -146,6 +154,15 @@ def write_groups(
             "ON CONFLICT (owner, name) DO UPDATE SET position = min(position, excluded.position)",
             ((number, item, one.kind, one.goal, one.position) for item, one in group.items.items()),
         )
+
+
+def _refuse_nonsense(name: str, group: StoredGroup) -> None:
+    """Raise `ValueError` if a figure cannot be meant."""
+    if group.weight < 0:
+        raise ValueError(f"group `{name}` has weight {group.weight}: give at least 0")
+    for item, one in group.items.items():
+        if one.goal < 1:
+            raise ValueError(f"item `{item}` of `{name}` has goal {one.goal}: give at least 1")
 
 
 def _refuse_conflict(

@@ -154,7 +154,9 @@ class Knowledge:
         for left, right, _, _ in pieces:
             add_to(ranges, left, right)
         old = self.news[place]
-        new = (*old[side], *pieces)
+        new: Pieces = (*old[side], *pieces)
+        if len(new) > len(pieces) > 0 and old[side][-1] > pieces[0]:
+            new = sorted(new)
         self.news[place] = (old[0], new) if side else (new, old[1])
 
     def take_back(self) -> None:

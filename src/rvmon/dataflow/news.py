@@ -190,10 +190,6 @@ def news_of_until(network: Knowledge, place: int, node: Sweep) -> None:
         side = int(not found[0])
         for left, right in gaps(network.known[place][side], (pending, bottom - 1)):
             network.tell(place, side, ((left, right, found[1], 0),))
-            told += 1
-    if told > 1:
-        found_true, found_false = network.news[place]
-        network.news[place] = sorted(found_true), sorted(found_false)
 
 
 def _from_right(network: Knowledge, place: int, node: Sweep, on: Range, met: bool) -> Ranges:

@@ -46,8 +46,6 @@ def news_of_past(network: Knowledge, place: int, node: Window | Shift | Sweep, s
                 break
             # What is known of it may lead on.
             on = base, last
-    true, false = network.news[place]
-    network.news[place] = sorted(true), sorted(false)
 
 
 def _candidates(network: Knowledge, node: Window | Shift | Sweep, step: Step) -> Ranges:

@@ -40,7 +40,8 @@ def growth_chart(summary: Summary) -> ET.Element:
         for level in (0, 50, 100)
     ]
     plot = e("div", {"class": "plot"}, *levels, drawing, *_dots(summary, numbers, count))
-    ends = e("p", {"class": "soft ends"}, e("span", None, "test 1"), e("span", None, f"{count:,}"))
+    first, last = e("span", None, "0"), e("span", None, counted(count, "test"))
+    ends = e("p", {"class": "soft ends"}, first, last)
     return e("figure", {"class": "growth"}, plot, ends, _key(summary, numbers) if several else None)
 
 

@@ -8,9 +8,9 @@ from collections.abc import Collection, Sequence
 from itertools import product
 
 from rvmon.coverage.model import Group, Item, combination
-from rvmon.report.coverage_summary import Summary, cell_text
+from rvmon.report.coverage_summary import Summary, cell_text, is_grid
 from rvmon.report.coverage_tests import test_link
-from rvmon.report.markup import Child, e
+from rvmon.report.markup import Child, e, with_code
 from rvmon.spec.checked.goals import BinKind
 
 SHORT, LONG = 8, 40
@@ -32,8 +32,8 @@ def groups_sections(summary: Summary) -> list[ET.Element]:
     for number, group in enumerate(summary.coverage.model.groups.values()):
         score = summary.scores[group.name]
         about = f"{group.subject.value}, {score.covered:,} of {score.items:,} covered"
-        title = (group.name, e("small", None, about))
-        if group.axes:
+        title = (*with_code(group.name), e("small", None, about))
+        if is_grid(group):
             heading = e("h3", {"id": f"g{number}"}, *title)
             maps.append(e("div", {"class": "cross"}, heading, _heat_map(summary, group)))
         else:
@@ -48,7 +48,7 @@ def groups_sections(summary: Summary) -> list[ET.Element]:
     sections = []
     if maps:
         grid = e("div", {"class": "crosses"}, *maps)
-        crosses = [group for group in summary.coverage.model.groups.values() if group.axes]
+        crosses = [group for group in summary.coverage.model.groups.values() if is_grid(group)]
         sections.append(e("section", None, e("h2", None, "Crosses"), grid, _key(crosses)))
     if lists:
         grid = e("div", {"class": "lists"}, *lists)
@@ -85,7 +85,7 @@ def hitters_list(summary: Summary, listed: Collection[int]) -> ET.Element:
                 "li",
                 {"id": f"i{place}"},
                 e("a", {"class": "close", "href": back, "title": "close"}, "×"),
-                e("b", None, summary.item_name(place)),
+                e("b", None, *with_code(summary.item_name(place))),
                 f" {summary.hit_text(place)}",
                 e("p", None, *links, f"and {more:,} more" if more > 0 else None),
             )
@@ -95,8 +95,8 @@ def hitters_list(summary: Summary, listed: Collection[int]) -> ET.Element:
 
 def _linked(summary: Summary, place: int, text: str) -> ET.Element:
     if not summary.totals.counts[place]:
-        return e("span", None, text)
-    return e("a", {"href": f"#i{place}", "title": summary.hit_text(place)}, text)
+        return e("span", None, *with_code(text))
+    return e("a", {"href": f"#i{place}", "title": summary.hit_text(place)}, *with_code(text))
 
 
 def _list(summary: Summary, group: Group) -> ET.Element:
@@ -108,7 +108,7 @@ def _list(summary: Summary, group: Group) -> ET.Element:
             e(
                 "tr",
                 None,
-                e("th", {"scope": "row"}, item.name, e("small", None, kind)),
+                e("th", {"scope": "row"}, *with_code(item.name), e("small", None, kind)),
                 _cell(summary, place, item, _most(summary, group)),
                 e("td", None, f"{tests:,}" if tests else ""),
                 e("td", {"class": "text first"}, _first(summary, place)),

@@ -9,15 +9,15 @@ from rvmon.coverage.answers import Comparison
 from rvmon.report.coverage_chart import growth_chart
 from rvmon.report.coverage_items import groups_sections, hitters_list, item_link
 from rvmon.report.coverage_summary import (
+    LISTED,
     Summary,
     counted,
     name_of,
-    not_fine,
     share_text,
     strategy_name,
 )
 from rvmon.report.coverage_tests import letter, listed_tests, test_link, tests_section
-from rvmon.report.markup import Child, e, page
+from rvmon.report.markup import Child, e, page, with_code
 from rvmon.report.percent import percent_text
 from rvmon.report.table_html import legend, table_html
 from rvmon.verdict.verdict import Verdict
@@ -69,14 +69,20 @@ def _wrong(summary: Summary) -> ET.Element | None:
         ]
         parts += [e("h3", None, "Illegal hits"), *_list(lines)]
     if summary.not_fine:
-        lines = [
-            e("li", None, test_link(summary, place), f" {not_fine(summary.record(place))}")
-            for place in summary.not_fine
-        ]
+        lines = [_fault(summary, fault, places) for fault, places in summary.faults.items()]
         parts += [e("h3", None, "Tests that failed or did not complete"), *_list(lines)]
     if not parts:
         return None
     return e("section", {"class": "wrong", "data-verdict": "F"}, e("h2", None, "Wrong"), *parts)
+
+
+def _fault(summary: Summary, fault: str, places: Sequence[int]) -> ET.Element:
+    links: list[Child] = []
+    for place in places[:LISTED]:
+        links += [test_link(summary, place), " "]
+    rest = len(places) - LISTED
+    more = f"and {rest:,} more" if rest > 0 else None
+    return e("li", None, f"{fault}: {counted(len(places), 'test')} ", *links, more)
 
 
 def _overview(summary: Summary) -> ET.Element:
@@ -97,7 +103,7 @@ def _overview(summary: Summary) -> ET.Element:
         about = group.subject.value
         about += "" if group.weight == 1 else f", weight {group.weight}" if group.weight else ""
         about += "" if group.weight else ", not in the total"
-        link = e("a", {"href": f"#g{place}"}, group.name)
+        link = e("a", {"href": f"#g{place}"}, *with_code(group.name))
         rows.append(
             e(
                 "tr",
@@ -191,7 +197,7 @@ def _holes(summary: Summary) -> ET.Element | None:
                 None,
                 item_link(summary, place),
                 e("span", {"class": "soft"}, f" {of}"),
-                f": {why}" if why else None,
+                *(with_code(f": {why}") if why else ()),
             )
         )
     return e("section", None, e("h2", None, "Holes ", _count(lines)), *_list(lines))
@@ -211,7 +217,7 @@ def _growth(summary: Summary) -> ET.Element | None:
         None,
         e("h2", None, "Growth"),
         growth_chart(summary),
-        e("p", {"class": "order"}, f"{of} cover as much: ", *names, more),
+        e("p", {"class": "order"}, f"{of} cover the same: ", *names, more),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from math import prod
 
 from rvmon.coverage.answers import Comparison, Goals, Step, Totals
 from rvmon.coverage.compare import compare
@@ -28,6 +29,7 @@ from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
 from rvmon.report.percent import percent_text
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
+from rvmon.spec.rules.goals import MOST_COMBINATIONS
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 
@@ -133,6 +135,14 @@ class Summary:
         """Tests that failed a requirement or did not complete."""
         entries = self.coverage.entries
         return [place for place, entry in enumerate(entries) if not_fine(entry.record)]
+
+    @cached_property
+    def faults(self) -> Mapping[str, Sequence[int]]:
+        """What was wrong, in words, with which tests; what most of them had stands first."""
+        found: dict[str, list[int]] = {}
+        for place in self.not_fine:
+            found.setdefault(not_fine(self.record(place)), []).append(place)
+        return dict(sorted(found.items(), key=lambda fault: -len(fault[1])))
 
     @cached_property
     def campaigns(self) -> Sequence[str]:
@@ -244,6 +254,18 @@ def not_fine(record: TestRecord) -> str:
     if record.failed:
         parts.append(f"F {', '.join(record.failed)}")
     return "; ".join(parts)
+
+
+def is_grid(group: Group) -> bool:
+    """Whether a group is shown along its axes: a cross of the size that a specification may have.
+
+    >>> from rvmon.coverage.model import Subject
+    >>> is_grid(Group("g", Subject.CROSS, {}, axes={"x": ["a", "b"], "y": ["c"]}))
+    True
+    >>> is_grid(Group("g", Subject.CROSS, {}, axes=dict.fromkeys("vwxyz", ["a"] * 100)))
+    False
+    """
+    return bool(group.axes) and 0 < prod(map(len, group.axes.values())) <= MOST_COMBINATIONS
 
 
 def cell_text(kind: BinKind, goal: int, count: int) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ from rvmon.report.coverage_summary import (
     Summary,
     cell_text,
     counted,
+    is_grid,
     name_of,
     not_fine,
     share_text,
@@ -53,13 +54,12 @@ def print_overview(summary: Summary, console: Console) -> None:
         [f"{summary.item_name(place)}  {summary.hit_text(place)}" for place in summary.illegal],
         style="bold red",
     )
-    records = [summary.record(place) for place in summary.not_fine]
-    _print_list(
-        console,
-        "not fine:",
-        [f"{record.name}  {not_fine(record)}" for record in records],
-        style="bold red",
-    )
+    faults = [
+        f"{fault}  {counted(len(places), 'test')}: "
+        + _first_of([summary.record(place).name for place in places])
+        for fault, places in summary.faults.items()
+    ]
+    _print_list(console, "not fine:", faults, style="bold red")
     if summary.comparison is not None:
         _print_comparison(summary.comparison, summary.earlier_name, console)
 
@@ -86,10 +86,10 @@ def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> N
         score = summary.scores[group.name]
         heading = f"  {group.subject.value}, {score.covered:,} of {score.items:,} covered"
         console.print(Text.assemble((group.name, "bold"), heading))
-        grid = _grid(summary, group) if group.axes else None
+        grid = _grid(summary, group) if is_grid(group) else None
         if grid is not None and _fits(grid, console):
             console.print(grid)
-            console.print("  – ignored   ! illegal   1/3: one hit of three", style="dim")
+            console.print(_key(group), style="dim")
         else:
             console.print(_bins(summary, group))
 
@@ -102,9 +102,11 @@ def print_tests(summary: Summary, console: Console) -> None:
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     wide = console.width >= WIDE
+    with_strategy = wide and any(summary.strategies)
     table.add_column("test", overflow="fold")
-    if wide:
+    if with_strategy:
         table.add_column("strategy", overflow="fold")
+    if wide:
         table.add_column("ended", overflow="fold")
     table.add_column("alone", justify="right", no_wrap=True)
     table.add_column("share", justify="right", no_wrap=True)
@@ -115,17 +117,18 @@ def print_tests(summary: Summary, console: Console) -> None:
         ended = Text(wrong or record.ending.value, style="bold red" if wrong else "")
         table.add_row(
             record.name,
-            *((record.strategy, ended) if wide else ()),
+            *((record.strategy,) if with_strategy else ()),
+            *((ended,) if wide else ()),
             f"{len(only):,}" if only else "",
             share_text(step.share) if step.added else "",
-            _first_of(summary.item_name(place) for place in step.added),
+            _first_of([summary.item_name(place) for place in step.added]),
         )
     console.print(table)
     console.print("alone: items that no other test covers", style="dim")
     order = summary.ranking
     names = [summary.record(step.entry).name for step in order]
     of = counted(len(summary.coverage.entries), "test")
-    console.print(f"{len(order):,} of {of} cover as much: {_first_of(names)}")
+    console.print(f"{len(order):,} of {of} cover the same: {_first_of(names, SHOWN)}")
 
 
 def _groups(summary: Summary, console: Console) -> Table:
@@ -201,6 +204,17 @@ def _grid(summary: Summary, group: Group) -> Table:
     return table
 
 
+def _key(group: Group) -> str:
+    """What the signs of a grid mean, of those that it may have."""
+    kinds = {item.kind for item in group.items.values()}
+    parts = ["0 hole"]
+    if any(item.goal > 1 for item in group.items.values()):
+        parts.append("1/3 one hit of three")
+    parts += ["! illegal"] if BinKind.ILLEGAL in kinds else []
+    parts += ["– ignored"] if BinKind.IGNORE in kinds else []
+    return "  " + "   ".join(parts)
+
+
 def _cell(summary: Summary, group: Group, place: int) -> Text:
     from rich.text import Text
 
@@ -267,8 +281,7 @@ def _print_list(console: Console, heading: str, lines: Sequence[str], *, style: 
         console.print(f"  … and {len(lines) - SHOWN:,} more: --format json has all", style="dim")
 
 
-def _first_of(names: Iterable[str], most: int = 3) -> str:
-    every = list(names)
+def _first_of(every: Sequence[str], most: int = 3) -> str:
     more = f", … and {len(every) - most:,} more" if len(every) > most else ""
     return ", ".join(every[:most]) + more
 

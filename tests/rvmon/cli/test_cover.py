@@ -38,7 +38,7 @@ def test_the_overview(door, capsys):
     assert "total 46 % █████████░░░░░░░░░░░" in lines
     assert "D1 2 · · · · 1 · ·" in lines
     assert "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s" in lines
-    assert "wild-2 crashed: ZeroDivisionError: the gap is 0" in lines
+    assert "crashed: ZeroDivisionError: the gap is 0 1 test: wild-2" in lines
     assert lines[-1] == "what is missing: --holes"
 
 
@@ -80,11 +80,24 @@ def test_a_cross_of_three_has_nested_rows(tmp_path, capsys, monkeypatch):
     assert "x y e f" not in lines
 
 
+def test_a_cross_that_nobody_could_look_at_is_a_list(tmp_path, capsys):
+    """Its axes span more cells than any specification has; those that are items are listed."""
+    axes = {axis: [str(number) for number in range(100)] for axis in "uvwxyz"}
+    name = combination(["7"] * 6)
+    cross = Group("far", Subject.CROSS, {name: Item(name)}, axes=axes)
+    path = str(tmp_path / "a.cov")
+    with Database.open(path) as database:
+        database.declare(model_of([cross]))
+    code, lines = shown(capsys, path, "--bins", "--report", str(tmp_path / "a.html"))
+    assert code == 0
+    assert f"{name} 0" in lines
+
+
 def test_tests_with_what_they_added(door, capsys, monkeypatch):
     """Each test's part, and a short order; a narrow terminal has the same in fewer columns."""
     _, lines = shown(capsys, door, "--tests")
     assert "calm-2 random completed 1 33 % near: touch," in lines
-    assert lines[-1] == "3 of 4 tests cover as much: calm-2, wild-2, wild-1"
+    assert lines[-1] == "3 of 4 tests cover the same: calm-2, wild-2, wild-1"
     monkeypatch.setenv("COLUMNS", "40")
     main(["cover", door, "--tests", "--bins", "--holes"])
     lines = capsys.readouterr().out.splitlines()

@@ -64,6 +64,8 @@ def test_what_is_no_database_is_named(path):
         "ALTER TABLE items ADD COLUMN more",
         "UPDATE items SET kind = 'good'",
         "UPDATE items SET goal = 'many'",
+        "UPDATE items SET goal = 0",
+        "UPDATE groups SET weight = -1",
         "UPDATE groups SET axes = '[[1, 2]]'",
         "UPDATE groups SET subject = x'00'",
         'UPDATE tests SET verdicts = \'{"D1": "X"}\'',

@@ -6,6 +6,7 @@ import pytest
 from tests.tools.covered import door_model, dump, fill, hits_of
 from tests.tools.hostile import hostile_names
 
+from rvmon.coverage import schema
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of, model_of
@@ -137,6 +138,12 @@ def test_what_makes_no_sense_is_refused():
             database.record(TestRecord("t", number=2**64), {})
         with pytest.raises(CoverageError, match="nan s"):
             database.record(TestRecord("t", seconds=float("nan")), {})
+        for group, told in [
+            (group_of("g", Subject.STATES, [Item("a", goal=0)]), "item `a` of `g` has goal 0"),
+            (group_of("g", Subject.STATES, [], weight=-1), "group `g` has weight -1"),
+        ]:
+            with pytest.raises(CoverageError, match=told):
+                database.declare(model_of([group]))
         with pytest.raises(CoverageError, match="no item `x` of `gaze`"):
             database.explain("gaze", "x", "why")
         assert database.coverage().entries == []
@@ -177,3 +184,21 @@ def test_a_name_that_is_no_text_is_refused():
         database.declare(door_model())
         with pytest.raises(CoverageError, match="stand for no character"):
             database.explain("gaze", "yes", "\udc00")
+
+
+def test_a_place_where_nothing_can_be_written_is_read(path, monkeypatch):
+    """As from a medium that is read only: SQLite keeps nothing beside the file then."""
+    with Database.open(path) as database:
+        fill(database)
+    monkeypatch.setattr(schema.os, "access", lambda *_: False)
+    before = path.read_bytes()
+    assert len(read([path]).entries) == 4
+    assert path.read_bytes() == before
+
+
+def test_a_closed_database_says_so(path):
+    """A mistake in a program, not in the file."""
+    with Database.open(path) as database:
+        pass
+    with pytest.raises(CoverageError, match="until it is closed"):
+        database.declare(door_model())

@@ -1,5 +1,7 @@
 """Cases in which an engine once differed from the law, shrunk by the differential test."""
 
+import random
+
 import pytest
 from tests.tools.differential import disagreements
 
@@ -281,3 +283,15 @@ def test_a_value_that_comes_again_after_it_was_stale_is_known(engine):
         monitor.step_ns(t, {"y": -2, "e": t == 11})
     (attempt,) = monitor.finish_ns().attempts
     assert (attempt.decided, attempt.verdict) == (15, "F")
+
+
+@pytest.mark.parametrize("seed", [38, 57])
+def test_a_network_learns_of_an_until_in_order(seed):
+    """What becomes known at once of several stretches is known as of its stamp, not before."""
+    spec = rvmon.loads(
+        "spec s\nsignal x, y : real\nrequirement R1\n"
+        "  always (x > 3 -> F[0 ns, 16 ns] G[0 ns, 8 ns] y < 3)\n"
+    )
+    rng = random.Random(seed)
+    told = [Sample(t, {"x": rng.uniform(0, 5), "y": rng.uniform(0, 4)}) for t in range(90)]
+    assert not disagreements(Case(spec.checked, tuple(told)), Maker("network"), online=False)

@@ -56,11 +56,11 @@ def test_what_is_wrong_stands_first(door):
     parts = [
         "46 % covered, 1 illegal item hit, 2 of 4 tests not fine, 6 holes",
         "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s",
-        "wild-2 crashed: ZeroDivisionError: the gap is 0",
+        "crashed: ZeroDivisionError: the gap is 0: 1 test wild-2",
         "total 46 %",
         "Holes 6",
-        "near: far never hit : the arm is 1 m long: `far` begins at 1 m",
-        "3 of 4 tests cover as much: calm-2 wild-2 wild-1",
+        "near: far never hit : the arm is 1 m long: far begins at 1 m",
+        "3 of 4 tests cover the same: calm-2 wild-2 wild-1",
         "Number of tests: P passed F failed NT not triggered I inconclusive",
     ]
     places = [read.text.find(part) for part in parts]
