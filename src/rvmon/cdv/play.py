@@ -53,7 +53,11 @@ def player(
     def played(job: Job) -> tuple[Outcome, Outcome | None]:
         bench = benches[job.robot]
         outcome = bench.play(job.test)
-        beside = None if control is None else control(job.test)
+        try:
+            beside = None if control is None else control(job.test)
+        except Exception as error:
+            told = f"test `{job.test.name}`: its control cannot be made: {_told(error)}"
+            raise TestError(told) from error
         return outcome, None if beside is None else bench.play(beside)
 
     return played
@@ -139,11 +143,13 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
         TestError: the test cannot be played, says the system.
     """
     try:
-        run = system.play(test, observer)
+        run: object = system.play(test, observer)
     except TestError:
         raise
     except Exception as error:  # noqa: BLE001 - of whatever kind those of the system are
         return Run(observer.last_ns, error=_told(error))
+    if not isinstance(run, Run):
+        return Run(observer.last_ns, error=f"`play` returned {run!r}, which is no Run")
     if run.end_ns < observer.last_ns:
         told = f"it ended at {run.end_ns} ns, before its last sample, at {observer.last_ns} ns"
         return replace(run, end_ns=observer.last_ns, error=run.error or told)

@@ -16,7 +16,7 @@ from rvmon.cli import guarded
 from rvmon.cli.numbers import duration, positive
 from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
-from rvmon.writing import write_whole
+from rvmon.report.folder import refuse_no_file, write_file
 
 INTERRUPTED = 130
 """The exit code of a campaign that was interrupted."""
@@ -155,6 +155,8 @@ def _run(arguments: argparse.Namespace) -> int:
     from rvmon.cli.campaign_run import conduct, show
 
     refuse_unknown(arguments.campaign)
+    if arguments.junit is not None:
+        refuse_no_file(arguments.junit)
     campaign = judged_by(arguments.campaign, arguments.spec)
     robots = names_of(arguments.robot, tuple(campaign.robots), "robot")
     campaign = replace(campaign, robots={name: campaign.robots[name] for name in robots})
@@ -170,7 +172,7 @@ def _run(arguments: argparse.Namespace) -> int:
     judgement = conducted.judged(strict=arguments.strict)
     cut_short = conducted.summary.cut_short
     if arguments.junit is not None:
-        write_whole(arguments.junit, junit_xml(campaign.name, judgement, cut_short))
+        write_file(arguments.junit, junit_xml(campaign.name, judgement, cut_short))
     for what in judgement.wrong:
         warn(f"not as expected: {what}")
     return INTERRUPTED if cut_short else int(bool(judgement.wrong))
