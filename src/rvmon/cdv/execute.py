@@ -51,13 +51,14 @@ def execute(
     played = [] if kept is None else [*kept.played]
     begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
     control = campaign.control.make if campaign.control is not None and controls else None
+    begin = partial(player, campaign.robots, campaign.code, control, watch_all=campaign.watch_all)
     left = plan.jobs()[len(played) :]
     cut_short = ""
     try:
         with closing(
             parallel.execute(
                 left,
-                partial(player, campaign.robots, campaign.code, control),
+                begin,
                 jobs=jobs or os.cpu_count() or 1,
                 what="test",
                 instead=partial(_without_result, _requirements(plan)),
@@ -89,4 +90,4 @@ def _without_result(
     """The outcome of a test whose process was ended: nothing is known of it."""
     ending = Ending.HUNG if ended.timed_out else Ending.LOST
     verdicts = dict.fromkeys(requirements[job.robot], Verdict.INCONCLUSIVE)
-    return Outcome(verdicts, {}, {}, ending, ended.why, 0, {}, ended.seconds), None
+    return Outcome(verdicts, {}, (), {}, ending, ended.why, 0, {}, ended.seconds), None

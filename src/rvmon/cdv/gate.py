@@ -60,9 +60,9 @@ def judge_campaign(
     """Hold all tests against what was expected of them.
 
     A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
-    to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, its code
-    crashed, it hung or was lost. An expected failure that did not occur is wrong as well, unless no
-    test was played in which it could.
+    to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, something was
+    hit that must not be, its code crashed, it hung or was lost. An expected failure that did not
+    occur is wrong as well, unless no test was played in which it could.
 
     Args:
         results: what was played; of a campaign that was cut short only the tests are judged.
@@ -90,6 +90,8 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
             wrong.append(f"{name} is to be {answer}, and there is no such requirement")
         elif outcome.verdicts[name] != answer:
             wrong.append(f"{name} is {outcome.verdicts[name]}, not {answer}")
+    if test.mutation is None:
+        wrong.extend(outcome.illegal)
     for name, verdict in outcome.verdicts.items():
         if name in test.expected or test.mutation is not None:
             continue  # a planted fault says nothing about the robot

@@ -19,7 +19,8 @@ class Outcome:
         verdicts: by requirement; empty if nothing was judged. Of a test that hung or was lost
             nothing is known: it is inconclusive.
         reasons: by requirement that failed, when and why it did first.
-        hits: of states, transitions, code, and what the campaign collects beside.
+        illegal: what was hit of coverage models and must not be, in words.
+        hits: of states, transitions, code, and the coverage models that watched.
         ending: `completed`; `crashed` if code raised an exception, in which case it is judged as
             far as it went; `hung` if it was ended; `lost` if its process was.
         error: why it did not complete.
@@ -30,6 +31,7 @@ class Outcome:
 
     verdicts: Mapping[str, Verdict]
     reasons: Mapping[str, str]
+    illegal: tuple[str, ...]
     hits: Hits
     ending: Ending
     error: str | None

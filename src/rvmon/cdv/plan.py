@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.files import TestError
-from rvmon.errors import UnknownNameError
+from rvmon.errors import RvmonError, UnknownNameError
 
 _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
 
@@ -65,22 +65,39 @@ def plan(
 
     Raises:
         UnknownNameError: it has no such strategy.
-        TestError: two tests have one name, or one has a name that no file can have.
+        TestError: a strategy fails, two tests have one name, or a name is none of a file.
     """
     known = ", ".join(campaign.strategies)
     for name in strategies:
         if name not in campaign.strategies:
             raise UnknownNameError(f"no strategy `{name}`: there are {known}")
-    made = {
-        name: campaign.strategies[name](tests, seed) for name in strategies or campaign.strategies
-    }
+    made = {name: _made(campaign, name, tests, seed) for name in strategies or campaign.strategies}
     seen: set[str] = set()
     for test in (test for several in made.values() for test in several):
-        if test.name in seen:
+        if test.name.lower() in seen:  # some systems take names for one that differ in case only
             raise TestError(f"two tests are called `{test.name}`: give each a name of its own")
-        if not _FILE_NAME.fullmatch(test.name):
-            raise TestError(
-                f"test `{test.name}`: its file is called so: name it with letters, digits, - . + _"
-            )
-        seen.add(test.name)
+        seen.add(test.name.lower())
+    for name in (*campaign.robots, *(test.name for several in made.values() for test in several)):
+        if not _FILE_NAME.fullmatch(name):
+            raise TestError(f"`{name}`: a file is called so: use letters, digits, - . + _ only")
     return Plan(campaign, seed, made)
+
+
+def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:
+    """The tests of a strategy."""
+    try:
+        made = [*campaign.strategies[strategy](tests, seed)]
+    except RvmonError:
+        raise
+    except Exception as error:
+        told = f"{type(error).__name__}: {error}"
+        raise TestError(f"strategy `{strategy}` cannot make its tests: {told}") from error
+    for test in made:
+        if not isinstance(test, campaign.test):
+            kind = campaign.test.__name__
+            raise TestError(f"strategy `{strategy}` makes {test!r}, which is no {kind}")
+        if test.strategy != strategy:
+            raise TestError(
+                f"test `{test.name}` of strategy `{strategy}` says that it is of `{test.strategy}`"
+            )
+    return made

@@ -10,6 +10,7 @@ from rvmon.cdv.campaign import Robot
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.play import run_of, system_of
 from rvmon.cdv.system import Observer, Run, Values
+from rvmon.cdv.watch import watches_of
 from rvmon.report.run_html import run_page
 from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.session import Spec
@@ -48,7 +49,7 @@ def play_again(test: Test, name: str, robot: Robot, spec: Spec) -> Replay:
         robot: against which.
         spec: what judges it.
     """
-    checker = Checker(spec)
+    checker = Checker(spec, watches_of(robot, spec, everything=False))
     samples: list[Sample] = []
 
     def note(t_ns: int, values: Values) -> None:

@@ -38,6 +38,21 @@ class Run:
     facts: Sequence[tuple[str, str]] = ()
     scene: Scene | None = None
 
+    def __post_init__(self) -> None:
+        """See that others can count on it: what is wrong is told in the test that brings it.
+
+        Raises:
+            TypeError: a number is none, or a state is no pair.
+        """
+        if type(self.end_ns) is not int:
+            raise TypeError(f"end_ns is to be an int, not {self.end_ns!r}")
+        for name, figure in self.figures.items():
+            if not isinstance(figure, int | float):
+                raise TypeError(f"figure `{name}` is to be a number, not {figure!r}")
+        for entry in self.states:
+            if [*map(type, entry)] != [int, str]:
+                raise TypeError(f"a state is to be given as (ns, name), not {entry!r}")
+
 
 class Observer:
     """Told by a system, while it plays, of each sample: `observer(t_ns, values)`.

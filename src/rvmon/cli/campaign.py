@@ -16,7 +16,7 @@ from rvmon.cli import guarded
 from rvmon.cli.numbers import duration, positive
 from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
-from rvmon.writing import write_whole
+from rvmon.report.folder import refuse_no_file, write_file
 
 INTERRUPTED = 130
 """The exit code of a campaign that was interrupted."""
@@ -89,6 +89,12 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="write tables, tests and pages there; a campaign that was ended there goes on",
     )
+    parser.add_argument(
+        "--coverage",
+        metavar="DB",
+        help="add what the tests hit of all coverage models to a database (made if there is none); "
+        "`rvmon cover DB` shows it",
+    )
 
 
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
@@ -149,6 +155,8 @@ def _run(arguments: argparse.Namespace) -> int:
     from rvmon.cli.campaign_run import conduct, show
 
     refuse_unknown(arguments.campaign)
+    if arguments.junit is not None:
+        refuse_no_file(arguments.junit)
     campaign = judged_by(arguments.campaign, arguments.spec)
     robots = names_of(arguments.robot, tuple(campaign.robots), "robot")
     campaign = replace(campaign, robots={name: campaign.robots[name] for name in robots})
@@ -164,7 +172,7 @@ def _run(arguments: argparse.Namespace) -> int:
     judgement = conducted.judged(strict=arguments.strict)
     cut_short = conducted.summary.cut_short
     if arguments.junit is not None:
-        write_whole(arguments.junit, junit_xml(campaign.name, judgement, cut_short))
+        write_file(arguments.junit, junit_xml(campaign.name, judgement, cut_short))
     for what in judgement.wrong:
         warn(f"not as expected: {what}")
     return INTERRUPTED if cut_short else int(bool(judgement.wrong))

@@ -22,10 +22,10 @@ from rvmon.cli.reading import (
 from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.monitor.engines.registry import ENGINES
+from rvmon.report.folder import refuse_no_file, write_file
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
-from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
@@ -134,11 +134,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
     """Say before anything is judged that a result has no place to go to."""
     if arguments.junit:
-        path = Path(arguments.junit)
-        if path.is_dir():
-            raise RvmonError(f"cannot write {path}: it is a folder: name a file")
-        if not path.parent.is_dir():
-            raise RvmonError(f"cannot write {path}: there is no folder {path.parent}")
+        refuse_no_file(arguments.junit)
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 
@@ -221,10 +217,7 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
         from rvmon.report.junit import junit_xml
 
         broken = [(one.trace, one.error) for one in judged if one.report is None]
-        try:
-            write_whole(arguments.junit, junit_xml(reports, spec.checked, broken))
-        except OSError as error:
-            raise RvmonError(f"cannot write {arguments.junit}: {error.strerror or error}") from None
+        write_file(arguments.junit, junit_xml(reports, spec.checked, broken))
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
 

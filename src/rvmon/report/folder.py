@@ -1,10 +1,11 @@
-"""The folder that output goes to."""
+"""The folder, or file, that output goes to."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from rvmon.errors import RvmonError
+from rvmon.writing import write_whole
 
 
 def made(folder: str | Path) -> Path:
@@ -24,3 +25,28 @@ def made(folder: str | Path) -> Path:
     except OSError as error:
         raise RvmonError(f"error: cannot write to {path}: {error.strerror}") from None
     return path
+
+
+def refuse_no_file(path: str | Path) -> None:
+    """Say, before any work is done for it, that a file cannot be written.
+
+    Raises:
+        RvmonError: it is a folder, or has none.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise RvmonError(f"cannot write {path}: it is a folder: name a file")
+    if not path.parent.is_dir():
+        raise RvmonError(f"cannot write {path}: there is no folder {path.parent}")
+
+
+def write_file(path: str | Path, text: str) -> None:
+    """Write a file that a person named.
+
+    Raises:
+        RvmonError: it cannot be written; the message says why.
+    """
+    try:
+        write_whole(path, text)
+    except OSError as error:
+        raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None

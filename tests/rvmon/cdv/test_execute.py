@@ -7,10 +7,10 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.execute import execute
-from rvmon.cdv.outcome import Ending
 from rvmon.cdv.plan import plan
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import verdict_table
+from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError
 from rvmon.loading import load
 
@@ -72,7 +72,7 @@ def test_the_number_of_processes_changes_nothing(campaign):
 def test_states_and_transitions_are_hits(campaign):
     """How often, and when first."""
     (one,) = execute(plan(campaign(GOOD[0])), jobs=1).played
-    states, transitions = one.outcome.hits["states"], one.outcome.hits["transitions"]
+    states, transitions = one.outcome.hits["states entered"], one.outcome.hits["transitions taken"]
     assert {name: (hit.count, hit.first) for name, hit in states.items()} == {
         "down": (2, 0),
         "up": (1, 1_000_000_000),
@@ -110,3 +110,32 @@ def test_a_test_that_no_system_can_play_is_told(campaign):
     """It is a mistake of who made it, and no result."""
     with pytest.raises(cdv.TestError, match="no mutation `rust`"):
         execute(plan(campaign(("rusty", {"mutation": "rust"}))), jobs=1)
+
+
+@pytest.mark.parametrize(
+    ("run", "told"),
+    [
+        (lambda: None, "`play` returned None, which is no Run"),
+        (lambda: cdv.Run(1.5), "end_ns is to be an int, not 1.5"),
+        (lambda: cdv.Run(1, figures={"m": "far"}), "figure `m` is to be a number, not 'far'"),
+        (lambda: cdv.Run(1, states=["up"]), "a state is to be given as (ns, name), not 'up'"),
+    ],
+)
+def test_a_run_that_is_none_is_a_crash(campaign, spec, run, told):
+    """Told in the test that brings it; the others go on."""
+
+    class Odd:
+        def play(self, test, observer):
+            return run() if test.name == "odd" else cdv.Run(1)
+
+    chosen = campaign(("odd", {}), ("good", {}), robots={"toy": cdv.Robot(Odd, spec)})
+    odd, good = (one.outcome for one in execute(plan(chosen), jobs=1).played)
+    assert (odd.ending, good.ending) == (Ending.CRASHED, Ending.COMPLETED)
+    assert told in odd.error
+
+
+def test_a_control_that_cannot_be_made_is_told(campaign):
+    """With the test."""
+    control = cdv.Control("less", lambda _: 1 / 0)
+    with pytest.raises(cdv.TestError, match="test `good-0`: its control cannot be made: ZeroDiv"):
+        execute(plan(campaign(GOOD[0], control=control)), jobs=1)

@@ -50,6 +50,7 @@ def test_a_system_that_is_not_repeatable_is_told(campaign, tmp_path, spec, capsy
         (["run", "--robot", "r"], "no robot `r`: there are toy"),
         (["run", "--spec", "gone.rv"], "gone.rv"),
         (["run", "--timeout", "soon"], "expected a time in seconds"),
+        (["run", "--junit", "/gone/x.xml"], "cannot write /gone/x.xml: there is no folder"),
         (["replay", "gone.json"], "gone.json: No such file"),
         (["fly"], "invalid choice"),
     ],

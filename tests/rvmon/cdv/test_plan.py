@@ -22,9 +22,10 @@ def test_tests_are_played_on_the_robots_that_they_are_written_for(campaign, spec
     ("names", "told"),
     [
         (["twice", "twice"], "two tests are called `twice`"),
-        (["../../evil"], "name it with letters"),
-        ([".hidden"], "name it with letters"),
-        (["a b"], "name it with letters"),
+        (["twice", "Twice"], "two tests are called `Twice`"),
+        (["../../evil"], "use letters, digits"),
+        ([".hidden"], "use letters, digits"),
+        (["a b"], "use letters, digits"),
     ],
 )
 def test_a_name_is_that_of_a_file_and_unique(campaign, names, told):
@@ -37,3 +38,20 @@ def test_an_unknown_strategy_is_told(campaign):
     """With those that there are."""
     with pytest.raises(UnknownNameError, match="no strategy `luck`: there are climbs"):
         plan(campaign(("a", {})), ["luck"])
+
+
+@pytest.mark.parametrize(
+    ("made", "told"),
+    [
+        (lambda *_: 1 / 0, "strategy `s` cannot make its tests: ZeroDivisionError"),
+        (lambda *_: ["a"], "strategy `s` makes 'a', which is no Test"),
+        (
+            lambda *_: [cdv.Test(name="a", strategy="other", seed=1)],
+            "test `a` of strategy `s` says that it is of `other`",
+        ),
+    ],
+)
+def test_a_strategy_that_fails_is_told(campaign, made, told):
+    """By its name, with the cause."""
+    with pytest.raises(cdv.TestError, match=told):
+        plan(campaign(test=cdv.Test, strategies={"s": made}))
