@@ -105,12 +105,8 @@ class Networks:
         return _fields("LEAF", False, False, number, self._plan.graph.index[core.proposition])
 
 
-def _fields(
-    kind: str, turned: bool, kept: bool, left: int, right: int, *distances: int
-) -> str:
+def _fields(kind: str, turned: bool, kept: bool, left: int, right: int, *distances: int) -> str:
     """Of a node, as its type in C has them."""
-    low, high, over = (
-        max(-_FARTHEST, min(one, _FARTHEST)) for one in distances or (0, 0, 0)
-    )
+    low, high, over = (max(-_FARTHEST, min(one, _FARTHEST)) for one in distances or (0, 0, 0))
     ticks = ", ".join(f"INT64_C({one})" for one in (low, high, over))
     return f"{kind}, {int(turned)}, {str(kept).lower()}, {left}, {right}, {ticks}"
