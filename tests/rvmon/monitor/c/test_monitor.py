@@ -371,7 +371,7 @@ def test_beyond_compiled_monitors():
     """What captures values is refused with what to do."""
     text = (
         "spec s\nsignal x : real\nsignal p : bool\nrequirement R1\n"
-        "  upon p\n  let v = x\n  then within 1 s x > v\n"
+        "  upon p\n  then within 1 s x > v\n  let v = x\n"
     )
     with pytest.raises(RvmonError, match=r"R1 uses `let`.*leave it out"):
         rvmon.loads(text).monitor(engine="c")
