@@ -41,7 +41,9 @@ _PARTS = (
     "monitor_api.c.in",
 )
 
-_NETWORK = ("network_ranges.c.in", "network_nodes.c.in", "network_judge.c.in")
+_NETWORK = tuple(
+    f"network_{part}.c.in" for part in ("ranges", "known", "nodes", "state", "attempts", "judge")
+)
 """What stands behind the attempts where a network judges some of them."""
 
 
@@ -202,12 +204,13 @@ class _Writer:
 
     def _letters(self) -> Iterator[str]:
         graph = self.plan.graph
-        places, worse, better = [], [], []
+        places: list[list[int]] = []
+        worse, better = [], []
         for _, rule in self.plan.judges:
-            if rule.automaton is None:
+            alphabet = rule.alphabet
+            if rule.automaton is None:  # a network reads each proposition by itself
                 places.append([])
                 continue
-            alphabet = rule.alphabet
             places.append([graph.index[state] for state in alphabet.propositions])
             worse.append([weight for weights in alphabet.pessimistic for weight in weights])
             better.append([weight for weights in alphabet.optimistic for weight in weights])

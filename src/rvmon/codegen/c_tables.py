@@ -120,7 +120,7 @@ def _arrays(data: TableData, index: int, width: int) -> Iterator[str]:
 
 
 def _machine(data: TableData, index: int) -> str:
-    """The fields of an automaton: where it begins, how many classes of letters it has, its tables."""
+    """The fields of an automaton: where it begins, its classes of letters, its tables."""
     classes = len(data.rows[0]) if data.rows else 1
     return ", ".join([str(data.initial), str(classes), *(f"{name}{index}" for name in _TABLES)])
 

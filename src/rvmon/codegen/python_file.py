@@ -96,8 +96,9 @@ def _body(name: str) -> str:
 def _tables(rule: PlannedRule) -> str:
     if rule.automaton is None:
         raise RvmonError(
-            f"{rule.requirement.id} has no automaton of bounded size, so no file can be made of "
-            "it: leave it out with --only, or judge it with `rvmon run`"
+            f"{rule.requirement.id} has no automaton that a Python file can hold, for its attempts "
+            "or for those that may be in doubt: leave it out with --only, or have it judged by C "
+            "(`rvmon build`, --to c)"
         )
     data = tables_of(rule.automaton)
     fields = (

@@ -42,6 +42,12 @@ requirement R3 "c"
 requirement R4 "d"
   upon end
   then p
+requirement R5 "by a network"
+  whenever p
+  then F[1 s, 2 s] (q or mode == red)
+requirement R6 "by one that looks back"
+  upon f
+  then F[0 s, 2 s] once[0 s, 2 s] (q and within 1 s p)
 """
 
 
@@ -130,7 +136,7 @@ def named(name: str) -> rvmon.Spec:
 def test_no_name_of_a_spec_collides(name, tmp_path):
     """What a specification is called does not matter to the compiler."""
     spec = named(name)
-    assert built(program_build(spec.plan(only=["R2", "R4"]))).exists()
+    assert built(program_build(spec.plan(only=["R2", "R4", "R5"]))).exists()
     made = c_files(spec.plan())
     for file, text in made.texts.items():
         (tmp_path / file).write_text(text)

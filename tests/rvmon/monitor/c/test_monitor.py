@@ -368,9 +368,12 @@ def test_a_monitor_is_freed(spec):
 
 
 def test_beyond_compiled_monitors():
-    """What has no automaton of bounded size is refused with what to do."""
-    text = "spec s\nsignal p, q : bool\nrequirement R1\n  always once[0 s, 1 s] (p until q)\n"
-    with pytest.raises(RvmonError, match="R1"):
+    """What captures values is refused with what to do."""
+    text = (
+        "spec s\nsignal x : real\nsignal p : bool\nrequirement R1\n"
+        "  upon p\n  then within 1 s x > v\n  let v = x\n"
+    )
+    with pytest.raises(RvmonError, match=r"R1 uses `let`.*leave it out"):
         rvmon.loads(text).monitor(engine="c")
 
 

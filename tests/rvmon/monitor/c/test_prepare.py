@@ -77,8 +77,8 @@ def test_the_command_says_what_is_ready(form, tmp_path, capsys):
 
 def test_a_requirement_that_c_refuses_is_named(tmp_path, capsys):
     """With what to do: leave it out."""
-    text = "spec s\nsignal p : bool\nrequirement R1\n  whenever p then F[2 s, 5 s] p\n"
-    with pytest.raises(rvmon.RvmonError, match=r"R1 has no automaton.*leave it out"):
+    text = "spec s\ntime sampled\nmax delay 1 s\nsignal p : bool\nrequirement R1\n  always p\n"
+    with pytest.raises(rvmon.RvmonError, match=r"R1 has samples that come late.*leave out"):
         rvmon.loads(text).prepare()
 
 
