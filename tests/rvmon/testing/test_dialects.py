@@ -32,6 +32,7 @@ from rvmon.testing.peers.dialects import (
     REELAY_DISCRETE,
     RTAMT_DENSE,
     RTAMT_DISCRETE,
+    SENTIL,
     Dialect,
     translate,
 )
@@ -49,6 +50,8 @@ from rvmon.testing.peers.dialects import (
         (RTAMT_DISCRETE, previous(p), "(s_prev((v_p > 0.5)))"),
         (MSTLO, eventually(no(p), 1, 4), "(F[1, 4]((!((v_p > 0.5)))))"),
         (MSTLO, true, "(v_one > 0.5)"),
+        (SENTIL, following(p), "(next((v_p > 0.5)))"),
+        (SENTIL, once(p, 2, 3), "(once[2, 3]((v_p > 0.5)))"),
         (LTLF, two(p, "U", following(q)), "((v_p) U ((X(v_q))))"),
     ],
 )
