@@ -88,6 +88,12 @@ def _job(campaign):
     return plan(campaign).jobs()[0]
 
 
+def test_blocks_of_one_name_are_told(code):
+    """Their hits could not be told apart."""
+    with pytest.raises(RvmonError, match=r"two blocks are called `Toy.climb`, in .*toy.py"):
+        cdv.Code((*cdv.blocks_of(code), *cdv.blocks_of(code)))
+
+
 @pytest.mark.parametrize(
     ("text", "names", "told"),
     [
