@@ -5,10 +5,12 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 
+from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.examples import Cell
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
 from rvmon.cdv.tables import RobotTables
+from rvmon.report.coverage_summary import counted, share_text
 from rvmon.report.markup import Child, e, page
 from rvmon.report.percent import percent_text
 from rvmon.report.style import MARKS
@@ -24,6 +26,7 @@ def campaign_page(
     command: str,
     examples: Mapping[Cell, str],
     tests: Mapping[tuple[str, str], str],
+    coverage: Mapping[str, CoverageFigures],
 ) -> str:
     """Write the page.
 
@@ -34,6 +37,7 @@ def campaign_page(
         command: runs the campaign again.
         examples: addresses of pages, by the counts that they are examples of.
         tests: addresses of pages, by robot and test.
+        coverage: by robot, what was covered.
     """
     body: list[Child] = [_header(summary, presentation)]
     body.extend(
@@ -41,6 +45,7 @@ def campaign_page(
         for robot, figures in summary.robots.items()
         if figures.requirements and figures.strategies
     )
+    body.append(_covered(summary, coverage))
     body.extend(
         _coverage(figures, presentation, summary.kind)
         for figures in summary.robots.values()
@@ -106,6 +111,19 @@ def _verdicts(
         table = table_html(tables.control, beside=tables.beside)
         parts.append(e("details", None, summary_line, table))
     return e("section", None, *parts)
+
+
+def _covered(summary: CampaignSummary, coverage: Mapping[str, CoverageFigures]) -> ET.Element:
+    """What of the coverage models was seen, each with the way to its page."""
+    lines = []
+    for robot, found in coverage.items():
+        link = e("a", {"href": found.page}, f"{share_text(found.share)} covered")
+        rest: list[Child] = [f", {counted(found.holes, 'hole')}"]
+        if found.illegal:
+            told = f", {counted(len(found.illegal), 'illegal item')} hit"
+            rest.append(e("b", {"data-verdict": "F"}, told))
+        lines.append(e("li", None, f"{summary.robots[robot].title}: ", link, *rest))
+    return e("section", None, e("h2", None, "Coverage"), e("ul", None, *lines))
 
 
 def _coverage(figures: RobotSummary, presentation: Presentation, kind: str) -> ET.Element:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from itertools import pairwise
+from collections.abc import Iterable, Mapping, Sequence
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.meter import code_groups
@@ -11,9 +10,10 @@ from rvmon.cdv.system import Run
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
 
-STATES = "states entered"
-TRANSITIONS = "transitions taken"
-"""Names of groups, which no coverpoint can have."""
+STATES = "states"
+TRANSITIONS = "transitions"
+PAIRS = "pairs of transitions"
+"""Names of groups."""
 
 _ARROW = " → "
 
@@ -28,7 +28,18 @@ def measured_groups(campaign: Campaign) -> list[Group]:
     return [
         group_of(STATES, Subject.STATES, [*map(Item, campaign.states)]),
         group_of(TRANSITIONS, Subject.TRANSITIONS, [*map(Item, transitions)]),
+        group_of(PAIRS, Subject.TRANSITIONS, [*map(Item, _pairs(campaign.transitions))]),
         *(code_groups(campaign.code) if campaign.code is not None else ()),
+    ]
+
+
+def _pairs(transitions: Sequence[tuple[str, str]]) -> list[str]:
+    """Two transitions one after the other."""
+    return [
+        _ARROW.join((*first, second[1]))
+        for first in transitions
+        for second in transitions
+        if first[1] == second[0]
     ]
 
 
@@ -40,11 +51,14 @@ def source_and_target(transition: str) -> tuple[str, str]:
 
 def hits_of_states(run: Run) -> dict[str, Mapping[str, Hit]]:
     """How often each state was entered and each transition taken, and when first."""
-    taken = (
-        (t_ns, _ARROW.join((source, target)))
-        for (_, source), (t_ns, target) in pairwise(run.states)
-    )
-    found = {STATES: _counted(run.states), TRANSITIONS: _counted(taken)}
+    names = [state for _, state in run.states]
+    found = {STATES: _counted(run.states)}
+    for group, length in ((TRANSITIONS, 2), (PAIRS, 3)):
+        found[group] = _counted(
+            (t_ns, _ARROW.join(names[end - length : end]))
+            for end, (t_ns, _) in enumerate(run.states, start=1)
+            if end >= length
+        )
     return {group: items for group, items in found.items() if items}
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_files import RUNS, TESTS
 from rvmon.cdv.campaign_page import campaign_page
+from rvmon.cdv.coverage import write_coverage
 from rvmon.cdv.examples import choose_examples, comparable_jobs
 from rvmon.cdv.outcome import Played, Results
 from rvmon.cdv.plan import Job
@@ -31,7 +32,7 @@ def write_pages(
     specs: Mapping[str, Spec],
     command: str,
 ) -> list[str]:
-    """Write `report.html`, and a page per example to `runs/`.
+    """Write `report.html`, a page per example to `runs/`, and what was covered.
 
     Args:
         folder: of the campaign's files, with the tests in `tests/`.
@@ -71,7 +72,13 @@ def write_pages(
         for cell, job in examples.by_cell.items()
     }
     page = campaign_page(
-        summary, tables, campaign.presentation, command=command, examples=cells, tests=addresses
+        summary,
+        tables,
+        campaign.presentation,
+        command=command,
+        examples=cells,
+        tests=addresses,
+        coverage=write_coverage(folder, results, addresses),
     )
     write_whole(folder / REPORT, page)
     return otherwise

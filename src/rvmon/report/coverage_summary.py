@@ -45,6 +45,7 @@ class Summary:
         coverage: what it holds.
         earlier: what it is compared with.
         earlier_name: of that, for people.
+        pages: addresses of pages of runs, by the name of the test.
     """
 
     def __init__(
@@ -53,10 +54,12 @@ class Summary:
         coverage: Coverage,
         earlier: Coverage | None = None,
         earlier_name: str = "",
+        pages: Mapping[str, str] | None = None,
     ) -> None:
         self.name = name
         self.coverage = coverage
         self.earlier_name = earlier_name
+        self.pages = pages or {}
         self._earlier = earlier
 
     @cached_property

@@ -76,6 +76,8 @@ def tests_section(summary: Summary, listed: Collection[int]) -> ET.Element:
 def _row(summary: Summary, place: int, shown: dict[str, bool]) -> ET.Element:
     record, step = summary.record(place), summary.steps[place]
     only = len(summary.unique[place])
+    page = summary.pages.get(record.name)
+    name: Child = record.name if page is None else e("a", {"href": page}, record.name)
     values = {
         "campaign": record.campaign,
         "strategy": record.strategy,
@@ -85,7 +87,7 @@ def _row(summary: Summary, place: int, shown: dict[str, bool]) -> ET.Element:
     return e(
         "tr",
         {"id": f"t{place}"},
-        e("th", {"scope": "row"}, record.name),
+        e("th", {"scope": "row"}, name),
         *(e("td", {"class": "text"}, values[name]) for name, is_shown in shown.items() if is_shown),
         _ended(record),
         e("td", {"class": "text"}, *_verdicts(record)),

@@ -37,7 +37,10 @@ def test_the_demo_leaves_all_its_files(demo):
     """Tables in four forms, coverage, pages, every test, and templates of those from the model."""
     names = {path.name for path in demo.iterdir()}
     tables = {f"table.{ending}" for ending in ("txt", "csv", "tex", "json")}
-    assert names == {*tables, "coverage.json", "report.html", "tests", "runs", "templates"}
+    robots = {"correct", "legacy"}
+    assert names == {*tables, *robots, "coverage.json", "report.html", "tests", "runs", "templates"}
+    for robot in robots:
+        assert {path.name for path in (demo / robot).iterdir()} == {"coverage.db", "coverage.html"}
     columns = json.loads((demo / "table.json").read_text())["robots"]["correct"]["strategies"]
     assert {path.name for path in (demo / "templates").iterdir()} <= columns.keys()
     assert "likeliest by the model's weights" in " ".join((demo / "table.txt").read_text().split())

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from handover.cli import main
 from rvmon.cdv.execute import execute
 from rvmon.cdv.unfinished import NAME
 from rvmon.cli import campaign_run
+from rvmon.coverage.database import read
 from rvmon.execute.journal import entries
 
 pytestmark = pytest.mark.campaign
@@ -30,7 +32,12 @@ def files(folder):
             rb'("seconds": |simulated in |\bin )[\d.]+', b"", path.read_bytes()
         )
         for path in folder.rglob("*")
-        if path.is_file()
+        if path.is_file() and path.suffix != ".db"
+    } | {
+        path.relative_to(folder): [
+            (replace(entry.record, seconds=0.0), entry.digest) for entry in read([path]).entries
+        ]
+        for path in folder.rglob("*.db")
     }
 
 

@@ -74,7 +74,7 @@ def test_only_the_marked_code_is_measured_where_it_is_marked(campaign, code):
     def statements(*, marked):
         measured = cdv.Code(cdv.blocks_of(code), branches=False, marked=marked)
         chosen = campaign(("a", {}), robots={"toy": cdv.Robot(System, None)})
-        outcome, _ = player(chosen.robots, measured, None, watch_all=False)(_job(chosen))
+        outcome, _ = player(chosen.robots, measured, None)(_job(chosen))
         return {group: list(items) for group, items in outcome.hits.items()}
 
     climbing = {"statements of Toy.climb": ["4", "6"]}
