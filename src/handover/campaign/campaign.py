@@ -46,9 +46,9 @@ def handover_campaign(robots: Sequence[str] = tuple(ROBOTS), *, monitors: bool =
             robot: Robot(
                 partial(Handover, robot),
                 spec_path(robot) if monitors else None,
+                coverage=(situations_path(),) if monitors else (),
                 title=ROBOTS[robot],
                 spec_name=SPECS[robot],
-                situations=situations_path(),
             )
             for robot in robots
         },

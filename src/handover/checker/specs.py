@@ -14,19 +14,19 @@ def spec_path(robot: str) -> Path:
     >>> spec_path("correct").name
     'handover.rv'
     """
-    return _found(SPECS[robot])
+    return _placed(SPECS[robot])
 
 
 def situations_path() -> Path:
-    """The file of the situations that handovers should show.
+    """The file that says which situations a campaign should show.
 
     >>> situations_path().name
     'handover_situations.rv'
     """
-    return _found("specs/handover_situations.rv")
+    return _placed("specs/handover_situations.rv")
 
 
-def _found(name: str) -> Path:
+def _placed(name: str) -> Path:
     package = Path(__file__).parents[1]
     packaged = package / name
     path = packaged if packaged.exists() else package.parents[1] / name

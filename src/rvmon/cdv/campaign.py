@@ -23,16 +23,17 @@ class Robot:
     Attributes:
         system: makes what plays its tests, once in each process.
         spec: file of its requirements; `None` judges nothing.
+        coverage: files of further specifications: what their coverpoints, crosses and goals show is
+            gathered, beside what those of `spec` do and what its requirements are seen to do.
         title: what tables and pages call it; default: its name in the campaign.
         spec_name: what they call its requirements; default: the path.
-        situations: file of a coverage model, watched beside that of the requirements.
     """
 
     system: Callable[[], System[Any]]
     spec: str | Path | None
+    coverage: Sequence[str | Path] = ()
     title: str = ""
     spec_name: str = ""
-    situations: str | Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +85,6 @@ class Campaign:
         control: what is played beside a test.
         expected_failures: that do not fail it.
         timeout_s: seconds that a test may take before it is ended; `None`: any.
-        watch_all: whether all that coverage models have is watched; else, of the requirements' own,
-            the coverpoints, as some must not be hit.
         sources: files and folders that runs depend on, beside those that define tests, strategies
             and systems: where one has changed, an unfinished campaign is not gone on with.
         packages: whose versions runs depend on, likewise.
@@ -103,7 +102,6 @@ class Campaign:
     control: Control | None = None
     expected_failures: Sequence[ExpectedFailure] = ()
     timeout_s: float | None = 600.0
-    watch_all: bool = False
     sources: Sequence[str | Path] = ()
     packages: Sequence[str] = ()
     program: str = ""

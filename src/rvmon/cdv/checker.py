@@ -1,68 +1,76 @@
-"""Samples go to a monitor of a specification while a test is played, and to what watches it."""
+"""Samples go to a monitor while a test is played, and to what gathers coverage."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rvmon.cdv.system import Values
-from rvmon.cdv.watch import Watch
 from rvmon.coverage.hits import Hit, Hits, illegal
 from rvmon.verdict.illegal import IllegalHit
+from rvmon.verdict.report import Report, report_of
 
 if TYPE_CHECKING:
-    from rvmon.monitor import Monitor
+    from rvmon.coverage.monitor import SpecCoverage
     from rvmon.session import Spec
-    from rvmon.verdict.report import Report
+    from rvmon.spec.checked.specification import CheckedSpec
 
 
 class Checker:
     """Judges one test after the other: `begin`, `observe` each sample, `finish`.
 
-    Args:
-        spec: what to judge by; names that it does not declare are passed over.
-        watches: coverage models by which each test is watched beside.
+    Names that a specification does not declare are passed over.
 
-    Attributes:
-        hits: what the test that was finished last hit of them.
+    Args:
+        spec: what to judge by; `None` judges nothing.
+        coverages: what is gathered of the coverage models of specifications.
     """
 
-    def __init__(self, spec: Spec, watches: Sequence[Watch] = ()) -> None:
-        self._monitor: Monitor = spec.monitor()
-        self._watched = [(watch, watch.monitor()) for watch in watches]
-        self._steps: list[tuple[frozenset[str], Callable[[int, Values], object]]] = [
-            (_names(spec), self._monitor.step_ns),
-            *((_names(watch.spec), monitor.step_ns) for watch, monitor in self._watched),
+    def __init__(self, spec: Spec | None, coverages: Sequence[SpecCoverage] = ()) -> None:
+        self._monitor = None if spec is None else spec.monitor()
+        self._coverages = coverages
+        self._collectors = [one.monitor() for one in coverages]
+        takers: list[tuple[CheckedSpec, Callable[[int, Values], object]]] = [
+            (one.spec, taker.step_ns)
+            for one, taker in zip(coverages, self._collectors, strict=True)
         ]
-        self.hits: Hits = {}
+        if spec is not None and self._monitor is not None:
+            takers.append((spec.checked, self._monitor.step_ns))
+        self._takers = [
+            (frozenset((*checked.signals, *checked.events)), take) for checked, take in takers
+        ]
 
     def begin(self) -> None:
         """Forget the last test."""
-        self._monitor.reset()
-        for _, monitor in self._watched:
-            monitor.reset()
+        if self._monitor is not None:
+            self._monitor.reset()
+        for one in self._collectors:
+            one.reset()
 
     def observe(self, t_ns: int, values: Values) -> None:
         """Take one whole sample."""
-        for names, step_ns in self._steps:
+        for names, take in self._takers:
             known = {name: value for name, value in values.items() if name in names}
             if known:
-                step_ns(t_ns, known)
+                take(t_ns, known)
 
     def finish(self, end_ns: int) -> Report:
         """The verdicts on a test that was observed up to `end_ns`."""
-        found: list[IllegalHit] = []
+        if self._monitor is None:
+            return report_of((), ())
+        return self._monitor.finish_ns(end_ns)
+
+    def hits(self, end_ns: int) -> Hits:
+        """What a test hit that was observed up to `end_ns`."""
         hits: dict[str, Mapping[str, Hit]] = {}
-        for watch, monitor in self._watched:
-            own = monitor.finish_ns(end_ns)
-            hits |= own
-            for group, item, hit in illegal(own, watch.spec.coverage_model.bin_model):
-                found.append(IllegalHit(group.name, item.name, hit.count, hit.first or 0))
-        self.hits = hits
-        report = self._monitor.finish_ns(end_ns)
-        return replace(report, illegal=tuple(found)) if found else report
+        for one in self._collectors:
+            hits |= one.finish_ns(end_ns)
+        return hits
 
-
-def _names(spec: Spec) -> frozenset[str]:
-    return frozenset((*spec.checked.signals, *spec.checked.events))
+    def illegal(self, hits: Hits) -> list[IllegalHit]:
+        """What of these hits must not be."""
+        return [
+            IllegalHit(group.name, item.name, hit.count, hit.first or 0)
+            for one in self._coverages
+            for group, item, hit in illegal(hits, one.bin_model)
+        ]

@@ -45,6 +45,20 @@ class Code:
     marked: bool = False
     kind: str = "block"
 
+    def __post_init__(self) -> None:
+        """See that each block can be told from the others.
+
+        Raises:
+            RvmonError: two have one name, as functions of two files may.
+        """
+        named = {block.name: block for block in self.blocks}
+        for block in self.blocks:
+            if named[block.name] is not block:
+                raise RvmonError(
+                    f"two blocks are called `{block.name}`, in {block.path} and in "
+                    f"{named[block.name].path}: name one otherwise"
+                )
+
 
 def blocks_of(path: str | Path, names: Mapping[str, str] | None = None) -> tuple[Block, ...]:
     """The functions of a file as blocks, without the lines that define them.

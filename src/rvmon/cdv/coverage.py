@@ -1,21 +1,27 @@
-"""What a campaign has covered, in its folder: a database and a page for each robot."""
+"""What the tests of a campaign are to show, gathered while they are played, and kept."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from rvmon.cdv.database import declare, record
-from rvmon.cdv.outcome import Results
-from rvmon.coverage.database import read
+from rvmon.cdv.measured import measured_groups
+from rvmon.coverage.database import Database, read
+from rvmon.coverage.model import Group, Item, Model, model_of
+from rvmon.coverage.record import TestRecord
+from rvmon.errors import RvmonError
+from rvmon.loading import load
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
-from rvmon.session import Spec
+from rvmon.spec.checked.goals import BinKind
 from rvmon.writing import write_whole
 
-DATABASE = "coverage.db"
-"""The file in a campaign's folder; of several robots, each has one in a folder of its name."""
+if TYPE_CHECKING:
+    from rvmon.cdv.campaign import Campaign, Robot
+    from rvmon.cdv.outcome import Played, Results
+    from rvmon.coverage.monitor import SpecCoverage
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,36 +41,110 @@ class CoverageFigures:
     illegal: tuple[str, ...]
 
 
+DATABASE = "coverage.db"
+"""The file in a campaign's folder; of several robots, each has one in a folder of its name."""
+
+
+def spec_coverages(robot: Robot) -> list[SpecCoverage]:
+    """The coverage models of a robot's specifications: its requirements', and the further ones.
+
+    Raises:
+        RvmonError: one of the files is wrong.
+    """
+    specs = [*([] if robot.spec is None else [robot.spec]), *robot.coverage]
+    return [load(path).coverage_model for path in specs]
+
+
+def coverage_model(campaign: Campaign, robot: str) -> Model:
+    """All that the tests of a robot are to show.
+
+    Raises:
+        RvmonError: two of its specifications call something the same.
+    """
+    groups = measured_groups(campaign)
+    for one in spec_coverages(campaign.robots[robot]):
+        groups += one.model.groups.values()
+    try:
+        return model_of(groups)
+    except ValueError as error:
+        raise RvmonError(
+            f"robot `{robot}`: {error}: its requirements, coverpoints, crosses and goals need "
+            "names of their own; states, transitions and blocks of code have theirs"
+        ) from None
+
+
+def write_database(path: Path, campaign: Campaign, robot: str, played: Sequence[Played]) -> None:
+    """Write the database of a robot's tests; one that is there is replaced.
+
+    Args:
+        path: of the file, whose folder is made.
+        campaign: that was played.
+        robot: its name in the campaign.
+        played: of its tests those that count, in the order of the plan.
+
+    Raises:
+        RvmonError: the file cannot be written, or see `coverage_model`.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.unlink(missing_ok=True)
+    with Database.open(path) as database:
+        database.declare(_with_the_rest(coverage_model(campaign, robot), played))
+        for number, one in enumerate(played):
+            test, outcome = one.job.test, one.outcome
+            record = TestRecord(
+                test.name,
+                campaign=campaign.name,
+                strategy=test.strategy,
+                seed=test.seed,
+                system=robot,
+                verdicts=outcome.verdicts,
+                ending=outcome.ending,
+                error=outcome.error or "",
+                number=number,
+                seconds=outcome.seconds,
+                when=number,
+            )
+            database.record(record, outcome.hits)
+
+
+def _with_the_rest(model: Model, played: Sequence[Played]) -> Model:
+    """A model with what was seen that nobody declared: it is shown, and is no goal."""
+    groups: dict[str, Group] = dict(model.groups)
+    for one in played:
+        for name, items in one.outcome.hits.items():
+            known = groups[name].items
+            if not items.keys() <= known.keys():
+                rest = {item: Item(item, BinKind.IGNORE) for item in items if item not in known}
+                groups[name] = replace(groups[name], items={**known, **rest})
+    return Model(groups)
+
+
 def write_coverage(
-    folder: Path,
-    results: Results,
-    specs: Mapping[str, Spec],
-    pages: Mapping[tuple[str, str], str],
+    folder: Path, results: Results, pages: Mapping[tuple[str, str], str]
 ) -> dict[str, CoverageFigures]:
-    """Write the database of each robot's tests, and a page beside it; those there are replaced.
+    """Write the database of each robot's tests, and a page beside it.
 
     Args:
         folder: of the campaign.
-        results: its outcomes.
-        specs: by robot, what judged it.
+        results: its outcomes; a planted fault says nothing about the robot.
         pages: addresses of pages of runs in the folder, by robot and test.
 
     Raises:
-        CoverageError: a file cannot be written, or see `rvmon.cdv.database.declare`.
+        RvmonError: a file cannot be written.
     """
+    campaign = results.plan.campaign
     figures = {}
-    robots = results.plan.campaign.robots
-    for robot, about in robots.items():
-        own = _of(results, robot)
-        path = folder / DATABASE if len(robots) == 1 else folder / robot / DATABASE
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.unlink(missing_ok=True)
-        declare(path, own.plan.campaign, specs)
-        record(path, own)
+    for robot, path in database_paths(folder, campaign.robots).items():
+        played = [
+            one
+            for one in results.played
+            if one.job.robot == robot and one.job.test.mutation is None
+        ]
+        write_database(path, campaign, robot, played)
         up = "../" * len(path.parent.relative_to(folder).parts)
-        shown = {test: f"{up}{address}" for (of, test), address in pages.items() if of == robot}
-        name = f"{own.plan.campaign.name}, {about.title or robot}"
-        summary = Summary(name, read([path]), pages=shown)
+        own = {test: f"{up}{page}" for (of, test), page in pages.items() if of == robot}
+        title = campaign.robots[robot].title or robot
+        summary = Summary(f"{campaign.name}, {title}", read([path]), pages=own)
         page = path.with_suffix(".html")
         write_whole(page, coverage_page(summary))
         figures[robot] = CoverageFigures(
@@ -76,9 +156,8 @@ def write_coverage(
     return figures
 
 
-def _of(results: Results, robot: str) -> Results:
-    """What came out of the tests of one robot."""
-    campaign = results.plan.campaign
-    alone = replace(campaign, robots={robot: campaign.robots[robot]})
-    played = tuple(one for one in results.played if one.job.robot == robot)
-    return replace(results, plan=replace(results.plan, campaign=alone), played=played)
+def database_paths(folder: Path, robots: Mapping[str, Robot]) -> dict[str, Path]:
+    """Where the databases of a campaign lie, by robot."""
+    if len(robots) == 1:
+        return dict.fromkeys(robots, folder / DATABASE)
+    return {robot: folder / robot / DATABASE for robot in robots}

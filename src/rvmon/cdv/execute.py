@@ -51,7 +51,7 @@ def execute(
     played = [] if kept is None else [*kept.played]
     begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
     control = campaign.control.make if campaign.control is not None and controls else None
-    begin = partial(player, campaign.robots, campaign.code, control, watch_all=campaign.watch_all)
+    begin = partial(player, campaign.robots, campaign.code, control)
     left = plan.jobs()[len(played) :]
     cut_short = ""
     try:

@@ -23,11 +23,17 @@ class TestError(RvmonError, ValueError):
 def to_json(test: Test) -> bytes:
     """A test as indented JSON, fields with their default left out.
 
+    Raises:
+        TestError: a field holds what JSON has no form for.
+
     >>> test = Test(name="a", strategy="random", seed=1)
     >>> from_json(to_json(test), Test) == test
     True
     """
-    return msgspec.json.format(msgspec.json.encode(test), indent=2) + b"\n"
+    try:
+        return msgspec.json.format(msgspec.json.encode(test), indent=2) + b"\n"
+    except TypeError as error:
+        raise TestError(f"test `{test.name}` cannot be written as JSON: {error}") from None
 
 
 def from_json(text: bytes, kind: type[_Test], *, source: str = "<bytes>") -> _Test:

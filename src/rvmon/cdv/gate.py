@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure
 from rvmon.cdv.outcome import Played, Results
+from rvmon.cdv.summary import differences
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.loading import load
@@ -85,11 +86,8 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
     known: list[str] = []
     if outcome.ending is not Ending.COMPLETED and test.mutation is None:
         wrong.append(f"{outcome.ending}: {outcome.error}")
-    for name, answer in test.expected.items() if outcome.verdicts else ():
-        if name not in outcome.verdicts:
-            wrong.append(f"{name} is to be {answer}, and there is no such requirement")
-        elif outcome.verdicts[name] != answer:
-            wrong.append(f"{name} is {outcome.verdicts[name]}, not {answer}")
+    if outcome.verdicts:
+        wrong.extend(differences(test.expected, outcome.verdicts))
     if test.mutation is None:
         wrong.extend(outcome.illegal)
     for name, verdict in outcome.verdicts.items():

@@ -10,10 +10,10 @@ from rvmon.cdv.system import Run
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
 
-STATES = "states entered"
-TRANSITIONS = "transitions taken"
-PAIRS = "transitions one after the other"
-"""Names of groups, which no coverpoint can have."""
+STATES = "states"
+TRANSITIONS = "transitions"
+PAIRS = "pairs of transitions"
+"""Names of groups."""
 
 _ARROW = " → "
 
@@ -34,6 +34,7 @@ def measured_groups(campaign: Campaign) -> list[Group]:
 
 
 def _pairs(transitions: Sequence[tuple[str, str]]) -> list[str]:
+    """Two transitions one after the other."""
     return [
         _ARROW.join((*first, second[1]))
         for first in transitions

@@ -20,7 +20,7 @@ class Outcome:
             nothing is known: it is inconclusive.
         reasons: by requirement that failed, when and why it did first.
         illegal: what was hit of coverage models and must not be, in words.
-        hits: of states, transitions, code, and the coverage models that watched.
+        hits: of states, transitions, code, and of coverage models.
         ending: `completed`; `crashed` if code raised an exception, in which case it is judged as
             far as it went; `hung` if it was ended; `lost` if its process was.
         error: why it did not complete.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.files import TestError
+from rvmon.cdv.files import TestError, from_json, to_json
 from rvmon.errors import RvmonError, UnknownNameError
 
 _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
@@ -65,7 +65,8 @@ def plan(
 
     Raises:
         UnknownNameError: it has no such strategy.
-        TestError: a strategy fails, two tests have one name, or a name is none of a file.
+        TestError: a strategy fails, a test cannot be written to a file and read back, two have one
+            name, or a name is none of a file.
     """
     known = ", ".join(campaign.strategies)
     for name in strategies:
@@ -100,4 +101,5 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
             raise TestError(
                 f"test `{test.name}` of strategy `{strategy}` says that it is of `{test.strategy}`"
             )
+        from_json(to_json(test), campaign.test, source=f"test `{test.name}` of `{strategy}`")
     return made

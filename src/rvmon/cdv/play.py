@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 from rvmon.cdv.campaign import Robot
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.code import Code
+from rvmon.cdv.coverage import spec_coverages
 from rvmon.cdv.files import TestError
 from rvmon.cdv.measured import hits_of_states
 from rvmon.cdv.meter import Meter
 from rvmon.cdv.outcome import Outcome
 from rvmon.cdv.plan import Job
 from rvmon.cdv.system import Observer, Run, System
-from rvmon.cdv.watch import watches_of
 from rvmon.coverage.record import Ending
 from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import RvmonError
@@ -33,7 +33,6 @@ def player(
     robots: Mapping[str, Robot],
     code: Code | None,
     control: Callable[[Any], Test | None] | None,
-    watch_all: bool,
 ) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
     """What plays a job in this process: its outcome, and that of its control.
 
@@ -41,14 +40,11 @@ def player(
         robots: by name.
         code: whose coverage is measured.
         control: makes the control of a test.
-        watch_all: whether all that coverage models have is watched.
 
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
     """
-    benches = {
-        name: _Bench(name, robot, code, watch_all=watch_all) for name, robot in robots.items()
-    }
+    benches = {name: _Bench(name, robot, code) for name, robot in robots.items()}
 
     def played(job: Job) -> tuple[Outcome, Outcome | None]:
         bench = benches[job.robot]
@@ -66,51 +62,33 @@ def player(
 class _Bench:
     """One robot with all that plays, judges and measures it."""
 
-    def __init__(
-        self,
-        name: str,
-        robot: Robot,
-        code: Code | None,
-        *,
-        watch_all: bool,
-    ) -> None:
+    def __init__(self, name: str, robot: Robot, code: Code | None) -> None:
         self._system = system_of(name, robot)
-        self._checker: Checker | None = None
-        if robot.spec is not None:
-            spec = load(robot.spec)
-            self._checker = Checker(spec, watches_of(robot, spec, everything=watch_all))
+        spec = None if robot.spec is None else load(robot.spec)
+        self._checker = Checker(spec, spec_coverages(robot))
         self._meter = None if code is None else Meter(code)
         self._marked = code is not None and code.marked
 
     def play(self, test: Test) -> Outcome:
         """Play a test; whatever its code raises is its result."""
         started = time.perf_counter()
-        if self._checker is not None:
-            self._checker.begin()
+        self._checker.begin()
         if self._meter is not None:
             self._meter.begin()
         measured = self._meter or nullcontext()
-        observer = Observer(
-            () if self._checker is None else (self._checker.observe,),
-            code=measured if self._marked else None,
-        )
+        observer = Observer((self._checker.observe,), code=measured if self._marked else None)
         with nullcontext() if self._marked else measured:
             run = run_of(self._system, test, observer)
         hits = hits_of_states(run)
         if self._meter is not None:
             hits |= self._meter.hits()
-        verdicts: Mapping[str, Verdict] = {}
-        reasons: Mapping[str, str] = {}
-        illegal: tuple[str, ...] = ()
-        if self._checker is not None:
-            report = self._checker.finish(run.end_ns)
-            verdicts, reasons = report.verdicts, _reasons(report)
-            illegal = tuple(map(str, report.illegal))
-            hits |= self._checker.hits
+        found = self._checker.hits(run.end_ns)
+        hits |= found
+        report = self._checker.finish(run.end_ns)
         return Outcome(
-            verdicts=verdicts,
-            reasons=reasons,
-            illegal=illegal,
+            verdicts=report.verdicts,
+            reasons=_reasons(report),
+            illegal=tuple(map(str, self._checker.illegal(found))),
             hits=hits,
             ending=Ending.COMPLETED if run.error is None else Ending.CRASHED,
             error=run.error,

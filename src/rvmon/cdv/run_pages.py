@@ -10,7 +10,6 @@ from rvmon.cdv.campaign import Robot
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.play import run_of, system_of
 from rvmon.cdv.system import Observer, Run, Values
-from rvmon.cdv.watch import watches_of
 from rvmon.report.run_html import run_page
 from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.session import Spec
@@ -49,7 +48,7 @@ def play_again(test: Test, name: str, robot: Robot, spec: Spec) -> Replay:
         robot: against which.
         spec: what judges it.
     """
-    checker = Checker(spec, watches_of(robot, spec, everything=False))
+    checker = Checker(spec)
     samples: list[Sample] = []
 
     def note(t_ns: int, values: Values) -> None:

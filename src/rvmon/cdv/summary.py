@@ -101,7 +101,20 @@ class KnownAnswer:
     @property
     def as_expected(self) -> bool:
         """Whether all expected verdicts came out."""
-        return all(self.verdicts.get(name) == verdict for name, verdict in self.expected.items())
+        return not differences(self.expected, self.verdicts)
+
+
+def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) -> list[str]:
+    """What came out otherwise than a test knows it, each in a sentence.
+
+    >>> differences({"R1": "F", "R2": "P"}, {"R1": Verdict.PASS, "R2": Verdict.PASS})
+    ['R1 is P, not F']
+    """
+    return [
+        f"{name} is {verdicts.get(name, 'no requirement')}, not {verdict}"
+        for name, verdict in expected.items()
+        if verdicts.get(name) != verdict
+    ]
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,7 +63,7 @@ class Observer:
         wants_scene: whether a page is going to be made.
 
     Attributes:
-        last_ns: instant of the latest sample.
+        last_ns: instant of the latest sample that was taken.
         wants_scene: whether the run should come with its scene.
     """
 
@@ -86,9 +86,9 @@ class Observer:
             t_ns: its instant.
             values: what changed or occurred; a name that the requirements lack is passed over.
         """
-        self.last_ns = t_ns
         for take in self._takers:
             take(t_ns, values)
+        self.last_ns = t_ns
 
     def code(self) -> AbstractContextManager[object]:
         """The context for the code under test, if `Code.marked` says that only there is measured.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
+from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary, differences
 from rvmon.cdv.tables import LEGEND, RobotTables
 from rvmon.report.percent import percent_text
 from rvmon.report.table_text import table_text
@@ -100,13 +100,4 @@ def _known(figures: RobotSummary) -> Iterator[str]:
     )
     for one in figures.known:
         if not one.as_expected:
-            yield f"  {one.test}: {difference(one)}"
-
-
-def difference(one: KnownAnswer) -> str:
-    """What came out otherwise than a directed test knows it."""
-    return ", ".join(
-        f"{name} is {one.verdicts.get(name)}, not {verdict}"
-        for name, verdict in one.expected.items()
-        if one.verdicts.get(name) != verdict
-    )
+            yield f"  {one.test}: {', '.join(differences(one.expected, one.verdicts))}"

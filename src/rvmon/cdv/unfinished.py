@@ -141,7 +141,6 @@ def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
     said = [
         [(job.robot, msgspec.to_builtins(job.test)) for job in plan.jobs()],
         {robot: to_plain(spec.checked) for robot, spec in specs.items()},
-        campaign.watch_all,
         [list(_stamps(path)) for path in (Path(rvmon.__file__).parent, *_sources(campaign))],
         [sys.version, *map(_version, (*_PACKAGES, *campaign.packages))],
     ]
@@ -157,8 +156,8 @@ def _sources(campaign: Campaign) -> list[Path]:
     )
     modules = {inspect.getmodule(one) for one in makers}
     files = {module.__file__ for module in modules if module is not None and module.__file__}
-    watched = (robot.situations for robot in campaign.robots.values())
-    return [Path(one) for one in (*campaign.sources, *sorted(files), *watched) if one is not None]
+    models = (path for robot in campaign.robots.values() for path in robot.coverage)
+    return [*map(Path, campaign.sources), *map(Path, sorted(files)), *map(Path, models)]
 
 
 def _stamps(path: Path) -> Iterator[tuple[str, int, int]]:

@@ -78,7 +78,7 @@ def write_pages(
         command=command,
         examples=cells,
         tests=addresses,
-        coverage=write_coverage(folder, results, specs, addresses),
+        coverage=write_coverage(folder, results, addresses),
     )
     write_whole(folder / REPORT, page)
     return otherwise

@@ -89,12 +89,6 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="write tables, tests and pages there; a campaign that was ended there goes on",
     )
-    parser.add_argument(
-        "--coverage",
-        metavar="DB",
-        help="add what the tests hit of all coverage models to a database (made if there is none); "
-        "`rvmon cover DB` shows it",
-    )
 
 
 def add_replay_options(parser: argparse.ArgumentParser) -> None:

@@ -6,12 +6,11 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_files import dated_files, left_over, write_tables, write_tests
-from rvmon.cdv.database import declare, record
+from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.documents import to_json
 from rvmon.cdv.execute import execute
 from rvmon.cdv.gate import CampaignJudgement, judge_campaign
@@ -72,17 +71,14 @@ def conduct(
     """
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
-    is_kept = arguments.coverage is not None or folder is not None
-    campaign = replace(campaign, watch_all=is_kept)
     with told("generating tests"):
         chosen = plan(campaign, strategies, tests=arguments.tests, seed=arguments.seed)
-    # Wrong requirements are told before anything is played.
+    # Wrong requirements, and coverage models, are told before anything is played.
     specs = {
         name: load(robot.spec) for name, robot in campaign.robots.items() if robot.spec is not None
     }
-    if arguments.coverage is not None:
-        declare(Path(arguments.coverage), campaign, specs)
-        words = [*words, "--coverage", arguments.coverage]
+    for name in campaign.robots if folder is not None else ():
+        coverage_model(campaign, name)
     planned = len(chosen.jobs())
     command, *others = words
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
@@ -110,10 +106,7 @@ def conduct(
             )
         if remark := left_over(folder, before):
             warn(remark)
-    goes_on = kept is not None and results.cut_short  # and then records all of its tests
-    if arguments.coverage is not None and not goes_on:
-        record(Path(arguments.coverage), results)
-    if kept is not None and goes_on:
+    if kept is not None and results.cut_short:
         warn(f"{kept.path}: the same command plays what is left")
     elif kept is not None:
         kept.path.unlink(missing_ok=True)

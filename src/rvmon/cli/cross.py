@@ -33,8 +33,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="a recording, judged by every engine and installed peer: do they agree?",
         description="Judge a recording by every engine, by the reference oracle where it is small "
         "enough, by compiled C where there is a compiler, and by the other monitors that are "
-        "installed (rtamt, reelay, mstlo, sentil) where they have such a formula. Prints who agrees; a "
-        "disagreement is shown with attempt and instant, and exits with 1.",
+        "installed (rtamt, reelay, mstlo, sentil) where they have such a formula. Prints who "
+        "agrees; a disagreement is shown with attempt and instant, and exits with 1.",
         epilog="example: rvmon cross specs/door.rv monday.csv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")

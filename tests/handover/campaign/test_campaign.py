@@ -170,9 +170,10 @@ def test_without_monitors_nothing_is_judged():
     """The simulation is the same, and no verdict is made up."""
     played = execute(small(monitors=False), jobs=1, controls=False)
     assert all(one.outcome.verdicts == {} for one in played.played)
-    assert [one.outcome.hits for one in played.played] == [
-        one.outcome.hits for one in execute(small(), jobs=1, controls=False).played
-    ]
+    judged = execute(small(), jobs=1, controls=False)
+    for bare, one in zip(played.played, judged.played, strict=True):
+        assert bare.outcome.hits.items() <= one.outcome.hits.items()
+        assert "situation" not in bare.outcome.hits
 
 
 def test_the_paper_counts_a_hundred_a_hundred_and_four():

@@ -35,8 +35,7 @@ def files(folder):
         if path.is_file() and path.suffix != ".db"
     } | {
         path.relative_to(folder): [
-            (replace(entry.record, seconds=0.0, when=None), entry.digest)
-            for entry in read([path]).entries
+            (replace(entry.record, seconds=0.0), entry.digest) for entry in read([path]).entries
         ]
         for path in folder.rglob("*.db")
     }

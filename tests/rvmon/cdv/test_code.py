@@ -74,7 +74,7 @@ def test_only_the_marked_code_is_measured_where_it_is_marked(campaign, code):
     def statements(*, marked):
         measured = cdv.Code(cdv.blocks_of(code), branches=False, marked=marked)
         chosen = campaign(("a", {}), robots={"toy": cdv.Robot(System, None)})
-        outcome, _ = player(chosen.robots, measured, None, watch_all=False)(_job(chosen))
+        outcome, _ = player(chosen.robots, measured, None)(_job(chosen))
         return {group: list(items) for group, items in outcome.hits.items()}
 
     climbing = {"statements of Toy.climb": ["4", "6"]}
@@ -86,6 +86,12 @@ def _job(campaign):
     from rvmon.cdv.plan import plan
 
     return plan(campaign).jobs()[0]
+
+
+def test_blocks_of_one_name_are_told(code):
+    """Their hits could not be told apart."""
+    with pytest.raises(RvmonError, match=r"two blocks are called `Toy.climb`, in .*toy.py"):
+        cdv.Code((*cdv.blocks_of(code), *cdv.blocks_of(code)))
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,12 @@ import sqlite3
 import pytest
 
 from rvmon.cdv import Campaign, Robot, Run, Test
-from rvmon.cdv.coverage import write_coverage
+from rvmon.cdv.coverage import coverage_model, write_coverage
 from rvmon.cdv.execute import execute
 from rvmon.cdv.plan import plan
 from rvmon.coverage.database import read
 from rvmon.coverage.hits import count_of, merged
-from rvmon.loading import load
+from rvmon.errors import RvmonError
 
 SPEC = """signal speed : real
 requirement L1
@@ -52,18 +52,14 @@ def campaign(tmp_path):
     """A campaign against two lifts, of which one is asked for less."""
     (tmp_path / "lift.rv").write_text(SPEC)
     (tmp_path / "further.rv").write_text(FURTHER)
-    specs = tmp_path / "lift.rv", tmp_path / "further.rv"
+    specs = tmp_path / "lift.rv", (tmp_path / "further.rv",)
     return Campaign(
         name="lifts",
         test=Test,
         strategies={"any": lifts},
-        robots={
-            "new": Robot(Lift, specs[0], title="New lift", situations=specs[1]),
-            "old": Robot(Lift, None),
-        },
+        robots={"new": Robot(Lift, specs[0], specs[1], title="New lift"), "old": Robot(Lift, None)},
         states=("stands", "moves"),
         transitions=(("stands", "moves"), ("moves", "stands")),
-        watch_all=True,
     )
 
 
@@ -71,25 +67,32 @@ def test_all_models_are_gathered(campaign):
     """Of the requirements' specification and the further one, of states and pairs of steps."""
     results = execute(plan(campaign, tests=3), jobs=1)
     hits = merged([one.outcome.hits for one in results.played if one.job.robot == "new"])
-    assert {"pace", "place", "both", "stands", "L1", "states entered"} <= hits.keys()
-    assert count_of(hits, "transitions one after the other", "stands → moves → stands") > 0
+    assert {"pace", "place", "both", "stands", "L1", "states"} <= hits.keys()
+    assert count_of(hits, "pairs of transitions", "stands → moves → stands") > 0
     assert count_of(hits, "both", "yes") == 1
     old = merged([one.outcome.hits for one in results.played if one.job.robot == "old"])
-    assert old.keys() == {"states entered", "transitions taken", "transitions one after the other"}
+    assert old.keys() == {"states", "transitions", "pairs of transitions"}
 
 
 def test_a_database_and_a_page_each(campaign, tmp_path):
     """The page leads to the pages of runs; the same campaign again is the same database."""
     results = execute(plan(campaign, tests=3), jobs=1)
     pages = {("new", "lift-1"): "runs/new-lift-1.html"}
-    specs = {"new": load(campaign.robots["new"].spec)}
     for _ in range(2):
-        figures = write_coverage(tmp_path / "out", results, specs, pages)
+        figures = write_coverage(tmp_path / "out", results, pages)
     assert figures["new"].page == "new/coverage.html"
     assert figures["new"].illegal == ("both: yes",)
     assert 'href="../runs/new-lift-1.html"' in (tmp_path / "out/new/coverage.html").read_text()
     found = read([tmp_path / "out/new/coverage.db"])
     assert [entry.record.name for entry in found.entries] == ["lift-0", "lift-1", "lift-2"]
     assert {entry.record.strategy for entry in found.entries} == {"any"}
+    assert found.model.groups.keys() == coverage_model(campaign, "new").groups.keys()
     with sqlite3.connect(tmp_path / "out/old/coverage.db") as database:
         assert database.execute("pragma integrity_check").fetchone() == ("ok",)
+
+
+def test_one_name_for_two_things(campaign, tmp_path):
+    """It is told before anything is written."""
+    (tmp_path / "further.rv").write_text(FURTHER.replace("place", "pace"))
+    with pytest.raises(RvmonError, match="two groups of one name: `pace`"):
+        coverage_model(campaign, "new")

@@ -72,7 +72,7 @@ def test_the_number_of_processes_changes_nothing(campaign):
 def test_states_and_transitions_are_hits(campaign):
     """How often, and when first."""
     (one,) = execute(plan(campaign(GOOD[0])), jobs=1).played
-    states, transitions = one.outcome.hits["states entered"], one.outcome.hits["transitions taken"]
+    states, transitions = one.outcome.hits["states"], one.outcome.hits["transitions"]
     assert {name: (hit.count, hit.first) for name, hit in states.items()} == {
         "down": (2, 0),
         "up": (1, 1_000_000_000),

@@ -33,7 +33,7 @@ def judged(campaign, *, strict=False):
         ([("known", {"level": 3.0, "expected": {"T1": "F"}})], ["known (toy): T1 is P, not F"]),
         (
             [("known", {"expected": {"T9": "P"}})],
-            ["known (toy): T9 is to be P, and there is no such requirement"],
+            ["known (toy): T9 is no requirement, not P"],
         ),
         ([CRASH], ["crash (toy): crashed: ZeroDivisionError: by zero"]),
         ([("b", {"does": "exit"})], ["b (toy): lost: its process ended, with exit code 5"]),
@@ -101,3 +101,12 @@ def test_junit_has_a_case_per_test_and_per_expectation(campaign, golden):
         (suite.get("name"), suite.get("tests"), suite.get("failures"), suite.get("errors"))
         for suite in root
     ] == [("toys.toy.climbs", "4", "1", "1"), ("toys", "3", "1", "1")]
+
+
+def test_what_must_not_be_hit_is_wrong(campaign, spec):
+    """Of a coverpoint of the requirements; whatever the verdicts are."""
+    spec.write_text(spec.read_text() + "coverpoint height = level {illegal high: [5, inf)}\n")
+    known = ("known", {"level": 6.0, "expected": {"T1": "F"}})
+    assert judged(campaign(LOW, known)).wrong == [
+        "known (toy): illegal: `high` of `height` was hit at 1 s"
+    ]

@@ -49,6 +49,11 @@ def test_an_unknown_strategy_is_told(campaign):
             lambda *_: [cdv.Test(name="a", strategy="other", seed=1)],
             "test `a` of strategy `s` says that it is of `other`",
         ),
+        (
+            lambda *_: [cdv.Test(name="a", strategy="s", seed=1, text=object())],
+            "test `a` cannot be written as JSON",
+        ),
+        (lambda *_: [cdv.Test(name="a", strategy="s", seed=-1)], "test `a` of `s`: .*>= 0"),
     ],
 )
 def test_a_strategy_that_fails_is_told(campaign, made, told):
