@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping
 from itertools import product
 
-from rvmon.dataflow.steps import INFINITE
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
 from rvmon.plan.inputs import Input
 from rvmon.plan.numbers import events_of, reader
@@ -24,6 +23,8 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.syntax.units import parse_unit
 from rvmon.trace.sample import Payload, Scalar
+
+INFINITE = float("inf")
 
 Margin = tuple[float, float]
 """Least and greatest value that the robustness can have, given what is not known."""

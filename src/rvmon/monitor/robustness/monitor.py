@@ -10,9 +10,9 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from rvmon.automaton.machine import Token
+from rvmon.dataflow.margins import INFINITE
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
-from rvmon.dataflow.steps import INFINITE
 from rvmon.errors import UnknownNameError
 from rvmon.formula.expand import expanded
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
