@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from itertools import product
+from typing import Any
 
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
 from rvmon.plan.inputs import Input
@@ -93,17 +94,26 @@ def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:
         return OF_TRUTH[UNKNOWN]
     if isinstance(left, str) or isinstance(right, str):
         return OF_TRUTH[TRUE if op.holds(left, right) else FALSE]
-    difference = _difference(left, right, factor)
+    value = signed(op, _difference(left, right, factor))
+    return value, value
+
+
+def signed(op: CompareOp, difference: Any) -> Any:
+    """By how much a comparison holds, given how far its left side is above the right one.
+
+    Args:
+        op: the comparison.
+        difference: a number, or an array of them.
+    """
     match op:
         case CompareOp.LT | CompareOp.LE:
-            value = -difference
+            return -difference
         case CompareOp.GT | CompareOp.GE:
-            value = difference
+            return difference
         case CompareOp.EQ:
-            value = -math.fabs(difference)
+            return -abs(difference)
         case CompareOp.NE:
-            value = math.fabs(difference)
-    return value, value
+            return abs(difference)
 
 
 def _difference(left: float, right: float, factor: float) -> float:

@@ -18,7 +18,16 @@ from rvmon.dataflow.margin_windows import (
     WindowExtreme,
 )
 from rvmon.dataflow.margins import INFINITE
-from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window, operands_of
+from rvmon.dataflow.nodes import (
+    Junction,
+    Leaf,
+    NetworkPlan,
+    Node,
+    Shift,
+    Sweep,
+    Window,
+    operands_of,
+)
 from rvmon.dataflow.piecewise import FAR
 from rvmon.formula.core import Constant
 
@@ -161,9 +170,7 @@ class Gauge:
                     own[number] = value
                     told.push(start, value, right)
 
-    def finish(
-        self, letters: Sequence[Letter], end: int, reached: int, rest: Rest
-    ) -> list[Value]:
+    def finish(self, letters: Sequence[Letter], end: int, reached: int, rest: Rest) -> list[Value]:
         """End the trace; returns the values that are asked for and were not settled.
 
         Args:

@@ -5,7 +5,7 @@ What comes behind a decision counts as long as the window is open.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -26,9 +26,9 @@ from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.records.ledger import Ledger, verdict_at_end
 from rvmon.monitor.robustness.margin_judge import MarginJudge
-from rvmon.monitor.robustness.values import Margins, Measured, Robustness, margins_from
+from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Value
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 from rvmon.verdict.verdict import Verdict
 
@@ -304,27 +304,3 @@ def _measured(judge: MarginJudge, attempt: Open | None, found: Robustness, t: in
     # Where nothing triggered it, nothing is owed.
     possible = Robustness(found.low, INFINITE, found.kept)
     return Measured(name, attempt.doubtful_number, t, possible, in_doubt=True)
-
-
-def margins_of(
-    compiled: CompiledSpec,
-    samples: Iterable[Sample],
-    *,
-    only: Sequence[str] | None = None,
-    sources: frozenset[str] | None = None,
-    end: int | None = None,
-    streams: bool = True,
-) -> Margins:
-    """The robustness of all attempts on a trace.
-
-    Args:
-        compiled: the specification.
-        samples: of the trace.
-        only: ids of the requirements; default all.
-        sources: the names that can arrive; `None`: all.
-        end: the end of the trace, if it ended after its last sample.
-        streams: whether to measure each position, too.
-    """
-    monitor = RobustnessMonitor(compiled, only=only, sources=sources, streams=streams)
-    found = [one for sample in samples for one in monitor.step_ns(sample.t, sample.values)]
-    return margins_from([*found, *monitor.finish_ns(end)])
