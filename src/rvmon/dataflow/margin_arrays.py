@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
@@ -192,14 +192,19 @@ def _swept(node: Sweep, operands: Sequence[Steps], whole: Whole) -> Steps:
     return Steps(starts, made)
 
 
-def _carried(least: Any, most: Any, value: float) -> Floats:
-    """What becomes of a value that is kept between bounds, one after the other."""
+def _carried(least: Floats, most: Floats, value: float) -> Floats:
+    """What becomes of a value that is kept between bounds, one pair of them after the other."""
     if (least == -INFINITE).all():
         return np.minimum(np.minimum.accumulate(most), value)
     if (most == INFINITE).all():
         return np.maximum(np.maximum.accumulate(least), value)
-    made = []
-    for low, high in zip(least.tolist(), most.tolist(), strict=True):
-        value = low if value < low else high if value > high else value
-        made.append(value)
-    return np.array(made)
+    # The bounds of 1, 2, 4, … pairs together, until no more of them matter.
+    step = 1
+    while step < len(least) and not np.array_equal(least[step:], most[step:]):
+        both = [np.clip(before[:-step], least[step:], most[step:]) for before in (least, most)]
+        least, most = (
+            np.concatenate((own[:step], joined))
+            for own, joined in zip((least, most), both, strict=True)
+        )
+        step *= 2
+    return np.clip(value, least, most)
