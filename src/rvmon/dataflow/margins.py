@@ -65,6 +65,10 @@ def margin_reader(
     def of(payloads: Mapping[str, Payload]) -> Margin:
         return margin(op, left(payloads), right(payloads), factor)
 
+    def of_signals() -> Margin:
+        found = of({})
+        return OF_TRUTH[truth()] if found is OF_TRUTH[UNKNOWN] else found
+
     events = events_of(leaf.left, leaf.right)
 
     def of_occurrences() -> Margin:
@@ -73,15 +77,9 @@ def margin_reader(
             payloads = {e: p for e, p in zip(events, chosen, strict=True) if p is not None}
             own = of(payloads) if len(payloads) == len(events) else OF_TRUTH[UNKNOWN]
             found = max(found[0], own[0]), max(found[1], own[1])
-        return found
-
-    read = of_occurrences if events else lambda: of({})
-
-    def of_known() -> Margin:
-        found = read()
         return OF_TRUTH[truth()] if found == OF_TRUTH[UNKNOWN] else found
 
-    return of_known
+    return of_occurrences if events else of_signals
 
 
 def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from rvmon.dataflow.margin_nodes import Rest
@@ -85,8 +85,9 @@ class MarginJudge(AttemptJudge):
         """Whether some leaf is another behind a position at which it is read."""
         self._least: Gauge | None = None
         self._greatest: Gauge | None = None
-        self._waiting: list[tuple[int, list[Margin]]] = []
-        """What the leaves are from a position on, which the gauges do not know yet."""
+        self._waiting: list[tuple[Letter, Letter]] = []
+        """What the leaves are from a position on, at least and at most, which the gauges do not
+        know yet."""
         self._known = -FAR - 1
         """The integer up to which the gauges know the leaves."""
         self._lows: dict[int, float] = {}
@@ -139,18 +140,19 @@ class MarginJudge(AttemptJudge):
 
     def _enter(self, position: int) -> None:
         """Read the leaves at a position; up to the one before it, they are known."""
-        if self._waiting and self._waiting[0][0] < position:
+        if self._waiting and self._waiting[0][0][0] < position:
             self._pass(position - 1, position * self._gap)
-        own = [read() for read, _ in self._readers]
-        self._waiting = [(position, own)]
+        self._waiting = [_letters(position, [read() for read, _ in self._readers])]
         if self._passing:
             later = [read() if then is None else then for read, then in self._readers]
-            self._waiting.append((position + 1, later))
+            self._waiting.append(_letters(position + 1, later))
         if self._least is None:
             self._least = Gauge(self._plan, self.flow.gap, position)
             self._known = -FAR - 1
-        if self._greatest is None and any(low != high for low, high in own):
-            self._greatest = self._least.copy()
+        if self._greatest is None:
+            low, high = self._waiting[0]
+            if low[1] != high[1]:
+                self._greatest = self._least.copy()
         for gauge in self._gauges:
             gauge.visit(position)
 
@@ -173,18 +175,21 @@ class MarginJudge(AttemptJudge):
         """Let the leaves be known up to an integer."""
         if self._least is None or now < self._known:
             return
-        lows = self._least.take(self._letters(now, 0), now, reached)
-        self._lows.update(lows)
-        if self._greatest is not None:
-            lows_or_highs = self._greatest.take(self._letters(now, 1), now, reached)
-        else:
-            lows_or_highs = lows
-        self._highs.update(lows_or_highs)
+        lows, highs = self._letters(now)
+        found = self._least.take(lows, now, reached)
         self._known = now
-        self._waiting = [letter for letter in self._waiting if letter[0] > now]
-        for position in sorted(self._lows.keys() & self._highs.keys()):
-            low, high = self._lows.pop(position), self._highs.pop(position)
-            self._tell(position * self._gap, self._figure(low, high, low))
+        self._waiting = self._waiting[len(lows) :]
+        if self._greatest is None and not self._lows:
+            for position, value in found:
+                self._tell(position * self._gap, self._figure(value, value, value))
+        else:
+            self._lows.update(found)
+            self._highs.update(
+                found if self._greatest is None else self._greatest.take(highs, now, reached)
+            )
+            for position in sorted(self._lows.keys() & self._highs.keys()):
+                low, high = self._lows.pop(position), self._highs.pop(position)
+                self._tell(position * self._gap, self._figure(low, high, low))
         if not (self.attempts or self.every or self._plan.looks_back):
             self._least = self._greatest = None
 
@@ -196,13 +201,10 @@ class MarginJudge(AttemptJudge):
         if self.every:
             self.gauger.passed(self, t, found)
 
-    def _letters(self, last: int, side: int) -> list[Letter]:
+    def _letters(self, last: int) -> tuple[list[Letter], list[Letter]]:
         """What the gauges do not know yet of the leaves, up to an integer."""
-        return [
-            (start, [margin[side] for margin in margins])
-            for start, margins in self._waiting
-            if start <= last
-        ]
+        told = [letters for letters in self._waiting if letters[0][0] <= last]
+        return [low for low, _ in told], [high for _, high in told]
 
     def figures(self, end: int, reached: int) -> dict[int, Robustness]:
         """The robustness at each instant that is asked for, if the trace has ended.
@@ -213,8 +215,7 @@ class MarginJudge(AttemptJudge):
         """
         if self._least is None:
             return {}
-        last = end // self._gap
-        letters = self._letters(last, 0), self._letters(last, 1)
+        letters = self._letters(end // self._gap)
         found: dict[Rest, dict[int, float]] = {}
         for rest, side in _SIDES.items():
             gauge = self._least if self._greatest is None or not side else self._greatest
@@ -247,3 +248,8 @@ def _in_order(values: Mapping[int, float]) -> list[float]:
 
 def _negated(margin: Margin) -> Margin:
     return -margin[1], -margin[0]
+
+
+def _letters(position: int, margins: Sequence[Margin]) -> tuple[Letter, Letter]:
+    """What leaves are from a position on, at least and at most."""
+    return (position, [low for low, _ in margins]), (position, [high for _, high in margins])
