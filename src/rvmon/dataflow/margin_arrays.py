@@ -84,12 +84,9 @@ def steps_of(plan: NetworkPlan, leaves: Mapping[int, Steps], whole: Whole) -> St
                 made = Steps(starts, reduce(np.minimum if node.every else np.maximum, values))
             case Window():
                 made = _window(node, operands[0], whole)
-            case Shift(operand=operand):
-                sweep = plan.nodes[operand]
-                assert isinstance(sweep, Sweep)
-                made = (_next_or_last if whole.sparse else _shifted)(
-                    node, sweep, operands[0], whole
-                )
+            case Shift():
+                shifted = _next_or_last if whole.sparse else _shifted
+                made = shifted(node, plan.sweep_of(node), operands[0], whole)
             case Sweep():
                 made = _swept(node, operands, whole)
             case _:
@@ -207,4 +204,5 @@ def _carried(least: Floats, most: Floats, value: float) -> Floats:
             for own, joined in zip((least, most), both, strict=True)
         )
         step *= 2
-    return np.clip(value, least, most)
+    made: Floats = np.clip(value, least, most)
+    return made

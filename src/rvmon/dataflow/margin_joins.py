@@ -75,14 +75,17 @@ class Join(Operator):
 
     @property
     def inputs(self) -> Sequence[Told]:
+        """See `Operator`."""
         return self._inputs
 
     def copy(self, horizon: Horizon) -> Self:
+        """See `Operator`."""
         made = self._copied(horizon)
         made._inputs = [one.copy(made) for one in self._inputs]
         return made
 
     def go(self) -> None:
+        """See `Operator`."""
         inputs = self._inputs
         known = min([one.known for one in inputs])
         if known <= self.known:
@@ -123,6 +126,7 @@ class AllOrSome(Join):
         self.told: float | None = None
 
     def joined(self, start: int, right: int) -> None:
+        """See `Join`."""
         value = self.choose([one.value for one in self._inputs])
         if value == self.told and not self.horizon.sparse:
             self.out.cover(right)
@@ -140,6 +144,7 @@ class SinceValue(Join):
         self.value = INFINITE if node.dual else -INFINITE
 
     def joined(self, start: int, right: int) -> None:
+        """See `Join`."""
         self.value = _within(self.value, *_bounds(self._inputs, self.dual))
         self.out.push(start, self.value, right)
 
@@ -172,12 +177,14 @@ class UntilValue(Join):
         self.starts: deque[int] | None = deque() if horizon.sparse and not thin else None
 
     def copy(self, horizon: Horizon) -> Self:
+        """See `Operator`."""
         made = super().copy(horizon)
         made.parts = copy(self.parts)
         made.starts = copy(self.starts)
         return made
 
     def joined(self, start: int, right: int) -> None:
+        """See `Join`."""
         if not self.parts:
             self.out.cover(start - 1)
         if self.starts is not None:
@@ -188,6 +195,7 @@ class UntilValue(Join):
             self._tell(first, value, self.parts[0][0] - 1 if self.parts else right)
 
     def covered(self, right: int) -> None:
+        """See `Join`."""
         if not self.parts:
             self.out.cover(right)
 
@@ -226,6 +234,7 @@ class UntilValue(Join):
             self.out.push(start, value, starts[0] - 1 if more else right)
 
     def end(self, end: End) -> None:
+        """See `Operator`."""
         value, right = end.behind(self.node), end.last
         found = []
         while self.parts:

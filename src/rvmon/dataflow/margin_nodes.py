@@ -128,8 +128,5 @@ class Operator(ABC):
     def go(self) -> None:
         """Tell what is settled by now."""
 
-    def visit(self, position: int) -> None:
-        """Come to a position."""
-
-    def end(self, end: End) -> None:
+    def end(self, end: End) -> None:  # noqa: B027 (what is told at once leaves nothing)
         """Tell what is left, all operands having told all up to the end."""

@@ -41,9 +41,11 @@ class WindowExtreme(Operator):
 
     @property
     def inputs(self) -> Sequence[Told]:
+        """See `Operator`."""
         return (self,)
 
     def copy(self, horizon: Horizon) -> Self:
+        """See `Operator`."""
         made = self._copied(horizon)
         made.wedge, made.exits, made.late = deque(self.wedge), deque(self.exits), deque(self.late)
         return made
@@ -72,6 +74,7 @@ class WindowExtreme(Operator):
         self.go()
 
     def go(self) -> None:
+        """See `Operator`."""
         self._go(min(self.known - self.high, self._limit()))
 
     def _go(self, until: int) -> None:
@@ -128,6 +131,7 @@ class WindowExtreme(Operator):
         self.next = start
 
     def end(self, end: End) -> None:
+        """See `Operator`."""
         self.late.append((end.last + 1, self.nothing))
         self._go(min(self._limit(), end.last))
         if self.over is not None and end.pending != self.nothing:
@@ -149,11 +153,13 @@ class SparseWindowExtreme(WindowExtreme):
         self.positions: deque[int] = deque()
 
     def copy(self, horizon: Horizon) -> Self:
+        """See `Operator`."""
         made = super().copy(horizon)
         made.positions = deque(self.positions)
         return made
 
     def visit(self, position: int) -> None:
+        """See `Operator`."""
         self.positions.append(position)
 
     def _enter(self, start: int, value: float) -> None:
@@ -197,9 +203,11 @@ class Shifted(Operator):
 
     @property
     def inputs(self) -> Sequence[Told]:
+        """See `Operator`."""
         return (self,)
 
     def copy(self, horizon: Horizon) -> Self:
+        """See `Operator`."""
         made = self._copied(horizon)
         made.waiting = deque(self.waiting)
         return made
@@ -215,6 +223,7 @@ class Shifted(Operator):
         self.go()
 
     def go(self) -> None:
+        """See `Operator`."""
         horizon, waiting = self.horizon, self.waiting
         until = min(self.known, horizon.now)
         if until < horizon.first:
@@ -229,6 +238,7 @@ class Shifted(Operator):
                 self.out.push(start, value, right)
 
     def end(self, end: End) -> None:
+        """See `Operator`."""
         if self.node.offset > 0:
             opened = (end.instant - self.node.opens) // self.horizon.gap
             self._end_with(end, opened)
@@ -243,8 +253,9 @@ class Shifted(Operator):
 
 
 class SparseShifted(Shifted):
-    """The same where only samples are positions: an `until` has the value of the next one, a
-    `since` that of the last.
+    """The same where only samples are positions.
+
+    An `until` has the value of the next one, a `since` that of the last.
 
     Attributes:
         positions: those that have come and whose value is not told.
@@ -255,14 +266,17 @@ class SparseShifted(Shifted):
         self.positions: deque[int] = deque()
 
     def copy(self, horizon: Horizon) -> Self:
+        """See `Operator`."""
         made = super().copy(horizon)
         made.positions = deque(self.positions)
         return made
 
     def visit(self, position: int) -> None:
+        """See `Operator`."""
         self.positions.append(position)
 
     def go(self) -> None:
+        """See `Operator`."""
         positions, waiting, ahead = self.positions, self.waiting, self.node.offset > 0
         until = min(waiting[-1][0] if ahead and waiting else self.known, self.horizon.now)
         while positions and positions[0] <= until:

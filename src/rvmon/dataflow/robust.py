@@ -73,10 +73,9 @@ class Gauge:
                 return AllOrSome(node, fixed, thin, horizon)
             case Window():
                 return (SparseWindowExtreme if horizon.sparse else WindowExtreme)(node, horizon)
-            case Shift(operand=operand):
-                sweep = self.plan.nodes[operand]
-                assert isinstance(sweep, Sweep)
-                return (SparseShifted if horizon.sparse else Shifted)(node, sweep, horizon)
+            case Shift():
+                shifted = SparseShifted if horizon.sparse else Shifted
+                return shifted(node, self.plan.sweep_of(node), horizon)
             case Sweep(future=True):
                 return UntilValue(node, fixed, thin, horizon)
             case Sweep():
@@ -108,11 +107,10 @@ class Gauge:
             if isinstance(node, Window | Shift)
             and (node.operand in self._operators or self.horizon.gap > 1)
         ]
-        sparse = self.horizon.sparse
         self._visiting = [
-            self._operators[place]
-            for place, node in plan.inner
-            if sparse and isinstance(node, Window | Shift)
+            operator
+            for operator in self._operators.values()
+            if isinstance(operator, SparseWindowExtreme | SparseShifted)
         ]
 
     def copy(self) -> Gauge:
