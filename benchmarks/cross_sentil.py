@@ -20,6 +20,7 @@ import sys
 import time
 from typing import Any
 
+import numpy as np
 from benchmarks.cross_robustness import NAMES, Tally, random_formula
 
 from rvmon.session import Spec
@@ -83,7 +84,7 @@ def ours(
         events={},
         requirements={"R": requirement},
     )
-    trace: Any = {"t_ns": times, **columns}
+    trace: Any = {name: np.array(own) for name, own in {"t_ns": times, **columns}.items()}
     if not by_columns:
         rows = [{name: column[row] for name, column in columns.items()} for row in range(ROWS)]
         trace = zip((t * 1e-9 for t in times), rows, strict=True)

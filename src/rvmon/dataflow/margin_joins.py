@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections import deque
 from collections.abc import Mapping, Sequence
-from copy import copy
 from typing import Self
 
 from rvmon.dataflow.margin_nodes import End, Horizon, Operator, Told
@@ -80,7 +79,7 @@ class Join(Operator):
 
     def copy(self, horizon: Horizon) -> Self:
         """See `Operator`."""
-        made = self._copied(horizon)
+        made = super().copy(horizon)
         made._inputs = [one.copy(made) for one in self._inputs]
         return made
 
@@ -175,13 +174,6 @@ class UntilValue(Join):
         self.asked_alone = thin
         self.parts: deque[_Part] = deque()
         self.starts: deque[int] | None = deque() if horizon.sparse and not thin else None
-
-    def copy(self, horizon: Horizon) -> Self:
-        """See `Operator`."""
-        made = super().copy(horizon)
-        made.parts = copy(self.parts)
-        made.starts = copy(self.starts)
-        return made
 
     def joined(self, start: int, right: int) -> None:
         """See `Join`."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from bisect import bisect_left
+from collections import deque
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
@@ -114,14 +115,13 @@ class Operator(ABC):
     def inputs(self) -> Sequence[Told]:
         """What is to be told the values of its operands, in their order."""
 
-    @abstractmethod
     def copy(self, horizon: Horizon) -> Self:
         """The same, independent from now on, and telling nobody."""
-
-    def _copied(self, horizon: Horizon) -> Self:
-        """A copy that shares what it keeps."""
         made = copy(self)
         made.horizon = horizon
+        for name, value in vars(self).items():
+            if isinstance(value, deque):
+                setattr(made, name, value.copy())
         return made
 
     @abstractmethod

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from typing import Self
 
 from rvmon.dataflow.margin_nodes import End, Horizon, Operator, Rest, Told
 from rvmon.dataflow.margins import INFINITE
@@ -43,12 +42,6 @@ class WindowExtreme(Operator):
     def inputs(self) -> Sequence[Told]:
         """See `Operator`."""
         return (self,)
-
-    def copy(self, horizon: Horizon) -> Self:
-        """See `Operator`."""
-        made = self._copied(horizon)
-        made.wedge, made.exits, made.late = deque(self.wedge), deque(self.exits), deque(self.late)
-        return made
 
     def _limit(self) -> int:
         """The last integer of which no further position comes to lie in its window."""
@@ -152,12 +145,6 @@ class SparseWindowExtreme(WindowExtreme):
         super().__init__(node, horizon)
         self.positions: deque[int] = deque()
 
-    def copy(self, horizon: Horizon) -> Self:
-        """See `Operator`."""
-        made = super().copy(horizon)
-        made.positions = deque(self.positions)
-        return made
-
     def visit(self, position: int) -> None:
         """See `Operator`."""
         self.positions.append(position)
@@ -205,12 +192,6 @@ class Shifted(Operator):
     def inputs(self) -> Sequence[Told]:
         """See `Operator`."""
         return (self,)
-
-    def copy(self, horizon: Horizon) -> Self:
-        """See `Operator`."""
-        made = self._copied(horizon)
-        made.waiting = deque(self.waiting)
-        return made
 
     def push(self, start: int, value: float, right: int) -> None:
         """See `Told`."""
@@ -264,12 +245,6 @@ class SparseShifted(Shifted):
     def __init__(self, node: Shift, sweep: Sweep, horizon: Horizon) -> None:
         super().__init__(node, sweep, horizon)
         self.positions: deque[int] = deque()
-
-    def copy(self, horizon: Horizon) -> Self:
-        """See `Operator`."""
-        made = super().copy(horizon)
-        made.positions = deque(self.positions)
-        return made
 
     def visit(self, position: int) -> None:
         """See `Operator`."""
