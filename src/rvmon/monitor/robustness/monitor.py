@@ -6,6 +6,7 @@ What comes behind a decision counts as long as the window is open.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -18,6 +19,7 @@ from rvmon.formula.expand import expanded
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.instance import Instance
+from rvmon.monitor.attempts.keyed import Keyed
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
@@ -27,6 +29,7 @@ from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.records.ledger import Ledger, verdict_at_end
 from rvmon.monitor.robustness.margin_judge import MarginJudge
 from rvmon.monitor.robustness.values import Measured, Robustness
+from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Value
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
@@ -185,13 +188,11 @@ class _MeasuringEvaluators(Evaluators):
             compiled, evaluator, captured, instance, started_elsewhere=started_elsewhere
         )
         requirement = compiled.requirement
-        if compiled not in self._plans:
-            self._plans[compiled] = plan_of(expanded(compiled.obligation.owed), self.gap)
         alone = not requirement.captures and requirement.for_each is None
         is_main = compiled is self._by_id[requirement.id]
         beside = MarginJudge(
             compiled,
-            self._plans[compiled],
+            self._plan_of(compiled),
             evaluator,
             self._gauged,
             captured,
@@ -200,6 +201,21 @@ class _MeasuringEvaluators(Evaluators):
         )
         self._gauged.beside[judges[0]] = beside
         return [*judges, beside]
+
+    def _plan_of(self, compiled: CompiledRequirement) -> NetworkPlan:
+        if compiled not in self._plans:
+            self._plans[compiled] = plan_of(expanded(compiled.obligation.owed), self.gap)
+        return self._plans[compiled]
+
+    def _make_keyed(self, compiled: CompiledRequirement) -> Keyed:
+        keyed = super()._make_keyed(compiled)
+        if any(self._plan_of(one).looks_back for one in compiled.judges.values()):
+            # What measures an instance has to see what was before it.
+            keyed.reach = replace(keyed.reach, is_fresh=False)
+        return keyed
+
+    def _replays(self, compiled: CompiledRequirement, graph: Graph) -> bool:
+        return self._plan_of(compiled).looks_back or super()._replays(compiled, graph)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """See `Evaluators`."""
