@@ -115,23 +115,62 @@ def _distinct(parts: Sequence[Integers]) -> Integers:
 
 def _window(node: Window, operand: Steps, whole: Whole) -> Steps:
     nothing = INFINITE if node.every else -INFINITE
-    low, high, starts = node.low, node.high, operand.starts
     limit = whole.last if node.over is None else min(whole.reached - node.over, whole.last)
-    if whole.sparse:
-        at = starts
-        left = np.searchsorted(starts, at + low, "left")
-        right = np.searchsorted(starts, at + high, "right") - 1
+    spacing = _spacing(operand.starts) if whole.sparse else 0
+    if spacing:
+        at = operand.starts
+        values = _evenly(operand.values, -(-node.low // spacing), node.high // spacing, node.every)
     else:
-        edges = np.array([whole.first, whole.first - high, whole.last - low + 1, limit + 1])
-        at = _distinct([np.sort(edges), starts[1:] - high, starts[1:] - low])
-        at = at[(at >= whole.first) & (at <= whole.last)]
-        left = np.searchsorted(starts, np.maximum(at + low, whole.first), "right") - 1
-        right = np.searchsorted(starts, np.minimum(at + high, whole.last), "right") - 1
-        left[at + low > whole.last] = len(starts)
-    values = _extremes(operand.values, left, right, node.every)
+        at, left, right = _reaches(node, operand.starts, whole, limit)
+        values = _extremes(operand.values, left, right, node.every)
     if node.over is not None and whole.end.pending != nothing:
         values[np.searchsorted(at, limit, "right") :] = whole.end.pending
     return Steps(at, values)
+
+
+def _spacing(starts: Integers) -> int:
+    """The distance of neighbours; 0 where it is not everywhere the same."""
+    if len(starts) < 2:
+        return 0
+    spacing = int(starts[1] - starts[0])
+    even = np.array_equal(starts[1:], starts[:-1] + spacing)
+    return spacing if even else 0
+
+
+def _reaches(
+    node: Window, starts: Integers, whole: Whole, limit: int
+) -> tuple[Integers, Integers, Integers]:
+    """Where a window may have another value, and from which step of the operand to which it goes.
+
+    Where the window is empty these have crossed.
+    """
+    low, high = node.low, node.high
+    if whole.sparse:
+        left = np.searchsorted(starts, starts + low, "left")
+        return starts, left, np.searchsorted(starts, starts + high, "right") - 1
+    edges = np.array([whole.first, whole.first - high, whole.last - low + 1, limit + 1])
+    at = _distinct([np.sort(edges), starts[1:] - high, starts[1:] - low])
+    at = at[(at >= whole.first) & (at <= whole.last)]
+    left = np.searchsorted(starts, np.maximum(at + low, whole.first), "right") - 1
+    left[at + low > whole.last] = len(starts)
+    return at, left, np.searchsorted(starts, np.minimum(at + high, whole.last), "right") - 1
+
+
+def _evenly(values: Floats, low: int, high: int, every: bool) -> Floats:
+    """The extremes of windows from `low` to `high` places further on, both included."""
+    choose, nothing = (np.minimum, INFINITE) if every else (np.maximum, -INFINITE)
+    count = len(values)
+    low, high = max(low, -count), min(high, count)
+    if low > high:
+        return np.full(count, nothing)
+    before, behind = np.full(max(-low, 0), nothing), np.full(max(high, 0), nothing)
+    table, step, width = np.concatenate((before, values, behind)), 1, high - low + 1
+    while 2 * step <= width:
+        table = choose(table[:-step], table[step:])
+        step *= 2
+    first, last = max(low, 0), max(low, 0) + width - step
+    made: Floats = choose(table[first : first + count], table[last : last + count])
+    return made
 
 
 def _extremes(values: Floats, left: Integers, right: Integers, every: bool) -> Floats:

@@ -71,7 +71,8 @@ def random_case(rng, time):
         events={"e": Event("e")},
         requirements={"R": Requirement("R", mode, trigger, owed)},
     )
-    times = np.cumsum(rng.choices((1, 1, 2, 3, 5), k=rng.randint(1, 25)))
+    gaps = rng.choice(((1, 1, 2, 3, 5), (1,), (2,), (3,)))  # evenly spaced rows go another way
+    times = np.cumsum(rng.choices(gaps, k=rng.randint(1, 25)))
     columns = {name: [float(rng.randint(-4, 4)) for _ in times] for name in "xy"}
     columns["e"] = [rng.random() < 0.3 for _ in times]
     return spec, times.tolist(), columns
