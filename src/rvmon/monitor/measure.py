@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from rvmon.monitor.columns.leaves import NotByColumnsError
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.monitor.engines.rows import columns_of
@@ -14,7 +13,7 @@ from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Key, Margins, Robustness, Stream, margins_from
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.reading import Reading
-from rvmon.readers.source import Source
+from rvmon.readers.source import Columns, Source
 from rvmon.verdict.attempt import Attempt
 
 
@@ -40,27 +39,47 @@ def margins_of(
     recording = open_trace(compiled.checked, trace, reading, only=only)
     named = "" if reading.sources is None else "its sources are named"
     source = Source(recording, until, row_by_row=named)
-    asked = Asked(None if only is None else tuple(only))
-    try:
-        return _by_columns(compiled, source, asked, streams=streams)
-    except (NotPlainError, NotByColumnsError):
-        pass  # something of it is measured sample by sample
+    found = _by_columns(compiled, source, only, streams=streams)
+    return _by_samples(compiled, source, only, streams=streams) if found is None else found
+
+
+def _by_samples(
+    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
+) -> Margins:
+    """The same by a monitor."""
     monitor = RobustnessMonitor(compiled, only=only, sources=source.names, streams=streams)
-    found = [one for sample in recording for one in monitor.step_ns(sample.t, sample.values)]
+    found = [one for sample in source.recording for one in monitor.step_ns(sample.t, sample.values)]
     return margins_from([*found, *monitor.finish_ns(source.end)])
 
 
-def _by_columns(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins:
-    """The same by arrays; attempts are found as `Spec.evaluate` finds them.
+def _by_columns(
+    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
+) -> Margins | None:
+    """The same by arrays; `None` if something of it has to be measured sample by sample."""
+    if source.is_short:
+        return None
+    asked = Asked(None if only is None else tuple(only))
+    try:
+        columns = columns_of(compiled, source, asked)
+    except NotPlainError:
+        return None
+    from rvmon.monitor.columns.leaves import NotByColumnsError
+
+    try:
+        return _measured(compiled, source, columns, asked, streams=streams)
+    except (NotPlainError, NotByColumnsError):
+        return None
+
+
+def _measured(
+    compiled: CompiledSpec, source: Source, columns: Columns, asked: Asked, *, streams: bool
+) -> Margins:
+    """The figures by arrays, of attempts as `Spec.evaluate` finds them.
 
     Raises:
         NotByColumnsError: something of it has to be measured sample by sample.
-        NotPlainError: there are no columns.
+        NotPlainError: the columns turn out to be none.
     """
-    if source.is_short:
-        raise NotByColumnsError
-    columns = columns_of(compiled, source, asked)
-
     import numpy as np
 
     from rvmon.monitor.columns.margins import ColumnMargins, WholeColumns
@@ -92,6 +111,7 @@ def _starts(attempts: Sequence[Attempt]) -> Iterator[tuple[str, int, int]]:
     Raises:
         NotByColumnsError: one of them is in doubt.
     """
+    from rvmon.monitor.columns.leaves import NotByColumnsError
     from rvmon.monitor.columns.records import JudgedAttempts
 
     rest = attempts
