@@ -5,6 +5,7 @@ import random
 import numpy as np
 import pytest
 
+import rvmon
 from rvmon.monitor.columns.margins import ColumnMargins
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
@@ -60,7 +61,8 @@ def random_formula(rng, time, depth):
 
 def random_case(rng, time):
     """A specification, the stamps of a trace and its columns."""
-    trigger = rng.choice((BoundAtom(Bound.START), random_formula(rng, time, 0)))
+    bounds = [BoundAtom(bound) for bound in Bound]
+    trigger = rng.choice((*bounds, random_formula(rng, time, 0)))
     mode = rng.choice((Mode.UPON, Mode.WHENEVER)) if isinstance(trigger, Compare) else Mode.UPON
     owed = random_formula(rng, time, rng.randint(0, 3))
     spec = CheckedSpec(
@@ -119,30 +121,25 @@ def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
     assert by_arrays > PAIRS
 
 
+TEXT = "spec s\ntime {}\nsignal x : real{}\nrequirement R\n  upon start then immediately x > 1\n"
+INFINITE = float("inf")
+
+
 def test_what_is_not_known_is_measured_sample_by_sample():
     """A column with NaN has intervals, as the samples have."""
-    spec = Spec(
-        CheckedSpec(
-            name="whole",
-            title="",
-            time=TimeModel.SAMPLED,
-            signals={"x": Signal("x", Type(Kind.REAL))},
-            events={},
-            requirements={
-                "R": Requirement(
-                    "R",
-                    Mode.UPON,
-                    BoundAtom(Bound.START),
-                    Compare(CompareOp.GT, SignalValue("x"), Literal(1)),
-                )
-            },
-        )
-    )
+    spec = rvmon.loads(TEXT.format("sampled", ""))
     stream = list(spec.robustness(arrays_of([0, 1], {"x": [3.0, float("nan")]})).streams["R"])
     assert [(t, found.low, found.high) for t, found in stream] == [
         (0, 2.0, 2.0),
-        (1, float("-inf"), float("inf")),
+        (1, -INFINITE, INFINITE),
     ]
+
+
+def test_what_becomes_stale_is_measured_sample_by_sample():
+    """Behind the time that a signal is good for, its value may be anything."""
+    spec = rvmon.loads(TEXT.format("held", " stale after 2 ns").replace("immed", "for 5 ns immed"))
+    [figure] = spec.robustness(arrays_of([0, 9], {"x": [3.0, 4.0]})).attempts.values()
+    assert (figure.low, figure.high) == (-INFINITE, 2.0)
 
 
 def test_a_stream_of_arrays_is_a_sequence():

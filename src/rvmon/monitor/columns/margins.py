@@ -109,6 +109,8 @@ class ColumnMargins:
         trace, spec = self._trace, self._trace.spec
         literals = {place: core for place, core in self._plan.leaves if isinstance(core, Literal)}
         graph = graph_of(core.proposition for core in literals.values())
+        if any(spec.signals[name].stale_after for name in graph.by_name if name in spec.signals):
+            raise NotByColumnsError
         plan = plan_of_evaluator(spec, graph, (*spec.signals, *spec.events), {})
         timeline = Timeline(plan, trace.names, frozenset())
         flats = timeline.take(trace.times, trace.columns).flats
