@@ -342,17 +342,14 @@ class Spec:
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
-        from rvmon.monitor.evaluate import open_trace
-        from rvmon.monitor.robustness.monitor import margins_of
+        from rvmon.monitor.measure import margins_of
 
-        chosen = requirements_asked(self.checked, only)
-        recording = open_trace(self.checked, trace, self._reading(**reading), only=chosen)
         return margins_of(
             self._compiled,
-            recording,
-            only=chosen,
-            sources=recording.names,
-            end=recording.end if until is None else ticks_of_seconds(until),
+            trace,
+            self._reading(**reading),
+            only=requirements_asked(self.checked, only),
+            until=None if until is None else ticks_of_seconds(until),
             streams=streams,
         )
 

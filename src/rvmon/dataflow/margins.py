@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from itertools import product
+from typing import Any
 
-from rvmon.dataflow.steps import INFINITE
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
 from rvmon.plan.inputs import Input
 from rvmon.plan.numbers import events_of, reader
@@ -24,6 +24,8 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.syntax.units import parse_unit
 from rvmon.trace.sample import Payload, Scalar
+
+INFINITE = float("inf")
 
 Margin = tuple[float, float]
 """Least and greatest value that the robustness can have, given what is not known."""
@@ -63,6 +65,10 @@ def margin_reader(
     def of(payloads: Mapping[str, Payload]) -> Margin:
         return margin(op, left(payloads), right(payloads), factor)
 
+    def of_signals() -> Margin:
+        found = of({})
+        return OF_TRUTH[truth()] if found is OF_TRUTH[UNKNOWN] else found
+
     events = events_of(leaf.left, leaf.right)
 
     def of_occurrences() -> Margin:
@@ -71,15 +77,9 @@ def margin_reader(
             payloads = {e: p for e, p in zip(events, chosen, strict=True) if p is not None}
             own = of(payloads) if len(payloads) == len(events) else OF_TRUTH[UNKNOWN]
             found = max(found[0], own[0]), max(found[1], own[1])
-        return found
-
-    read = of_occurrences if events else lambda: of({})
-
-    def of_known() -> Margin:
-        found = read()
         return OF_TRUTH[truth()] if found == OF_TRUTH[UNKNOWN] else found
 
-    return of_known
+    return of_occurrences if events else of_signals
 
 
 def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:
@@ -92,17 +92,26 @@ def margin(op: CompareOp, left: Scalar, right: Scalar, factor: float) -> Margin:
         return OF_TRUTH[UNKNOWN]
     if isinstance(left, str) or isinstance(right, str):
         return OF_TRUTH[TRUE if op.holds(left, right) else FALSE]
-    difference = _difference(left, right, factor)
+    value = signed(op, _difference(left, right, factor))
+    return value, value
+
+
+def signed(op: CompareOp, difference: Any) -> Any:
+    """By how much a comparison holds, given how far its left side is above the right one.
+
+    Args:
+        op: the comparison.
+        difference: a number, or an array of them.
+    """
     match op:
         case CompareOp.LT | CompareOp.LE:
-            value = -difference
+            return -difference
         case CompareOp.GT | CompareOp.GE:
-            value = difference
+            return difference
         case CompareOp.EQ:
-            value = -math.fabs(difference)
+            return -abs(difference)
         case CompareOp.NE:
-            value = math.fabs(difference)
-    return value, value
+            return abs(difference)
 
 
 def _difference(left: float, right: float, factor: float) -> float:

@@ -65,7 +65,7 @@ class Shift:
     """The operand so many integers further on.
 
     Attributes:
-        operand: its place.
+        operand: its place; that of a `Sweep`.
         offset: integers; negative in the past.
         opens: ticks after which it speaks of something, at the end of a trace.
     """
@@ -97,6 +97,13 @@ class NetworkPlan:
     inner: tuple[tuple[int, Junction | Window | Sweep | Shift], ...]
     looks_back: bool
     settles: int
+
+    def sweep_of(self, node: Shift) -> Sweep:
+        """What a node of the plan moves along."""
+        found = self.nodes[node.operand]
+        if not isinstance(found, Sweep):
+            raise AssertionError("only an `until` or `since` is moved along")
+        return found
 
 
 def operands_of(node: Node) -> tuple[int, ...]:

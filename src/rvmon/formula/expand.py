@@ -19,7 +19,7 @@ from rvmon.formula.core import (
 )
 from rvmon.formula.factory import Factory
 from rvmon.formula.numeric import reads_fields
-from rvmon.formula.state import State, StateOp
+from rvmon.formula.state import UNKNOWN, State, StateOp
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.formula import Constant as ConstantLeaf
 
@@ -106,5 +106,7 @@ def _asks_what_is_known(state: State) -> bool:
     return any(
         args.issuperset(one.args if one.op is StateOp.AND else (one,))
         for one in denied
-        if one.op is not StateOp.LEAF or (isinstance(one.leaf, Compare) and reads_fields(one.leaf))
+        if one.op is not StateOp.LEAF
+        # Nobody else takes an atom and its negation alike before the birth of its signals.
+        or (isinstance(one.leaf, Compare) and (one.unborn != UNKNOWN or reads_fields(one.leaf)))
     )

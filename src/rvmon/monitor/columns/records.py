@@ -26,12 +26,17 @@ class JudgedAttempts(LazyAttempts):
         parts: the decided ones, by requirement.
         kept: the others, as they are.
         order: int64[n], numbers of the decided ones, part by part, and then of the others.
+
+    Attributes:
+        parts: the same.
+        kept: the same.
     """
 
     def __init__(
         self, parts: Sequence[DecidedAttempts], kept: Sequence[Attempt], order: NDArray[np.int64]
     ) -> None:
-        self._decided = parts
+        self.parts = parts
+        self.kept = kept
         self._parts: list[Sequence[Attempt]] = [*parts, kept]
         self._first = np.cumsum([0, *map(len, parts)])
         self._order = order
@@ -57,14 +62,14 @@ class JudgedAttempts(LazyAttempts):
         found = np.array(numbers, np.int64) + int(self._first[-2])
         place = self._places.get(requirement)
         if place is not None:
-            chosen = np.flatnonzero(_chosen(self._decided[place], verdict))
+            chosen = np.flatnonzero(_chosen(self.parts[place], verdict))
             found = np.append(found, chosen + int(self._first[place]))
         return map(self._attempt, found[np.argsort(self._rank[found])].tolist())
 
     @cached_property
     def _places(self) -> Mapping[str, int]:
         """The part of each requirement that has one."""
-        return {part.id: place for place, part in enumerate(self._decided)}
+        return {part.id: place for place, part in enumerate(self.parts)}
 
     @cached_property
     def _others(self) -> Mapping[str, Mapping[Verdict, list[int]]]:

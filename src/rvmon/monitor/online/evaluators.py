@@ -15,6 +15,7 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
 from rvmon.monitor.online.evaluator_maker import Captured, EvaluatorMaker
 from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.graph import Graph
 from rvmon.plan.outages import Outages
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.values import NEVER
@@ -247,7 +248,7 @@ class Evaluators(EvaluatorMaker):
         compared = self._compared(parent, compiled, own, instance)
         evaluator = self._evaluator(compiled, own, starts=False)
         self._drive_attempt(evaluator, compiled, own, instance)
-        replays = compiled.looks_back_beyond(parent.graph)
+        replays = self._replays(compiled, parent.graph)
         if not replays:
             evaluator.clerk = parent.clerk.copy()
             parent.fork(evaluator)
@@ -262,6 +263,10 @@ class Evaluators(EvaluatorMaker):
         self._captured.append((evaluator, instance))
         if compared is not None:
             compared.keeps(t)
+
+    def _replays(self, compiled: CompiledRequirement, graph: Graph) -> bool:
+        """Whether a captured attempt has to see what evaluators of a graph do not remember."""
+        return compiled.looks_back_beyond(graph)
 
     def _replay(self, evaluator: Evaluator, instance: Instance | None) -> None:
         """Let a new evaluator see the samples so far."""
@@ -313,9 +318,7 @@ class Evaluators(EvaluatorMaker):
         keyed = self.instances.keyed.get(compiled.requirement.id)
         return (keyed is not None and not keyed.reach.is_fresh) or (
             bool(compiled.requirement.captures)
-            and any(
-                one.looks_back_beyond(compiled.shared_graph) for one in compiled.judges.values()
-            )
+            and any(self._replays(one, compiled.shared_graph) for one in compiled.judges.values())
         )
 
 

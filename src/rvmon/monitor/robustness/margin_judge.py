@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from rvmon.dataflow.margin_nodes import Rest
-from rvmon.dataflow.margins import OF_TRUTH, Margin, margin_reader
+from rvmon.dataflow.margins import INFINITE, OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import FAR
-from rvmon.dataflow.robust import Gauge
-from rvmon.dataflow.steps import INFINITE, Step, add
+from rvmon.dataflow.robust import Gauge, Letter
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
@@ -82,14 +81,13 @@ class MarginJudge(AttemptJudge):
         self._gap = flow.gap or 1
         self._plan = plan
         self._readers = [self._reader(core, spec) for _, core in plan.leaves]
+        self._passing = flow.gap is not None and any(then for _, then in self._readers)
+        """Whether some leaf is another behind a position at which it is read."""
         self._least: Gauge | None = None
         self._greatest: Gauge | None = None
-        self._own: list[Margin] = []
-        """What the leaves are at the position that was read last."""
-        self._later: list[Margin] = []
-        """What they are behind it."""
-        self._at = -FAR
-        """That position."""
+        self._waiting: list[tuple[Letter, Letter]] = []
+        """What the leaves are from a position on, at least and at most, which the gauges do not
+        know yet."""
         self._known = -FAR - 1
         """The integer up to which the gauges know the leaves."""
         self._lows: dict[int, float] = {}
@@ -135,7 +133,6 @@ class MarginJudge(AttemptJudge):
         """Note what all leaves are at the position `t`, which the flow is at."""
         self.position = t
         position = t // self._gap
-        self._pass(position - 1, t)
         if self.every or self._plan.looks_back or self._least is not None:
             self._enter(position)
         if self.every and t - self._gap < self.gauger.heard:
@@ -143,17 +140,19 @@ class MarginJudge(AttemptJudge):
 
     def _enter(self, position: int) -> None:
         """Read the leaves at a position; up to the one before it, they are known."""
-        self._at = position
-        self._own = [read() for read, _ in self._readers]
-        self._later = [
-            own if later is None else later
-            for own, (_, later) in zip(self._own, self._readers, strict=True)
-        ]
+        if self._waiting and self._waiting[0][0][0] < position:
+            self._pass(position - 1, position * self._gap)
+        self._waiting = [_letters(position, [read() for read, _ in self._readers])]
+        if self._passing:
+            later = [read() if then is None else then for read, then in self._readers]
+            self._waiting.append(_letters(position + 1, later))
         if self._least is None:
-            self._least = Gauge(self._plan, self.flow.gap)
+            self._least = Gauge(self._plan, self.flow.gap, position)
             self._known = -FAR - 1
-        if self._greatest is None and any(low != high for low, high in self._own):
-            self._greatest = self._least.copy()
+        if self._greatest is None:
+            low, high = self._waiting[0]
+            if low[1] != high[1]:
+                self._greatest = self._least.copy()
         for gauge in self._gauges:
             gauge.visit(position)
 
@@ -176,17 +175,21 @@ class MarginJudge(AttemptJudge):
         """Let the leaves be known up to an integer."""
         if self._least is None or now < self._known:
             return
-        lows = self._least.take(self._steps(now, 0), now, reached)
-        self._lows.update(lows)
-        if self._greatest is not None:
-            lows_or_highs = self._greatest.take(self._steps(now, 1), now, reached)
-        else:
-            lows_or_highs = lows
-        self._highs.update(lows_or_highs)
+        lows, highs = self._letters(now)
+        found = self._least.take(lows, now, reached)
         self._known = now
-        for position in sorted(self._lows.keys() & self._highs.keys()):
-            low, high = self._lows.pop(position), self._highs.pop(position)
-            self._tell(position * self._gap, self._figure(low, high, low))
+        self._waiting = self._waiting[len(lows) :]
+        if self._greatest is None and not self._lows:
+            for position, value in found:
+                self._tell(position * self._gap, self._figure(value, value, value))
+        else:
+            self._lows.update(found)
+            self._highs.update(
+                found if self._greatest is None else self._greatest.take(highs, now, reached)
+            )
+            for position in sorted(self._lows.keys() & self._highs.keys()):
+                low, high = self._lows.pop(position), self._highs.pop(position)
+                self._tell(position * self._gap, self._figure(low, high, low))
         if not (self.attempts or self.every or self._plan.looks_back):
             self._least = self._greatest = None
 
@@ -198,16 +201,10 @@ class MarginJudge(AttemptJudge):
         if self.every:
             self.gauger.passed(self, t, found)
 
-    def _steps(self, last: int, side: int) -> list[list[Step]]:
-        """The leaves behind what is known, up to an integer."""
-        at = self._at
-        made = []
-        for own, later in zip(self._own, self._later, strict=True):
-            steps: list[Step] = []
-            add(steps, self._known + 1, min(at, last), own[side])
-            add(steps, max(self._known, at) + 1, last, later[side])
-            made.append(steps)
-        return made
+    def _letters(self, last: int) -> tuple[list[Letter], list[Letter]]:
+        """What the gauges do not know yet of the leaves, up to an integer."""
+        told = [letters for letters in self._waiting if letters[0][0] <= last]
+        return [low for low, _ in told], [high for _, high in told]
 
     def figures(self, end: int, reached: int) -> dict[int, Robustness]:
         """The robustness at each instant that is asked for, if the trace has ended.
@@ -218,11 +215,12 @@ class MarginJudge(AttemptJudge):
         """
         if self._least is None:
             return {}
+        letters = self._letters(end // self._gap)
         found: dict[Rest, dict[int, float]] = {}
         for rest, side in _SIDES.items():
             gauge = self._least if self._greatest is None or not side else self._greatest
             bounds = self._highs if side else self._lows
-            values = gauge.copy().finish(self._steps(FAR, side), end, reached, rest)
+            values = gauge.copy().finish(letters[side], end, reached, rest)
             found[rest] = {**bounds, **dict(values)}
         return {
             position * self._gap: self._figure(low, found[Rest.GREATEST][position], kept)
@@ -250,3 +248,8 @@ def _in_order(values: Mapping[int, float]) -> list[float]:
 
 def _negated(margin: Margin) -> Margin:
     return -margin[1], -margin[0]
+
+
+def _letters(position: int, margins: Sequence[Margin]) -> tuple[Letter, Letter]:
+    """What leaves are from a position on, at least and at most."""
+    return (position, [low for low, _ in margins]), (position, [high for _, high in margins])

@@ -5,19 +5,21 @@ What comes behind a decision counts as long as the window is open.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from rvmon.automaton.machine import Token
+from rvmon.dataflow.margins import INFINITE
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
-from rvmon.dataflow.steps import INFINITE
 from rvmon.errors import UnknownNameError
 from rvmon.formula.expand import expanded
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.instance import Instance
+from rvmon.monitor.attempts.keyed import Keyed
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
@@ -26,9 +28,10 @@ from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.records.ledger import Ledger, verdict_at_end
 from rvmon.monitor.robustness.margin_judge import MarginJudge
-from rvmon.monitor.robustness.values import Margins, Measured, Robustness, margins_from
+from rvmon.monitor.robustness.values import Measured, Robustness
+from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Value
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 from rvmon.verdict.verdict import Verdict
 
@@ -185,13 +188,11 @@ class _MeasuringEvaluators(Evaluators):
             compiled, evaluator, captured, instance, started_elsewhere=started_elsewhere
         )
         requirement = compiled.requirement
-        if compiled not in self._plans:
-            self._plans[compiled] = plan_of(expanded(compiled.obligation.owed), self.gap)
         alone = not requirement.captures and requirement.for_each is None
         is_main = compiled is self._by_id[requirement.id]
         beside = MarginJudge(
             compiled,
-            self._plans[compiled],
+            self._plan_of(compiled),
             evaluator,
             self._gauged,
             captured,
@@ -200,6 +201,21 @@ class _MeasuringEvaluators(Evaluators):
         )
         self._gauged.beside[judges[0]] = beside
         return [*judges, beside]
+
+    def _plan_of(self, compiled: CompiledRequirement) -> NetworkPlan:
+        if compiled not in self._plans:
+            self._plans[compiled] = plan_of(expanded(compiled.obligation.owed), self.gap)
+        return self._plans[compiled]
+
+    def _make_keyed(self, compiled: CompiledRequirement) -> Keyed:
+        keyed = super()._make_keyed(compiled)
+        if any(self._plan_of(one).looks_back for one in compiled.judges.values()):
+            # What measures an instance has to see what was before it.
+            keyed.reach = replace(keyed.reach, is_fresh=False)
+        return keyed
+
+    def _replays(self, compiled: CompiledRequirement, graph: Graph) -> bool:
+        return self._plan_of(compiled).looks_back or super()._replays(compiled, graph)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """See `Evaluators`."""
@@ -282,6 +298,8 @@ class _Gauged(Ledger):
         Args:
             over: whether the run is; before, those in doubt may still vanish or become sure.
         """
+        if not self._found:
+            return []
         found, self._found = self._found, []
         settled = []
         for one in sorted(found, key=lambda one: (one[2], one[0].compiled.rank, one[1] is None)):
@@ -304,27 +322,3 @@ def _measured(judge: MarginJudge, attempt: Open | None, found: Robustness, t: in
     # Where nothing triggered it, nothing is owed.
     possible = Robustness(found.low, INFINITE, found.kept)
     return Measured(name, attempt.doubtful_number, t, possible, in_doubt=True)
-
-
-def margins_of(
-    compiled: CompiledSpec,
-    samples: Iterable[Sample],
-    *,
-    only: Sequence[str] | None = None,
-    sources: frozenset[str] | None = None,
-    end: int | None = None,
-    streams: bool = True,
-) -> Margins:
-    """The robustness of all attempts on a trace.
-
-    Args:
-        compiled: the specification.
-        samples: of the trace.
-        only: ids of the requirements; default all.
-        sources: the names that can arrive; `None`: all.
-        end: the end of the trace, if it ended after its last sample.
-        streams: whether to measure each position, too.
-    """
-    monitor = RobustnessMonitor(compiled, only=only, sources=sources, streams=streams)
-    found = [one for sample in samples for one in monitor.step_ns(sample.t, sample.values)]
-    return margins_from([*found, *monitor.finish_ns(end)])

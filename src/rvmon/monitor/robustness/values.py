@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, overload
 
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
@@ -57,6 +58,40 @@ class Measured:
     t: int
     robustness: Robustness
     in_doubt: bool = False
+
+
+class Stream(Sequence[tuple[int, Robustness]]):
+    """Figures at instants, as arrays; each is made when it is asked for.
+
+    Args:
+        times: int64[n] ticks.
+        low: float64[n]; so are the others.
+        high: as in `Robustness`.
+        kept: as in `Robustness`.
+    """
+
+    def __init__(self, times: Any, low: Any, high: Any, kept: Any) -> None:
+        self.times, self.low, self.high, self.kept = times, low, high, kept
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __iter__(self) -> Iterator[tuple[int, Robustness]]:
+        figures = map(Robustness, self.low.tolist(), self.high.tolist(), self.kept.tolist())
+        return zip(self.times.tolist(), figures, strict=True)
+
+    @overload
+    def __getitem__(self, place: int) -> tuple[int, Robustness]: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> Stream: ...
+
+    def __getitem__(self, place: int | slice) -> tuple[int, Robustness] | Stream:
+        found = [one[place] for one in (self.times, self.low, self.high, self.kept)]
+        if isinstance(place, slice):
+            return Stream(*found)
+        t, *figures = (one.item() for one in found)
+        return t, Robustness(*figures)
 
 
 Key = tuple[str, int]

@@ -1,0 +1,144 @@
+"""Our robustness against SENTIL's on random formulas over numbers, at every sample.
+
+    python -m benchmarks.cross_sentil --pairs 10000
+
+It runs where the package `sentil` is installed beside rvmon (0.3.1 was compared). The same are
+comparisons, `not`, `and`, `or`, `eventually`, `always`, `once`, `historically`, `until` and `since`
+over samples (`time sampled`), with bounds in the stamps' unit. Compared wherever ours is one
+number: SENTIL leaves out what lies behind the end, where ours is an interval. Its dense time draws
+lines between samples, ours holds values: that is not compared. Every second trace is given to us
+sample by sample, the others in columns. Prints how much was compared and every disagreement; exits
+1 if there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import random
+import sys
+import time
+from typing import Any
+
+import numpy as np
+from benchmarks.cross_robustness import NAMES, Tally, random_formula
+
+from rvmon.session import Spec
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Compare,
+    Formula,
+    Literal,
+    SignalValue,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
+from rvmon.testing.show import show
+from rvmon.trace.schema import Kind
+
+ROWS = 24
+_UNARY = {
+    UnaryOp.EVENTUALLY: "eventually",
+    UnaryOp.ALWAYS: "always",
+    UnaryOp.ONCE: "once",
+    UnaryOp.HISTORICALLY: "historically",
+}
+_BINARY = {
+    BinaryOp.AND: "and",
+    BinaryOp.OR: "or",
+    BinaryOp.UNTIL: "until",
+    BinaryOp.SINCE: "since",
+}
+
+
+def said(formula: Formula) -> str:
+    """A formula as SENTIL reads it."""
+    match formula:
+        case Compare(op=op, left=SignalValue(name=name), right=Literal(value=value)):
+            return f"({name} {op.value} {value})"
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return f"(not {said(operand)})"
+        case Unary(op=op, operand=operand, interval=window) if window is not None:
+            return f"({_UNARY[op]}[{window.low},{window.high}] {said(operand)})"
+        case Binary(op=op, left=left, right=right, interval=window):
+            bounds = "" if window is None else f"[{window.low},{window.high}]"
+            return f"({said(left)} {_BINARY[op]}{bounds} {said(right)})"
+        case _:
+            raise AssertionError("it is not generated")
+
+
+def ours(
+    formula: Formula, times: list[int], columns: dict[str, list[float]], *, by_columns: bool
+) -> list[float | None]:
+    """Our robustness at every sample; `None` where it depends on what comes after the trace."""
+    requirement = Requirement("R", Mode.UPON, BoundAtom(Bound.START), formula)
+    spec = CheckedSpec(
+        name="robustness",
+        title="",
+        time=TimeModel.SAMPLED,
+        signals={name: Signal(name, Type(Kind.REAL)) for name in columns},
+        events={},
+        requirements={"R": requirement},
+    )
+    trace: Any = {name: np.array(own) for name, own in {"t_ns": times, **columns}.items()}
+    if not by_columns:
+        rows = [{name: column[row] for name, column in columns.items()} for row in range(ROWS)]
+        trace = zip((t * 1e-9 for t in times), rows, strict=True)
+    stream = Spec(spec).robustness(trace).streams["R"]
+    return [found.low if found.low == found.high else None for _, found in stream]
+
+
+def compare(sentil: Any, number: int, rng: random.Random, tally: Tally) -> None:
+    """One formula on one trace."""
+    formula = random_formula(rng, rng.randint(1, 3))
+    times, t = [], 0
+    for _ in range(ROWS):
+        times.append(t)
+        t += rng.choice((1, 1, 1, 2, 4))
+    columns = {name: [float(rng.randint(-4, 4)) for _ in times] for name in NAMES}
+    text = said(formula)
+    trace = sentil.Trace([float(t) for t in times], columns)
+    theirs = sentil.Formula.parse(text).robustness_signal(trace).tolist()
+    own = ours(formula, times, columns, by_columns=number % 2 == 0)
+    tally.pairs += 1
+    wrong = []
+    for t, value, other in zip(times, own, theirs, strict=True):
+        if value is None:
+            tally.open += 1
+            continue
+        tally.figures += 1
+        if value != other:
+            wrong.append(f"at {t}: {value:g}, theirs {other:g}")
+    if wrong:
+        tally.disagreements.append(f"{show(formula)}   as   {text}\n{times}\n{columns}\n{wrong}")
+
+
+def main(argv: list[str]) -> int:
+    """Run the campaign and print its figures."""
+    parser = argparse.ArgumentParser(description="Our robustness against SENTIL's.")
+    parser.add_argument("--pairs", type=int, default=1_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--show", type=int, default=3, help="disagreements printed at most")
+    options = parser.parse_args(argv)
+    try:
+        sentil = importlib.import_module("sentil")
+    except ImportError as error:
+        print(f"sentil is missing: {error}")
+        return 0
+    tally, began = Tally(), time.perf_counter()
+    for number in range(options.pairs):
+        compare(sentil, number, random.Random(f"{options.seed}/sentil/{number}"), tally)
+    print(f"sentil, seed {options.seed}, {time.perf_counter() - began:.0f} s")
+    print(f"  pairs {tally.pairs}, figures compared {tally.figures}, open {tally.open}")
+    print(f"  disagreements {len(tally.disagreements)}")
+    for text in tally.disagreements[: options.show]:
+        print("\n" + text)
+    return 1 if tally.disagreements else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,152 @@
+"""Whole recordings are measured alike, by arrays or sample by sample."""
+
+import random
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.monitor.columns.margins import ColumnMargins
+from rvmon.session import Spec
+from rvmon.spec.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Compare,
+    CompareOp,
+    EventAtom,
+    Interval,
+    Literal,
+    SignalValue,
+    Unary,
+    UnaryOp,
+)
+from rvmon.spec.checked.specification import (
+    CheckedSpec,
+    Event,
+    Mode,
+    Requirement,
+    Signal,
+    TimeModel,
+    Type,
+)
+from rvmon.testing.show import show
+from rvmon.trace.schema import Kind
+
+PAIRS = 120
+UNARY = (
+    *(UnaryOp.NOT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY),
+    *(UnaryOp.NEXT, UnaryOp.PREVIOUS),
+)
+BINARY = (BinaryOp.AND, BinaryOp.OR, BinaryOp.UNTIL, BinaryOp.SINCE, BinaryOp.RELEASE)
+WINDOWED = {*UNARY[1:5], *BINARY[2:]}
+
+
+def random_formula(rng, time, depth):
+    """A formula over two numbers and an event."""
+    if not depth:
+        if rng.random() < 0.2:
+            return EventAtom("e")
+        op = rng.choice(tuple(CompareOp))
+        return Compare(op, SignalValue(rng.choice("xy")), Literal(rng.randint(-3, 3)))
+    op = rng.choice((*UNARY, *BINARY) if time is TimeModel.SAMPLED else (*UNARY[:5], *BINARY))
+    low = rng.choice((0, 0, 2))
+    window = Interval(low, rng.choice((None, low, low + 3))) if op in WINDOWED else None
+    one = random_formula(rng, time, depth - 1)
+    if op in UNARY:
+        return Unary(op, one, window)
+    return Binary(op, one, random_formula(rng, time, rng.randrange(depth)), window)
+
+
+def random_case(rng, time):
+    """A specification, the stamps of a trace and its columns."""
+    bounds = [BoundAtom(bound) for bound in Bound]
+    trigger = rng.choice((*bounds, random_formula(rng, time, 0)))
+    mode = rng.choice((Mode.UPON, Mode.WHENEVER)) if isinstance(trigger, Compare) else Mode.UPON
+    owed = random_formula(rng, time, rng.randint(0, 3))
+    spec = CheckedSpec(
+        name="whole",
+        title="",
+        time=time,
+        signals={name: Signal(name, Type(Kind.REAL)) for name in "xy"},
+        events={"e": Event("e")},
+        requirements={"R": Requirement("R", mode, trigger, owed)},
+    )
+    gaps = rng.choice(((1, 1, 2, 3, 5), (1,), (2,), (3,)))  # evenly spaced rows go another way
+    times = np.cumsum(rng.choices(gaps, k=rng.randint(1, 25)))
+    columns = {name: [float(rng.randint(-4, 4)) for _ in times] for name in "xy"}
+    columns["e"] = [rng.random() < 0.3 for _ in times]
+    return spec, times.tolist(), columns
+
+
+def rows_of(times, columns):
+    """The same trace as pairs."""
+    for row, t in enumerate(times):
+        yield t * 1e-9, {name: column[row] for name, column in columns.items()}
+
+
+def arrays_of(times, columns):
+    """The same trace as arrays."""
+    return {name: np.array(column) for name, column in {"t_ns": times, **columns}.items()}
+
+
+def figures_of(margins):
+    """All figures."""
+    streams = {name: list(stream) for name, stream in margins.streams.items()}
+    return dict(margins.attempts), dict(margins.doubtful), streams
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
+def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
+    """Arrays give each attempt and each row the figures that a monitor gives."""
+    by_arrays = 0
+
+    def at(self, instants):
+        nonlocal by_arrays
+        by_arrays += 1
+        return margins_at(self, instants)
+
+    margins_at = ColumnMargins.at
+    monkeypatch.setattr(ColumnMargins, "at", at)
+    for number in range(PAIRS):
+        rng = random.Random(f"whole {time} {number}")
+        spec, times, columns = random_case(rng, time)
+        until = rng.choice((None, (times[-1] + 4) * 1e-9))
+        found = Spec(spec).robustness(arrays_of(times, columns), until=until)
+        expected = Spec(spec).robustness(rows_of(times, columns), until=until)
+        case = f"{show(spec.requirements['R'].consequent)}\n{times}\n{columns}\n{until}"
+        assert figures_of(found) == figures_of(expected), case
+    assert by_arrays > PAIRS
+
+
+TEXT = "spec s\ntime {}\nsignal x : real{}\nrequirement R\n  upon start then immediately x > 1\n"
+INFINITE = float("inf")
+
+
+def test_what_is_not_known_is_measured_sample_by_sample():
+    """A column with NaN has intervals, as the samples have."""
+    spec = rvmon.loads(TEXT.format("sampled", ""))
+    stream = list(spec.robustness(arrays_of([0, 1], {"x": [3.0, float("nan")]})).streams["R"])
+    assert [(t, found.low, found.high) for t, found in stream] == [
+        (0, 2.0, 2.0),
+        (1, -INFINITE, INFINITE),
+    ]
+
+
+def test_what_becomes_stale_is_measured_sample_by_sample():
+    """Behind the time that a signal is good for, its value may be anything."""
+    spec = rvmon.loads(TEXT.format("held", " stale after 2 ns").replace("immed", "for 5 ns immed"))
+    [figure] = spec.robustness(arrays_of([0, 9], {"x": [3.0, 4.0]})).attempts.values()
+    assert (figure.low, figure.high) == (-INFINITE, 2.0)
+
+
+def test_a_stream_of_arrays_is_a_sequence():
+    """One figure is picked like any other element, several are a stream."""
+    spec = Spec(random_case(random.Random(1), TimeModel.SAMPLED)[0])
+    columns = {"x": [1.0, 2.0, 3.0], "y": [0.0, 0.0, 0.0], "e": [False, False, False]}
+    stream = spec.robustness(arrays_of([0, 1, 2], columns)).streams["R"]
+    assert len(stream) == 3
+    assert list(stream[1:]) == list(stream)[1:]
+    assert stream[-1] == list(stream)[-1]
