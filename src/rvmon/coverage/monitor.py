@@ -8,7 +8,7 @@ from typing import Any
 
 from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import Model, model_of
-from rvmon.coverage.requirements import WatchedRequirements
+from rvmon.coverage.requirements import RequirementRun, WatchedRequirements
 from rvmon.coverage.watched import Watched
 from rvmon.coverage.watcher import Bins, WatchingUnit
 from rvmon.errors import UnknownNameError
@@ -124,11 +124,12 @@ class CoverageMonitor:
     ) -> None:
         self._watched = requirements
         self._bins = _BinRun(bins, settle, sources)
-        self._requirements = None if self._watched is None else self._watched.run(settle, sources)
-        # What refuses more comes first: a sample that one refuses none has taken.
         self._runs: list[Monitor] = [self._bins]
-        if self._requirements is not None:
-            self._runs.insert(0, self._requirements)
+        self._requirements: RequirementRun | None = None
+        if requirements is not None:
+            self._requirements, others = requirements.runs(settle, sources)
+            # What refuses most comes first: a sample that one refuses none has taken.
+            self._runs = [self._requirements, others, self._bins]
 
     def step(self, t: float, values: Mapping[str, Any]) -> None:
         """Take one sample (seconds); see `step_ns`."""
@@ -165,15 +166,11 @@ class CoverageMonitor:
 
     def finish_ns(self, t_ns: int | None = None) -> Hits:
         """End the run, at `t_ns` if that is later than all so far; returns all that it hit."""
-        self._bins.finish_ns(t_ns)
+        reports = [run.finish_ns(t_ns) for run in self._runs]
         hits = dict(self._bins.hits)
         if self._requirements is not None and self._watched is not None:
-            report = self._requirements.finish_ns(t_ns)
-            hits |= {
-                name: found
-                for name, found in self._watched.hits(self._requirements, report)
-                if found
-            }
+            found = self._watched.hits(self._requirements, reports)
+            hits |= {name: items for name, items in found if items}
         return hits
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +15,7 @@ from rvmon.explain.graph import Graph, graph_of
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge
 from rvmon.monitor.attempts.judges import judge_of
 from rvmon.monitor.attempts.machine_judge import MachineJudge
+from rvmon.monitor.build import build_monitor
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.evaluators import Evaluators
@@ -121,14 +122,6 @@ def deadline_of(owed: Formula) -> int | None:
             return None
 
 
-@dataclass(frozen=True, slots=True)
-class _Without:
-    """Which requirement a variant is of, and the item that it decides on."""
-
-    requirement: str
-    item: str
-
-
 class WatchedRequirements:
     """The requirements and cover goals of a specification, ready to be watched on any runs.
 
@@ -140,58 +133,56 @@ class WatchedRequirements:
     """
 
     def __init__(self, spec: CheckedSpec) -> None:
+        plain = replace(spec, properties={}, covers={})
         self._goals = goals_as_requirements(spec).requirements
-        own = CompiledSpec(replace(spec, properties={}, covers={}))
-        self._watched = {name: WatchedRequirement(one) for name, one in own.requirements.items()}
-        self._variants: dict[str, _Without] = {}
-        requirements: dict[str, Requirement] = dict(spec.requirements)
-        for name, watched in self._watched.items():
-            for number, variant in enumerate(watched.variants, start=1):
-                key = f"{name} without part {number}"
-                self._variants[key] = _Without(name, decides(variant.part))
-                requirements[key] = replace(variant.requirement, id=key)
-        # A goal may be called as a requirement is.
-        requirements |= {
-            _goal(name): replace(one, id=_goal(name)) for name, one in self._goals.items()
+        self._own = CompiledSpec(plain)
+        self._watched = {
+            name: WatchedRequirement(one) for name, one in self._own.requirements.items()
         }
-        self._compiled = CompiledSpec(
-            replace(spec, requirements=requirements, properties={}, covers={})
-        )
+        self._variants = {
+            # No requirement, and no goal, has a backtick in its name.
+            f"`{name}` {number}": (name, variant)
+            for name, watched in self._watched.items()
+            for number, variant in enumerate(watched.variants, start=1)
+        }
+        others: dict[str, Requirement] = {
+            key: replace(variant.requirement, id=key)
+            for key, (_, variant) in self._variants.items()
+        }
+        self._others = CompiledSpec(replace(plain, requirements={**others, **self._goals}))
         self.groups = [group for one in self._watched.values() for group in one.groups]
         self.groups += [group_of(name, Subject.GOAL, [Item(SHOWN)]) for name in self._goals]
 
-    def run(self, settle: str, sources: frozenset[str] | None) -> RequirementRun:
-        """What watches one run."""
-        return RequirementRun(self._compiled, settle, sources)
+    def runs(self, settle: str, sources: frozenset[str] | None) -> tuple[RequirementRun, Monitor]:
+        """What watches one run: the requirements, and beside them what else is judged."""
+        others = build_monitor(self._others, settle=settle, sources=sources)
+        return RequirementRun(self._own, settle, sources), others
 
-    def hits(self, run: RequirementRun, report: Report) -> Iterator[tuple[str, Mapping[str, Hit]]]:
+    def hits(
+        self, run: RequirementRun, reports: Sequence[Report]
+    ) -> Iterator[tuple[str, Mapping[str, Hit]]]:
         """What a run that is over has hit, by group.
 
         Args:
-            run: of these requirements.
-            report: on it.
+            run: of the requirements.
+            reports: on it, and on what else was judged.
         """
         attempts: dict[str, list[Attempt]] = {}
-        for attempt in report.attempts:
+        for attempt in (attempt for report in reports for attempt in report.attempts):
             if not attempt.in_doubt:
                 attempts.setdefault(attempt.requirement, []).append(attempt)
         for name, watched in self._watched.items():
             own = attempts.get(name, [])
             found = dict(_of_attempts(own, watched.deadline))
-            for key, without in self._variants.items():
-                if without.requirement == name:
-                    apart = _apart(own, attempts.get(key, []))
-                    found |= _hit(without.item, apart)
+            for key, (of, variant) in self._variants.items():
+                if of == name:
+                    found |= _hit(decides(variant.part), _apart(own, attempts.get(key, [])))
             yield name, found
             if watched.graph is not None:
                 yield from _passages(watched.graph, name, run.passages(name))
         for name in self._goals:
-            shown = [one for one in attempts.get(_goal(name), []) if one.verdict is Verdict.PASS]
+            shown = [one for one in attempts.get(name, []) if one.verdict is Verdict.PASS]
             yield name, dict(_hit(SHOWN, [_instant(one) for one in shown]))
-
-
-def _goal(name: str) -> str:
-    return f"cover goal {name}"
 
 
 class RequirementRun(Monitor):
