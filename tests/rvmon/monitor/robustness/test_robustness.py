@@ -187,6 +187,36 @@ def kept_by(value, seen=None):
     return 0
 
 
+def test_an_instance_is_measured_with_what_was_before_it():
+    """What an instance looks back at may lie before the first occurrence of its value."""
+    spec = rvmon.loads(
+        "spec s\nsignal x : real\nevent g(k : int)\nrequirement R1\n"
+        "  upon g.k == each then immediately once[1 s, 3 s] x > 10\n  for each each in g.k\n"
+    )
+    found = spec.robustness([(0, {"x": 12.0}), (2, {"x": 5.0, "g": {"k": 1}}), (3, {})])
+    assert found.attempts["R1", 1].low == pytest.approx(2)
+
+
+def test_a_trigger_that_looks_back_is_measured_in_an_attempt_that_captures():
+    """What excuses an episode is measured with what was before it."""
+    spec = rvmon.loads(
+        "spec s\ntime sampled\nsignal x : real\nsignal p : bool\nevent e\nrequirement R1\n"
+        "  whenever e and fall(p) then within 4 s x > v\n  let v = 3\n"
+    )
+    samples = [(0, {"p": True, "x": 1.0}), (1, {"p": False, "e": True}), (2, {"x": 2.0}), (9, {})]
+    assert spec.robustness(samples).attempts["R1", 1].high == pytest.approx(-1)
+
+
+def test_what_cannot_have_been_held_long_enough_is_infinitely_far_from_it():
+    """At the first position nothing has been held, by whatever distance it holds."""
+    spec = rvmon.loads(
+        "spec s\nsignal x, y : real\nrequirement R1\n"
+        "  upon start then immediately held(not (y > x), 1 s)\n"
+    )
+    [found] = spec.robustness([(0, {"x": 0.0, "y": 1.0})]).attempts.values()
+    assert (found.low, found.high) == (-INFINITE, -INFINITE)
+
+
 def test_a_way_to_settle_that_there_is_not_is_refused():
     """The message names the ways there are."""
     with pytest.raises(UnknownNameError, match="now, next"):
