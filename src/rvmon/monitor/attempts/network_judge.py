@@ -231,8 +231,8 @@ class NetworkJudge(AttemptJudge):
         self.restless = self.flow.gap is None and self.worse is not None
 
     def _foresee(self) -> None:
-        """Set when time alone decides an attempt, if the letter stays."""
-        self.due = min((at // 2 for at in self._coming()), default=NEVER)
+        """Set when time alone gives an attempt a value in a network, if the letter stays."""
+        self.due = min((at // 2 for _, at in self._coming()), default=NEVER)
         self._bounded_at = -FOREVER
 
     @property
@@ -296,10 +296,12 @@ class NetworkJudge(AttemptJudge):
         found = network.truth(t)
         return None if found is None else (found[0], max(found[1], 2 * t))
 
-    def _coming(self) -> Iterator[int]:
-        """The stamps at which time alone decides attempts, if the letter stays; the first of each.
+    def _coming(self) -> Iterator[tuple[bool, int]]:
+        """What time alone makes known of attempts, if the letter stays.
 
-        Of attempts that one piece of what comes speaks of, the first one is the soonest.
+        Yields:
+            Whether that decides the attempt, and the stamp; of attempts that one piece of what
+            comes speaks of, those of the first one, which is the soonest.
         """
         attempts = self.attempts
         for network in self._networks:
@@ -311,8 +313,8 @@ class NetworkJudge(AttemptJudge):
                     index = bisect_left(attempts, left * gap, key=_position)
                     if index < len(attempts):
                         t = _position(attempts[index]) // gap
-                        if t <= right and self._decides(network, value):
-                            yield at + slope * t
+                        if t <= right:
+                            yield self._decides(network, value), at + slope * t
 
     def _decides(self, network: Network, value: bool) -> bool:
         """Whether a value in a network decides an attempt."""
@@ -337,7 +339,7 @@ class NetworkJudge(AttemptJudge):
     @property
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt, as far as is known now."""
-        return min((at // 2 for at in self._coming()), default=NEVER)
+        return min((at // 2 for decides, at in self._coming() if decides), default=NEVER)
 
     def moment(self, network: Network, now: int) -> Moment:
         """How one of the networks stands at a stamp, worked out once for all attempts."""
