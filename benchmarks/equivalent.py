@@ -51,17 +51,10 @@ EQUIVALENT = {
         "another age of the same region, or a row for one in which no step can happen"
     ),
     "ledger.py off by one: `2 * end + 1` => `2 * end`": (
-        "a network has come further than that by itself, and automata look at whole instants"
+        "a network has come that far before, and automata look at whole instants"
     ),
     "residual.py dropped operand: `left == right or not right` => `not right`": (
         "only a short cut to what the reduction finds"
-    ),
-    "network_judge.py comparison: `span < self.plan.settles` => `span <= self.plan.settles`": (
-        "what is not worked out ahead is worked out when time comes there"
-    ),
-    "network_judge.py swapped branches: `2 * (t + span) if span < self.plan.settles else FOREVER` "
-    "=> `FOREVER if span < self.plan.settles else 2 * (t + span)`": (
-        "the same; and what is worked out far ahead is worked out again when the letter changes"
     ),
     "python_values.py and/or: `state.leaf is not None and self._is_instant(state.leaf)` => "
     "`state.leaf is not None or self._is_instant(state.leaf)`": (

@@ -8,7 +8,7 @@ from typing import Self, assert_never
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, stamp
 from rvmon.dataflow.positions import Positions
-from rvmon.dataflow.ranges import Range, Ranges, around, cut, drop, overlapping
+from rvmon.dataflow.ranges import Range, Ranges, around, drop, overlapping
 from rvmon.dataflow.ranges import add as add_to
 from rvmon.dataflow.sweep import Carried, Known
 from rvmon.formula.core import Core
@@ -32,11 +32,9 @@ class Knowledge:
     Attributes:
         plan: its nodes.
         positions: those of the word.
-        known: per node, where it is true and where it is false, if the letter stays and no further
-            position comes where they are sparse.
+        known: per node, where it is true and where it is false.
         news: what of that became known last, and when; all the rest was known before.
-        grown: the stamp that time has come to; what is known by then stays as it is.
-        ahead: the stamp as of which all is worked out, the letter staying; not before `grown`.
+        grown: the stamp that time has come to.
         pending: per node, the first position that is wanted and not known.
         swept: per `until`, up to where its operands only lead on; per `since`, where it is known.
         carried: per `since`, what it is just before that.
@@ -48,7 +46,7 @@ class Knowledge:
         self.positions = Positions(gap)
         self.known: list[tuple[Ranges, Ranges]] = [([], []) for _ in range(count)]
         self.news: list[Known] = [NO_NEWS] * count
-        self.grown = self.ahead = -FAR
+        self.grown = -FAR
         self.pending = [-FAR] * count
         self.swept = [-FAR] * count
         self.carried: list[Carried] = [
@@ -64,7 +62,7 @@ class Knowledge:
         made.positions = self.positions.copy()
         made.known = [(list(true), list(false)) for true, false in self.known]
         made.news = list(self.news)
-        made.grown, made.ahead = self.grown, self.ahead
+        made.grown = self.grown
         made.pending = list(self.pending)
         made.swept = list(self.swept)
         made.carried = list(self.carried)
@@ -93,10 +91,12 @@ class Knowledge:
     def side(self, place: int, side: int, on: Range) -> Pieces:
         """Where on a stretch a node becomes known to be true (side 0), or false (1)."""
         first, last = on
-        made: list[Piece] = []
         news = self.news[place][side]
         if news and (news[-1][1] < first or news[0][0] > last):
             news = ()
+        elif news and news[-1][0] <= first and last <= news[-1][1]:
+            return ((first, last, news[-1][2], news[-1][3]),)
+        made: list[Piece] = []
         for left, right in overlapping(self.known[place][side], first, last):
             start, end = max(left, first), min(right, last)
             for its_left, its_right, at, slope in news:
@@ -130,14 +130,13 @@ class Knowledge:
         """
         # What lies before `pending` was known, and may have been dropped.
         place = self.plan.places[core]
-        found = self._unknown_from(place, max(first, self.pending[place]), skips=True)
+        found = self.unknown_from(place, max(first, self.pending[place]))
         is_position = found <= self.positions.last and self.positions.slope * found < limit
         return found if is_position else None
 
     def relative(self, t: int) -> object:
         """All that is known, as seen from `t`."""
         gap = self.positions.gap
-        self.take_back()
         return tuple(
             tuple(
                 (left if left <= -FAR else left * gap - t, right * gap - t) for left, right in side
@@ -150,43 +149,25 @@ class Knowledge:
 
     def tell(self, place: int, side: int, pieces: Pieces) -> None:
         """Add to what becomes known of a node, ascending; it is not known yet."""
+        if not pieces:
+            return
         ranges = self.known[place][side]
         for left, right, _, _ in pieces:
-            add_to(ranges, left, right)
-        old = self.news[place]
-        new: Pieces = (*old[side], *pieces)
-        if len(new) > len(pieces) > 0 and old[side][-1] > pieces[0]:
+            if ranges and ranges[-1][1] == left - 1:
+                ranges[-1] = (ranges[-1][0], right)
+            else:
+                add_to(ranges, left, right)
+        true, false = self.news[place]
+        old = false if side else true
+        new: Pieces = (*old, *pieces) if old else pieces
+        if old and old[-1] > pieces[0]:
             new = sorted(new)
-        self.news[place] = (old[0], new) if side else (new, old[1])
-
-    def take_back(self) -> None:
-        """Forget what was worked out for times to come."""
-        if self.ahead <= self.grown:
-            return
-        self.ahead = self.grown
-        for place, sides in enumerate(self.news):
-            if sides is NO_NEWS:
-                continue
-            true, false = self.known[place]
-            self.news[place] = self._kept(true, sides[0]), self._kept(false, sides[1])
-
-    def _kept(self, ranges: Ranges, news: Pieces) -> Pieces:
-        """What of some news is known by now; the rest is taken out of the ranges."""
-        kept: list[Piece] = []
-        for left, right, at, slope in news:
-            end = right if at <= self.grown else left - 1
-            if slope:
-                end = min(right, (self.grown - at) // slope)
-            if end >= left:
-                kept.append((left, end, at, slope))
-            if end < right:
-                cut(ranges, max(left, end + 1), right)
-        return kept
+        self.news[place] = (true, new) if side else (new, false)
 
     # What is wanted.
 
-    def _want(self, position: int) -> None:
-        """Drop what nothing can ask for, from the root down."""
+    def want(self, position: int) -> None:
+        """Drop what nothing can ask for if a position is the first one that is wanted."""
         nodes = self.plan.nodes
         wanted = [FAR] * len(nodes)
         wanted[-1] = position
@@ -197,20 +178,24 @@ class Knowledge:
             for ranges in self.known[place]:
                 drop(ranges, base)
             start = max(base, self.pending[place])
-            pending = self._unknown_from(place, start, skips=not isinstance(node, Sweep))
+            pending = self.unknown_from(place, start, skips=not isinstance(node, Sweep))
             self.pending[place] = pending
             for operand, first in self._asks(place, node, pending):
                 wanted[operand] = min(wanted[operand], first)
         self.positions.forget(min(wanted))
 
-    def _unknown_from(self, place: int, integer: int, *, skips: bool) -> int:
+    def unknown_from(self, place: int, integer: int, *, skips: bool = True) -> int:
         """The first integer from one on that is not known; if `skips`, the first position."""
+        true, false = self.known[place]
+        positions = self.positions
+        skips = skips and (positions.sparse or integer < positions.first)
         while True:
-            integer = self.positions.following(integer) if skips else integer
-            end = max(self._end(place, side, integer) for side in (0, 1))
-            if end < integer:
+            if skips:
+                integer = positions.following(integer)
+            run = around(true, integer) or around(false, integer)
+            if run is None:
                 return integer
-            integer = end + 1
+            integer = run[1] + 1
 
     def _end(self, place: int, side: int, integer: int) -> int:
         """The end of what is known around an integer of one side; one less if it is not."""
@@ -266,7 +251,7 @@ class Knowledge:
         self._visits += 1
         if self._visits >= _SELDOM:
             self._visits = 0
-            self._want(position)
+            self.want(position)
 
     def _begin(self) -> None:
         """Before the first position, nothing has been met."""

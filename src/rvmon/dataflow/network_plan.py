@@ -36,19 +36,7 @@ def plan_of(owed: Core, gap: int | None) -> NetworkPlan:
     leaves = tuple((place, node.core) for place, node in enumerate(nodes) if isinstance(node, Leaf))
     inner = tuple((place, node) for place, node in enumerate(nodes) if not isinstance(node, Leaf))
     looks_back = any(isinstance(core, Since | Previous) for core in planning.places)
-    settles = sum(_settles(node) for node in nodes) * planning.gap + 2 * planning.gap
-    return NetworkPlan(nodes, planning.places, leaves, inner, looks_back, settles)
-
-
-def _settles(node: Node) -> int:
-    """The integers that an operator looks ahead or back."""
-    match node:
-        case Window(low=low, high=high):
-            return max(abs(low), abs(high)) + 2
-        case Shift(offset=offset):
-            return abs(offset)
-        case _:
-            return 0
+    return NetworkPlan(nodes, planning.places, leaves, inner, looks_back)
 
 
 class _Planning:

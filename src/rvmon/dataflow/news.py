@@ -124,9 +124,10 @@ def _all_decide(network: Knowledge, place: int, node: Window, side: int, step: S
     start = max(first, pending)
     if start <= last and low <= high:
         runs = overlapping(ranges, start + low, last + low)
-        if positions.sparse and not (runs and runs[-1][1] >= positions.last):
-            behind = around(ranges, positions.last) or (positions.last + 1, positions.last)
-            runs = (*runs, behind)
+        edge = positions.last if step.arrived is None else step.arrived[0] - 1
+        if positions.sparse and not (runs and runs[-1][1] >= edge):
+            # Behind the last position before, none lay in any of them.
+            runs = (*runs, around(ranges, edge) or (edge + 1, edge))
         for run in runs:
             spans.append((max(start, run[0] - low), min(last, _end_of(run, positions) - high)))
     elif start <= last:
@@ -183,13 +184,18 @@ def news_of_until(network: Knowledge, place: int, node: Sweep) -> None:
             for gap in reversed(gaps(network.known[place][side], on)):
                 _tell_until(network, place, node, side, gap)
                 told += 1
+    if told > 1:
+        found_true, found_false = network.news[place]
+        network.news[place] = sorted(found_true), sorted(found_false)
     pending = network.pending[place]
     found = network.truth_at(place, bottom) if told and pending < bottom else None
     if found is not None and network.truth_at(place, pending) is None:
         # What lies between only leads on to `bottom`.
         side = int(not found[0])
-        for left, right in gaps(network.known[place][side], (pending, bottom - 1)):
-            network.tell(place, side, ((left, right, found[1], 0),))
+        before = gaps(network.known[place][side], (pending, bottom - 1))
+        network.tell(place, side, [(left, right, found[1], 0) for left, right in before])
+        found_true, found_false = network.news[place]
+        network.news[place] = sorted(found_true), sorted(found_false)
 
 
 def _from_right(network: Knowledge, place: int, node: Sweep, on: Range, met: bool) -> Ranges:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from rvmon.dataflow.evaluate import evaluated
 from rvmon.dataflow.knowledge import Knowledge
 from rvmon.dataflow.nodes import Shift, Sweep, Window, operands_of
-from rvmon.dataflow.piecewise import FAR, Piece, up_to
+from rvmon.dataflow.piecewise import FAR, up_to
 from rvmon.dataflow.ranges import Range, Ranges, gaps, merged
 from rvmon.dataflow.sweep import Carried
 
@@ -28,7 +28,7 @@ class Step(NamedTuple):
 
     before: int
     limit: int
-    arrived: Piece | None
+    arrived: Range | None
 
 
 def news_of_past(network: Knowledge, place: int, node: Window | Shift | Sweep, step: Step) -> None:
@@ -61,7 +61,7 @@ def _candidates(network: Knowledge, node: Window | Shift | Sweep, step: Step) ->
         for pieces in network.news[operand]
         for piece in (network.positions.held_on(pieces) if isinstance(node, Shift) else pieces)
     ]
-    arrived = [] if step.arrived is None else [step.arrived[:2]]
+    arrived = [] if step.arrived is None else [step.arrived]
     found = [
         (first - high if first > -FAR else first, last - low if last < FAR else FAR)
         for first, last in [*sources, *arrived]

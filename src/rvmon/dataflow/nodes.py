@@ -88,7 +88,6 @@ class NetworkPlan:
         leaves: the places of those that read a letter, with what they read.
         inner: those of the others, each with its place, in the same order.
         looks_back: whether something speaks of what was before an attempt began.
-        settles: ticks after which nothing more comes of a letter that stays.
     """
 
     nodes: tuple[Node, ...]
@@ -96,7 +95,6 @@ class NetworkPlan:
     leaves: tuple[tuple[int, Literal | Constant], ...]
     inner: tuple[tuple[int, Junction | Window | Sweep | Shift], ...]
     looks_back: bool
-    settles: int
 
     def sweep_of(self, node: Shift) -> Sweep:
         """What a node of the plan moves along."""

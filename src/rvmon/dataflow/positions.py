@@ -19,28 +19,30 @@ class Positions:
     Attributes:
         gap: ticks between two integers, 1 in sampled time.
         slope: what a stamp grows by from one integer to the next.
+        sparse: whether there are integers between positions.
         first: the first position; `FAR` before there is one.
         last: the last position; `FAR` while it is taken that they go on.
     """
 
-    STATE = ("gap", "slope", "first", "last", "_stamps")
+    STATE = ("gap", "slope", "sparse", "first", "last", "_stamps")
 
     def __init__(self, gap: int | None) -> None:
         self.gap = gap or 1
         self.slope = 2 * self.gap
+        self.sparse = not gap
         self.first = FAR
         self.last = FAR if gap else -FAR
         self._stamps: list[int] | None = None if gap else []
 
     @property
-    def sparse(self) -> bool:
-        """Whether there are integers between positions."""
-        return self._stamps is not None
+    def distance(self) -> int | None:
+        """Ticks between two positions; `None` if only samples are positions."""
+        return None if self.sparse else self.gap
 
     def copy(self) -> Positions:
         """The same, independent from now on."""
         made = Positions.__new__(Positions)
-        made.gap, made.slope = self.gap, self.slope
+        made.gap, made.slope, made.sparse = self.gap, self.slope, self.sparse
         made.first, made.last = self.first, self.last
         made._stamps = None if self._stamps is None else list(self._stamps)
         return made

@@ -47,15 +47,6 @@ def add(ranges: Ranges, left: int, right: int) -> None:
     ranges[start:end] = [(left, right)]
 
 
-def cut(ranges: Ranges, left: int, right: int) -> None:
-    """Take out integers that lie in one of them."""
-    index = bisect_right(ranges, left, key=_left) - 1
-    if index >= 0:
-        first, last = ranges[index]
-        parts = ((first, left - 1), (right + 1, last))
-        ranges[index : index + 1] = [part for part in parts if part[0] <= part[1]]
-
-
 def drop(ranges: Ranges, before: int) -> None:
     """Drop those that lie wholly before an integer."""
     count = 0

@@ -27,7 +27,6 @@ class Moment:
     def __init__(self, network: Network, now: int) -> None:
         self.network = network.copy()
         self.network.grow(now)
-        self.network.take_back()
 
     @cached_property
     def alone(self) -> Known:

@@ -13,9 +13,10 @@ import rvmon
 from rvmon.dataflow.network import Network
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
+from rvmon.runtime.values import NEVER
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.drive import drive
+from rvmon.testing.drive import drive, feed
 from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
@@ -220,3 +221,49 @@ def test_deadlines_of_records_are_those_of_automata(time):
         assert found[0] == found[1], formula
         noted += sum(deadline is not None for _, _, deadline in found[0])
     assert noted > 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("time", TimeModel)
+def test_it_is_woken_before_time_alone_decides(time):
+    """What it waits for costs little to work out, and is not later than what comes."""
+    woken = 0
+    for seed in range(20):
+        case = case_of(f"woken {seed}", Profile(time=time), TraceProfile())
+        monitor = Spec(case.spec).monitor(engine="network", sources=case.names)
+        for action in case.actions:
+            feed(monitor, action)
+            for judge in monitor._evaluators.judges:
+                assert judge.due <= judge.next_due
+                woken += judge.due < NEVER
+    assert woken > 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("time", TimeModel)
+def test_reasons_are_the_same_later(time):
+    """What is said of a decision does not depend on when someone asks."""
+    said = 0
+    for seed in range(20):
+        case = case_of(f"asked {seed}", Profile(time=time), TraceProfile())
+        found = []
+        for at_once in (True, False):
+            monitor = Spec(case.spec).monitor(engine="network", sources=case.names)
+            if at_once:
+                monitor.on_decided(repr)
+            report, _ = drive(monitor, case)
+            found.append([repr(one) for one in reversed(report.attempts)])
+        assert found[0] == found[1]
+        said += len(found[0])
+    assert said > 25
+
+
+def test_a_window_without_a_tick_is_over_in_time():
+    """Nothing is awaited in it; what that makes of it is told when time has passed it."""
+    monitor = spec_of("upon e then F[1 ms, 5 ms] a", "sampled every 10 ms").monitor(
+        engine="network"
+    )
+    monitor.step(0, {"a": True})
+    monitor.step(0.01, {"e": True})
+    [failed] = monitor.advance_ns(15_000_001)
+    assert (failed.decided, failed.verdict.value) == (15_000_001, "F")

@@ -10,7 +10,9 @@ from typing import Any
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.dataflow.at_end import held_at_end
+from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import FOREVER, Network
+from rvmon.dataflow.next_news import next_news
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import Pieces, stamp
 from rvmon.dataflow.ranges import Range, merged
@@ -21,6 +23,7 @@ from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.standing import Standing
+from rvmon.plan.stood import Stood
 from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
 
@@ -29,10 +32,6 @@ WAITING = PASSED + 1
 
 The token of an attempt is how it stands in a network, and the position whose value it is.
 """
-
-_PATIENCE = 4
-"""A letter that has stayed for a while is looked ahead for so many times that."""
-
 
 _VALUES = (FALSE, UNKNOWN, TRUE)
 
@@ -58,13 +57,10 @@ class NetworkJudge(AttemptJudge):
         worse: the network that takes the unknown for the worse; `None` while nothing is asked.
         better: the one that takes it for the better; `None` as long as both are the same.
         attempts: those whose value is not known.
-        now: the stamp that time has come to.
+        now: the stamp that the networks have come to.
     """
 
-    STATE = (
-        *(*AttemptJudge.STATE, "worse", "better", "now", "_letters", "_held"),
-        *("_news", "_next_decision", "_changed", "_span"),
-    )
+    STATE = (*AttemptJudge.STATE, "worse", "better", "now", "_letters", "_held")
 
     def __init__(
         self,
@@ -79,17 +75,15 @@ class NetworkJudge(AttemptJudge):
         self.worse: Network | None = None
         self.better: Network | None = None
         self._letters: tuple[list[bool], list[bool]] | None = None
-        self._news = FOREVER
-        """The stamp at which a value that is waited for is known next, if the letter stays."""
-        self._next_decision = NEVER
-        self._changed = self.position
-        """When the letter changed last."""
-        self._span = self.plan.settles
-        """How far it is worth while to look ahead when it does, ticks."""
         self._held: Pieces | None = None
+        self._journals: list[Journal | None] = [None, None]
+        self._stood: tuple[tuple[int, ...], Stood] | None = None
+        self._bounded_at = -FOREVER
+        """The stamp as of which `due` holds for all that begins then, too."""
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
         """Those that were asked for last, of each network one."""
         self.now = -1 << 64
+        self.texts = tuple(text for _, text in self.leaves)
         index = flow.graph.index
         self._reads = tuple(
             (-1, (core.value,), (core.value,))
@@ -120,49 +114,48 @@ class NetworkJudge(AttemptJudge):
         self._begin_network()
         if self._letters is None or self.position < t:
             self.visit(t)
+        self._look(2 * t + 1)
         self._note_doubt()
+        self._stood = None
         # What was known of the position before the attempt began is no news.
         open_still = bool(self.attempts) and self.attempts[-1] is attempt
         if open_still and self.worse and self._judge(attempt, self.worse, self.better):
             self.attempts.pop()
-        self._rest()
-        self._foresee()
-        self.restless = self.flow.gap is None and self.worse is not None
+            self._rest()
+        elif self._bounded_at != self.now:
+            self._rest()
 
     def _begin_network(self) -> None:
         if self.worse is None:
             self.worse = Network(self.plan, self.flow.gap)
             self._letters = None
+            self._journals = [None, None]
             self.now = -1 << 64
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, which the flow is at."""
         if self.plan.looks_back:
             self._begin_network()
-        self.restless = False
-        if self._letters is not None:
+        if self.due <= t:
             self._look(2 * t)
         self.position = t
         if self.worse is not None:
             letters = self.read()
             if letters != self._letters or self.flow.gap is None:
                 self._turn(t, self.worse, letters)
-            self._look(2 * t + 1)
-        self._foresee()
-        self.restless = self.flow.gap is None and self.worse is not None
+            elif self.due <= t:
+                self._look(2 * t + 1)
+        self._rest()
 
     def _turn(self, t: int, worse: Network, letters: tuple[list[bool], list[bool]]) -> None:
         self._letters = letters
-        self._news = -FOREVER
-        self._span = max(min(t - self._changed, self.plan.settles), self._span // 2)
-        self._changed = t
         if self.better is None and letters[0] != letters[1]:
-            self.better = worse.copy()
+            self.better, self._journals[1] = worse.copy(), None
         self._note_doubt()
-        ahead = self._far(t, self._span)
-        worse.visit(t, letters[0], self._first_waiting(better=False), ahead)
-        if self.better is not None:
-            self.better.visit(t, letters[1], self._first_waiting(better=True), ahead)
+        self._journal(worse).visit(worse, t, letters[0], self._first_waiting(better=False))
+        if (better := self.better) is not None:
+            self._journal(better).visit(better, t, letters[1], self._first_waiting(better=True))
+        self._hear(2 * t + 1)
 
     def _note_doubt(self) -> None:
         """Note in each attempt what was unknown first while it was open."""
@@ -179,25 +172,25 @@ class NetworkJudge(AttemptJudge):
                 return position
         return None
 
-    def _look(self, limit: int, ahead: int = -FOREVER) -> None:
-        """Let time come to a stamp, and hear of the decisions that this brings.
+    def _look(self, limit: int) -> None:
+        """Let time come to a stamp, and hear of the decisions that this brings."""
+        if self.now < limit and self.worse is not None:
+            for network in self._networks:
+                self._journal(network).grow(network, limit)
+            self._hear(limit)
 
-        Args:
-            limit: the stamp.
-            ahead: what the letter brings up to here if it stays is worked out at once, unless more
-                is already.
-        """
-        networks = self._networks
-        unforeseen = any(network.ahead < limit for network in networks)
-        for network in networks:
-            if network.ahead <= limit + 1:
-                network.foresee(ahead)
-            network.grow(limit)
-        if not networks or limit <= self.now:
-            return
-        before, self.now = self.now, limit
-        if unforeseen or self._news <= limit:
-            self._hear(before)
+    def _journal(self, network: Network) -> Journal:
+        """What a network is to be told by."""
+        index = int(network is not self.worse)
+        journal = self._journals[index]
+        if journal is None or journal.is_over:
+            journal = self._journals[index] = Journal(network)
+        return journal
+
+    def told(self, verdict: bool) -> tuple[Journal, int] | None:
+        """The journal of the network that brings a verdict now, and how far that has come."""
+        journal = self._journals[not verdict and self.better is not None]
+        return None if journal is None else (journal, len(journal))
 
     @property
     def _networks(self) -> list[Network]:
@@ -205,23 +198,59 @@ class NetworkJudge(AttemptJudge):
             return []
         return [self.worse] if self.better is None else [self.worse, self.better]
 
-    def _hear(self, before: int) -> None:
-        """Judge what became known after a stamp."""
+    def _hear(self, now: int) -> None:
+        """Judge what became known when the networks came to a stamp."""
+        self.now = now
+        self._stood = None
         worse, better = self.worse, self.better
         if worse is None:
             return
-        found = [span for network in self._networks for span in self._learnt(network, before)]
+        found = [span for network in self._networks for span in self._learnt(network)]
         for start, end in reversed(merged(found)):
             asked = self.attempts[start : end + 1]
             kept = [attempt for attempt in asked if not self._judge(attempt, worse, better)]
             self.attempts[start : end + 1] = kept
-        if found:
-            self._rest()
 
     def _rest(self) -> None:
-        """Forget all if nothing is waited for."""
-        if not self.plan.looks_back and not self._is_waited_for:
-            self.worse = self.better = self._letters = None
+        """Forget all if nothing is waited for; set when time alone may make known what is."""
+        if not self._is_waited_for:
+            self.due = NEVER
+            if not self.plan.looks_back:
+                self.worse = self.better = self._letters = None
+        elif self.plan.looks_back and self.flow.gap is not None:
+            self._foresee()
+        else:
+            self._bounded_at = self.now
+            waiting = [self._first_waiting(better=better) for better in (False, True)]
+            bounds = [
+                next_news(network, first)
+                for network, first in zip(self._networks, waiting, strict=False)
+                if first is not None
+            ]
+            self.due = min(bounds, default=NEVER)
+        self.restless = self.flow.gap is None and self.worse is not None
+
+    def _foresee(self) -> None:
+        """Set when time alone gives an attempt a value in a network, if the letter stays."""
+        self.due = min((at // 2 for _, at in self._coming()), default=NEVER)
+        self._bounded_at = -FOREVER
+
+    @property
+    def stood(self) -> tuple[tuple[int, ...], Stood]:
+        """What is read of the input as it stands, and the propositions, to be kept."""
+        if self._stood is None:
+            flow, places = self.flow, self.places
+            until = {
+                3 * place + value: flow.last_with(place, value, flow.position)
+                for place in places
+                for value in (FALSE, TRUE)
+            }
+            values, since = (
+                {place: of[place] for place in places} for of in (flow.values, flow.since)
+            )
+            stood = Stood(flow, values, since, until, {}, flow.position, flow.begun)
+            self._stood = self.seen, stood
+        return self._stood
 
     @property
     def _is_waited_for(self) -> bool:
@@ -229,23 +258,18 @@ class NetworkJudge(AttemptJudge):
             WAITING in (attempt.token[0], (attempt.better or _NONE)[0]) for attempt in self.attempts
         )
 
-    def _learnt(self, network: Network, before: int) -> Iterator[Range]:
-        """The attempts, by first and last index, whose value became known after a stamp."""
-        if not self.attempts:
+    def _learnt(self, network: Network) -> Iterator[Range]:
+        """The attempts, by first and last index, whose value became known last."""
+        attempts, gap = self.attempts, network.positions.gap
+        if not attempts:
             return
-        gap = network.positions.gap
-        oldest, youngest = (_position(self.attempts[end]) // gap for end in (0, -1))
-        for left, right, at, slope in chain(*network.news[-1]):
-            if right < oldest or left > youngest or not (slope or before < at <= self.now):
-                continue
-            first, last = left, right
-            if slope:
-                first = max(left, (before - at) // slope + 1)
-                last = min(right, (self.now - at) // slope)
-            start = bisect_left(self.attempts, first * gap, key=_position)
-            end = bisect_right(self.attempts, last * gap, key=_position)
-            if start < end:
-                yield start, end - 1
+        oldest, youngest = (_position(attempts[end]) // gap for end in (0, -1))
+        for left, right, _, _ in chain(*network.news[-1]):
+            if right >= oldest and left <= youngest:
+                start = bisect_left(attempts, left * gap, key=_position)
+                end = bisect_right(attempts, right * gap, key=_position)
+                if start < end:
+                    yield start, end - 1
 
     def _judge(self, attempt: Open, worse: Network, better: Network | None) -> bool:
         """Look at one attempt; returns whether it was decided."""
@@ -268,47 +292,29 @@ class NetworkJudge(AttemptJudge):
         return False
 
     def _known(self, network: Network, t: int) -> Carried:
-        """What is known by now of the position at `t`, and since which stamp, at least its own."""
+        """What is known of the position at `t`, and since which stamp, at least its own."""
         found = network.truth(t)
-        if found is None or found[1] > self.now:
-            return None
-        return found[0], max(found[1], 2 * t)
+        return None if found is None else (found[0], max(found[1], 2 * t))
 
-    def _foresee(self) -> None:
-        """Set when what is waited for is known next, and when that decides something."""
-        self.due, self._next_decision, self._news = NEVER, NEVER, FOREVER
-        for network in self._networks if self.attempts else ():
-            for value, at in self._coming(network):
-                self._news = min(self._news, at)
-                if self._decides(network, value):
-                    self._next_decision = min(self._next_decision, at // 2)
-        self.due = min(self.due, self._news // 2)
-        if self.due == NEVER:
-            # As far as can be seen there is nothing: look again then.
-            self.due = min([NEVER, *(network.ahead // 2 for network in self._networks)])
+    def _coming(self) -> Iterator[tuple[bool, int]]:
+        """What time alone makes known of attempts, if the letter stays.
 
-    def _coming(self, network: Network) -> Iterator[tuple[bool, int]]:
-        """The values that attempts will have by a network, if the letter stays, and the stamps."""
-        attempts, now, gap = self.attempts, self.now, network.positions.gap
-        oldest, youngest = _position(attempts[0]) // gap, _position(attempts[-1]) // gap
-        coming = [
-            (value, piece)
-            for value, pieces in zip((True, False), network.news[-1], strict=True)
-            for piece in pieces
-            if (piece[3] or piece[2] > now) and piece[0] <= youngest and piece[1] >= oldest
-        ]
-        if len(attempts) <= len(coming):
-            for attempt in attempts:
-                found = network.truth(_position(attempt))
-                if found is not None and found[1] > now:
-                    yield found
-            return
-        for value, (left, right, at, slope) in coming:
-            # The first one of a piece is the soonest.
-            first = max(left, (now - at) // slope + 1) if slope else left
-            index = bisect_left(attempts, first * gap, key=_position)
-            if index < len(attempts) and (t := _position(attempts[index]) // gap) <= right:
-                yield value, at + slope * t
+        Yields:
+            Whether that decides the attempt, and the stamp; of attempts that one piece of what
+            comes speaks of, those of the first one, which is the soonest.
+        """
+        attempts = self.attempts
+        for network in self._networks:
+            ahead = network.copy()
+            ahead.grow(FOREVER)
+            gap = network.positions.gap
+            for value, pieces in zip((True, False), ahead.news[-1], strict=True):
+                for left, right, at, slope in pieces:
+                    index = bisect_left(attempts, left * gap, key=_position)
+                    if index < len(attempts):
+                        t = _position(attempts[index]) // gap
+                        if t <= right:
+                            yield self._decides(network, value), at + slope * t
 
     def _decides(self, network: Network, value: bool) -> bool:
         """Whether a value in a network decides an attempt."""
@@ -316,25 +322,24 @@ class NetworkJudge(AttemptJudge):
 
     def pass_to(self, t: int) -> None:
         """Let time come to `t` with the letters as they are."""
-        self._look(2 * t + 1, self._far(t + 1, _PATIENCE * (t - self._changed)))
-        self._foresee()
+        self._wait(2 * t + 1)
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, of which the letter is not known, from the instant before."""
-        self._look(2 * t, self._far(t + 1, _PATIENCE * (t - self._changed)))
-        self._foresee()
+        self._wait(2 * t)
 
-    def _far(self, t: int, span: int) -> int:
-        """The stamp so many ticks behind an instant; if nothing more comes then, behind all."""
-        return 2 * (t + span) if span < self.plan.settles else FOREVER
+    def _wait(self, limit: int) -> None:
+        count = len(self.attempts)
+        self._look(limit)
+        self._rest()
+        if count == len(self.attempts) and self.due < NEVER:
+            # Woken in vain, it sees to it that this does not go on while nothing changes.
+            self._foresee()
 
     @property
     def next_due(self) -> int:
         """The next instant at which time alone can decide an attempt, as far as is known now."""
-        for network in self._networks:
-            network.foresee(FOREVER)
-        self._foresee()
-        return self._next_decision
+        return min((at // 2 for decides, at in self._coming() if decides), default=NEVER)
 
     def moment(self, network: Network, now: int) -> Moment:
         """How one of the networks stands at a stamp, worked out once for all attempts."""

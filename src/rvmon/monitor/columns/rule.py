@@ -26,10 +26,11 @@ from rvmon.monitor.columns.timeline import Piece, Timeline
 from rvmon.monitor.columns.track import UNSEEN, Track
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.reasons.doubt import Doubt
-from rvmon.monitor.records.deferred_reasons import DeferredReasons, Stood
+from rvmon.monitor.records.deferred_reasons import DeferredReasons
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.outages import Outage
 from rvmon.plan.plan import Plan
+from rvmon.plan.stood import Stood
 from rvmon.spec.checked.specification import Mode
 
 if TYPE_CHECKING:

@@ -11,11 +11,11 @@ from rvmon.monitor.attempts.attempt_judge import Clerk, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.records.explain_machine import explained, just_before
-from rvmon.monitor.records.ledger import truths_shown
+from rvmon.monitor.records.explanation import truths_shown
 from rvmon.monitor.records.reasons import Reasons
-from rvmon.plan.outages import Outage
 from rvmon.plan.plan import Plan
 from rvmon.plan.standing import Standing
+from rvmon.plan.stood import Stood
 from rvmon.runtime.bulk import FROM_TRIGGER, unpacked
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
@@ -113,41 +113,3 @@ class DeferredReasons:
             "forecast": None,
             "robustness": None,
         }
-
-
-class Stood:
-    """The values of state formulas as they stood; see `rvmon.plan.standing.Standing`.
-
-    Args:
-        plan: has the nodes.
-        values: by node, its truth.
-        since: by node of a letter, the position from which on it has had that.
-        until: by three times the node plus a truth, the last position at which it had that before.
-        outages: by name what was not known.
-        position: that the values are of.
-    """
-
-    begun = None
-    is_cut = False
-
-    def __init__(
-        self,
-        plan: Plan,
-        values: Any,
-        since: Any,
-        until: Any,
-        outages: Mapping[str, Outage],
-        position: int,
-    ) -> None:
-        self.graph = plan.graph
-        self.gap = plan.gap
-        self.values = values
-        self.since = since
-        self.outages = outages
-        self.position = position
-        self._until = until
-
-    def last_with(self, place: int, value: int, t: int) -> int | None:
-        """See `Standing`; of the propositions that the requirement owes."""
-        found: int | None = t if self.values[place] == value else self._until[3 * place + value]
-        return found

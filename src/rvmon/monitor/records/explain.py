@@ -7,7 +7,7 @@ from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.records.explain_machine import explain_decision, explain_open
-from rvmon.monitor.records.explain_network import network_decision, network_open
+from rvmon.monitor.records.explain_network import network_open
 from rvmon.monitor.records.explanation import Explanation
 
 
@@ -16,8 +16,6 @@ def why_decided(
 ) -> Explanation:
     """Why an attempt was decided at `t`; see `Clerk.decided`."""
     match judge:
-        case NetworkJudge():
-            return network_decision(judge, attempt, verdict, t)
         case MachineJudge():
             return explain_decision(judge, attempt, verdict, t, before)
         case _:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.formula.horizon import horizon
+from rvmon.formula.state import TRUE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.reasons.doubt import outage_in_words
 from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
@@ -70,3 +73,9 @@ def longer(judge: AttemptJudge, attempt: Open, end: int | None) -> str:
     if latest <= end:
         return "; 1 ns more would have decided it"
     return f"; a recording more than {format_ticks(latest - end)} longer would have decided it"
+
+
+def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
+    """Truth values by the text of what has them; `None` is unknown."""
+    pairs = zip(texts, seen, strict=True)
+    return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}

@@ -7,13 +7,14 @@ from dataclasses import replace
 
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
-from rvmon.formula.state import TRUE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
+from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.records.explain import why_decided, why_open
-from rvmon.monitor.records.explanation import Explanation
+from rvmon.monitor.records.explain_network import network_details, note_decision
+from rvmon.monitor.records.explanation import Explanation, truths_shown
 from rvmon.monitor.records.forecast import forecast_of
 from rvmon.trace.sample import Scalar
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.attempt import Attempt, Decision, decided_attempt
 from rvmon.verdict.end import settle_at_end
 from rvmon.verdict.verdict import Verdict
 
@@ -98,15 +99,16 @@ class Ledger:
                 self.say_nothing(judge, attempt)
             return  # if met, triggered or not
         upon_end = judge.compiled.obligation.trigger is None
-        why = why_decided(judge, attempt, verdict, t, before)
-        record = _record(
-            judge,
-            attempt,
-            attempt.triggered if upon_end else t,
-            Verdict.PASS if verdict else Verdict.FAIL,
-            Decision.PREFIX,
-            why,
-        )
+        decided = attempt.triggered if upon_end else t
+        truth = Verdict.PASS if verdict else Verdict.FAIL
+        if isinstance(judge, NetworkJudge):
+            name, noted = judge.compiled.requirement.id, note_decision(judge, attempt, verdict, t)
+            record = decided_attempt(
+                name, 0, attempt.triggered, decided, truth, network_details, noted
+            )
+        else:
+            why = why_decided(judge, attempt, verdict, t, before)
+            record = _record(judge, attempt, decided, truth, Decision.PREFIX, why)
         self._decided.append((judge, attempt, record))
 
     def ended(self, judge: AttemptJudge, attempt: Open, end: int, reached: int) -> None:
@@ -169,10 +171,9 @@ class Ledger:
                 records = [entry[3] for entry in self.recorded]
         else:
             made = [(rank, record) for _, rank, _, record in self.recorded]
-            made += [
-                (judge.compiled.rank, replace(record, number=_number(attempt)))
-                for judge, attempt, record in self._decided
-            ]
+            for judge, attempt, record in self._decided:
+                record.number = _number(attempt)
+                made.append((judge.compiled.rank, record))
             self._decided.clear()
             made.sort(key=lambda entry: _order(*entry))
             records = [record for _, record in made]
@@ -258,12 +259,6 @@ def _number(attempt: Open) -> int:
 def values_shown(judge: AttemptJudge, seen: tuple[int, ...]) -> dict[str, Scalar]:
     """The propositions concerned by their text; `None` is unknown."""
     return truths_shown([text for _, text in judge.leaves], seen)
-
-
-def truths_shown(texts: Sequence[str], seen: tuple[int, ...]) -> dict[str, Scalar]:
-    """Truth values by the text of what has them; `None` is unknown."""
-    pairs = zip(texts, seen, strict=True)
-    return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
 
 
 def _order(rank: int, record: Attempt) -> tuple[bool, int, int, bool, int]:
