@@ -22,7 +22,7 @@ BUDGETS = {
     "tests/rvmon/analysis": 12,
     "tests/rvmon/automaton": 12,
     "tests/rvmon/cli": 40,
-    "tests/rvmon/codegen": 110,
+    "tests/rvmon/codegen": 140,
     "tests/rvmon/dataflow": 6,
     "tests/rvmon/diagnostics": 1,
     "tests/rvmon/execute": 20,
