@@ -32,10 +32,14 @@ class Examples:
     by_cell: dict[Cell, Job]
 
 
-def choose_examples(played: Sequence[Played]) -> Examples:
+def choose_examples(played: Sequence[Played], *, every: bool = False) -> Examples:
     """The first test behind each count, every test with a known answer, and every crash.
 
     A test that hung, or ended its process, has no page: it cannot be played again here.
+
+    Args:
+        played: of the campaign.
+        every: whether all others are shown as well.
     """
     by_cell: dict[Cell, Job] = {}
     shown: dict[tuple[str, str], Job] = {}
@@ -43,7 +47,7 @@ def choose_examples(played: Sequence[Played]) -> Examples:
         job, outcome = one.job, one.outcome
         if outcome.ending in (Ending.HUNG, Ending.LOST):
             continue
-        wanted = bool(job.test.expected) or outcome.error is not None
+        wanted = every or bool(job.test.expected) or outcome.error is not None
         if job.test.mutation is None:
             for requirement, verdict in outcome.verdicts.items():
                 cell = (job.robot, job.test.strategy, requirement, verdict)

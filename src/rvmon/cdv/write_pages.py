@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_files import RUNS, TESTS
 from rvmon.cdv.campaign_page import campaign_page
 from rvmon.cdv.coverage import write_coverage
-from rvmon.cdv.examples import choose_examples, comparable_jobs
+from rvmon.cdv.examples import Examples, comparable_jobs
 from rvmon.cdv.outcome import Played, Results
 from rvmon.cdv.plan import Job
 from rvmon.cdv.program import typed
@@ -31,6 +31,9 @@ def write_pages(
     results: Results,
     specs: Mapping[str, Spec],
     command: str,
+    *,
+    examples: Examples,
+    tell: Callable[[float], None],
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and what was covered.
 
@@ -41,6 +44,8 @@ def write_pages(
         results: its outcomes.
         specs: by robot, what judged it; empty if nothing was judged.
         command: runs the campaign again.
+        examples: the tests that get a page.
+        tell: told how many pages are written.
 
     Returns:
         The tests that came out otherwise when they were played again for their pages.
@@ -50,9 +55,8 @@ def write_pages(
     verdicts = {(one.job.robot, one.job.test.name): one.outcome.verdicts for one in results.played}
     addresses: dict[tuple[str, str], str] = {}
     otherwise: list[str] = []
-    examples = choose_examples(results.played)
     (folder / RUNS).mkdir(parents=True, exist_ok=True)
-    for job in examples.jobs if specs else ():
+    for number, job in enumerate(examples.jobs if specs else (), start=1):
         replay = replays.of(job)
         text = replay_page(
             replay,
@@ -67,6 +71,7 @@ def write_pages(
         address = f"{RUNS}/{job.robot}-{job.test.name}.html"
         write_whole(folder / address, text)
         addresses[job.robot, job.test.name] = address
+        tell(number)
     cells = {
         cell: f"{addresses[job.robot, job.test.name]}#{cell[2]}"
         for cell, job in examples.by_cell.items()

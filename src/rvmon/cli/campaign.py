@@ -89,6 +89,12 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="write tables, tests and pages there; a campaign that was ended there goes on",
     )
+    parser.add_argument(
+        "--pages",
+        choices=("examples", "all"),
+        default="examples",
+        help="of which runs to write a page: an example of each count (default), or all",
+    )
 
 
 def add_replay_options(parser: argparse.ArgumentParser) -> None:

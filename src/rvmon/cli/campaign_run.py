@@ -12,6 +12,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_files import dated_files, left_over, write_tables, write_tests
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.documents import to_json
+from rvmon.cdv.examples import choose_examples
 from rvmon.cdv.execute import execute
 from rvmon.cdv.gate import CampaignJudgement, judge_campaign
 from rvmon.cdv.outcome import Results
@@ -93,12 +94,16 @@ def conduct(
     summary = summarise(results, specs)
     tables = campaign.presentation.tables(summary)
     if folder is not None:
-        with told("writing tables and pages"):
+        with told("writing tables"):
             write_tables(folder, summary, tables, campaign.presentation)
             write_tests(folder, results)
             played = frozenset(one.job.test.strategy for one in results.played)
             campaign.presentation.write_more(folder, played)
-            otherwise = write_pages(folder, summary, tables, results, specs, again)
+        examples = choose_examples(results.played, every=arguments.pages == "all")
+        with bar("pages", len(examples.jobs)) as tell:
+            otherwise = write_pages(
+                folder, summary, tables, results, specs, again, examples=examples, tell=tell
+            )
         if otherwise:
             warn(
                 f"played again, these came out otherwise: {', '.join(otherwise)}: a run must "
