@@ -5,6 +5,8 @@ from __future__ import annotations
 import heapq
 import math
 import operator
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from rvmon.codegen.python_evaluator import evaluator_source
@@ -45,15 +47,23 @@ Made = TypeVar("Made", bound=Nodes)
 MadeUnit = TypeVar("MadeUnit", bound=Unit)
 
 
-def unit_class(plan: Plan, arriving: frozenset[str] | None, base: type[MadeUnit]) -> type[MadeUnit]:
+def unit_class(
+    plan: Plan,
+    arriving: frozenset[str] | None,
+    base: type[MadeUnit],
+    rule: type[Rule] | None = None,
+) -> type[MadeUnit]:
     """The class of a plan's generated monitors.
 
     Args:
         plan: what to judge.
         arriving: the names that have a source; `None`: all.
         base: what it derives from.
+        rule: judges attempts one by one, also those that are judged by counts else; `None`: as
+            suits each requirement.
     """
-    return _made(unit_source(plan, arriving), base)
+    rules = {} if rule is None else dict.fromkeys(("Rule", "BulkRule", "SoloRule"), rule)
+    return _made(unit_source(plan, arriving), base, rules)
 
 
 def evaluator_class(plan: Plan, base: type[Made]) -> type[Made]:
@@ -66,8 +76,10 @@ def evaluator_class(plan: Plan, base: type[Made]) -> type[Made]:
     return _made(evaluator_source(plan), base)
 
 
-def _made(source: str, base: type[Made]) -> type[Made]:
-    namespace = {**_NAMES, "Base": base, "Unit": base}
+def _made(
+    source: str, base: type[Made], rules: Mapping[str, type[Rule]] = MappingProxyType({})
+) -> type[Made]:
+    namespace = {**_NAMES, "Base": base, "Unit": base, **rules}
     # The source holds names and numbers of the specification as literals only.
     exec(compile(source, "<generated monitor>", "exec"), namespace)  # noqa: S102
     made: type[Made] = namespace["Generated"]

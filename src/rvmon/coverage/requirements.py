@@ -9,7 +9,7 @@ from typing import Any
 
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
-from rvmon.coverage.traced import TracedJudge, TracedMachine
+from rvmon.coverage.traced import TracedJudge, TracedMachine, TracedRule
 from rvmon.coverage.variants import Variant, variants_of
 from rvmon.explain.graph import Graph, graph_of
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge
@@ -19,6 +19,12 @@ from rvmon.monitor.build import build_monitor
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.evaluators import Evaluators
+from rvmon.monitor.online.generated import (
+    Forms,
+    GeneratedEvaluators,
+    GeneratedMonitor,
+    forms_of,
+)
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
@@ -185,35 +191,58 @@ class WatchedRequirements:
             yield name, dict(_hit(SHOWN, [_instant(one) for one in shown]))
 
 
-class RequirementRun(Monitor):
+class RequirementRun(GeneratedMonitor):
     """Judges as every monitor does, and notes what automata do."""
 
     def __init__(self, compiled: CompiledSpec, settle: str, sources: frozenset[str] | None) -> None:
         requirements = tuple(compiled.requirements.values())
-        super().__init__(compiled, requirements, "auto", settle, sources, None)
+        key = (sources, TracedRule)
+        if key not in compiled.forms:
+            compiled.forms[key] = forms_of(compiled, requirements, sources, TracedRule)
+        forms = compiled.forms[key]
+        assert isinstance(forms, Forms)  # noqa: S101 - it is what was put there
+        self._machines = {
+            one.requirement.id: TracedMachine(one.automaton)
+            for one in requirements
+            if one.automaton is not None
+        }
+        machines = [
+            None if machine is None else self._machines[one.requirement.id]
+            for one, machine in zip(forms.requirements, forms.machines, strict=False)
+        ]
+        machines += [None] * (len(forms.machines) - len(machines))
+        traced = replace(forms, machines=machines)
+        super().__init__(traced, compiled, requirements, "auto", settle, sources, None)
+
+    def _begin(self) -> None:
+        for machine in self._machines.values():
+            machine.passages.clear()
+        super()._begin()
 
     def _make_evaluators(self) -> Evaluators:
-        options = self.options
-        self._traced = _TracedEvaluators(
-            options.compiled.checked,
-            options.requirements,
-            options.engine,
-            options.sources,
+        self._unit_evaluators = _TracedEvaluators(
+            self._machines,
+            self._forms,
+            self._unit,
+            self.options.compiled,
+            self.options.engine,
+            self.options.sources,
             self._ledger,
+            self._take,
         )
-        return self._traced
+        return self._unit_evaluators
 
     def passages(self, name: str) -> Mapping[tuple[int, int], Hit]:
         """From which location of its automaton to which attempts of a requirement went."""
-        machine = self._traced.machines.get(name)
-        return {} if machine is None else machine.passages
+        machine = self._machines.get(name)
+        return {} if machine is None else dict(machine.passages)
 
 
-class _TracedEvaluators(Evaluators):
-    """Evaluators whose automata note what they do."""
+class _TracedEvaluators(GeneratedEvaluators):
+    """Evaluators whose automata note what they do, with `let` and `for each` as well."""
 
-    def __init__(self, *arguments: Any) -> None:
-        self.machines: dict[str, TracedMachine] = {}
+    def __init__(self, machines: Mapping[str, TracedMachine], *arguments: Any) -> None:
+        self._traced = machines
         super().__init__(*arguments)
 
     def judge_of(
@@ -221,12 +250,9 @@ class _TracedEvaluators(Evaluators):
     ) -> AttemptJudge:
         """See `rvmon.monitor.attempts.judges.judge_of`."""
         judge = judge_of(compiled, engine, *arguments, **kind)
-        if not isinstance(judge, MachineJudge) or compiled.automaton is None:
+        if not isinstance(judge, MachineJudge):
             return judge
-        name = compiled.requirement.id
-        if name not in self.machines:
-            self.machines[name] = TracedMachine(compiled.automaton)
-        return TracedJudge(compiled, self.machines[name], *arguments, **kind)
+        return TracedJudge(compiled, self._traced[compiled.requirement.id], *arguments, **kind)
 
 
 def _instant(attempt: Attempt) -> int:

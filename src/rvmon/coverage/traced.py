@@ -11,6 +11,7 @@ from rvmon.automaton.table import TableMachine
 from rvmon.coverage.hits import Hit
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
+from rvmon.runtime.rule import Rule
 from rvmon.runtime.values import UNKNOWN
 
 Passage = tuple[int, int]
@@ -51,10 +52,10 @@ class TracedMachine(TableMachine):
             self.passages[key] = Hit(1, t) if known is None else Hit(known.count + 1, known.first)
 
 
-class TracedJudge(MachineJudge):
-    """Judges by a machine that notes steps; of attempts in two minds nothing is noted."""
+class _Traced(Rule):
+    """Has its machine note steps, but those of attempts in two minds."""
 
-    machine: TracedMachine
+    __slots__ = ()
 
     def stepped(self, attempt: Any, t: int) -> int | None:
         """See `Rule`."""
@@ -68,3 +69,13 @@ class TracedJudge(MachineJudge):
     def _look_at(self, attempt: Open) -> None:
         alone = attempt.better is None and self.letter == self.other
         self.machine.sure = alone and attempt.sure
+
+
+class TracedRule(_Traced):
+    """A rule of generated code."""
+
+    __slots__ = ()
+
+
+class TracedJudge(_Traced, MachineJudge):
+    """A rule that knows its requirement."""

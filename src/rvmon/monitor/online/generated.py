@@ -58,6 +58,7 @@ def forms_of(
     compiled: CompiledSpec,
     requirements: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
+    rule: type[Rule] | None = None,
 ) -> Forms:
     """Generate what monitors of some requirements run.
 
@@ -65,6 +66,7 @@ def forms_of(
         compiled: the specification.
         requirements: chosen from it.
         sources: the names that can arrive; `None`: all.
+        rule: see `rvmon.codegen.python_unit.unit_class`.
     """
     fed = [one for one in requirements if one.is_fed]
     plan = plan_requirements(compiled, fed)
@@ -75,7 +77,7 @@ def forms_of(
     # What judges attempts in doubt is made when one comes up.
     machines += [None for _ in plan.hidden_of]
     others = [one for one in requirements if not one.is_fed]
-    return Forms(fed, others, plan, unit_class(plan, sources, Unit), machines)
+    return Forms(fed, others, plan, unit_class(plan, sources, Unit, rule), machines)
 
 
 class GeneratedEvaluators(Evaluators):
