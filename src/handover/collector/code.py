@@ -23,7 +23,6 @@ def robot_code() -> Code:
     path = blocks[0].path
     return Code(
         [Block(state, path, frozenset(own)) for state, own in lines.items()],
-        branches=False,
         marked=True,
         kind="state",
     )
