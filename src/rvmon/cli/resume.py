@@ -23,8 +23,10 @@ from rvmon.session import Spec
 from rvmon.spec.checked.plain_data import to_plain
 from rvmon.verdict.report import Report
 
-SUFFIX = ".unfinished"
-"""Behind the name of the file that the verdicts are to go to."""
+
+def path_of(out: str) -> Path:
+    """The file that keeps what was judged until all is, beside that for the verdicts."""
+    return Path(f"{out}.unfinished")
 
 
 class _Entry(msgspec.Struct, frozen=True):
@@ -96,7 +98,7 @@ def unfinished(
     Raises:
         RvmonError: what is unfinished was judged otherwise, or the file cannot be written.
     """
-    path = Path(f"{out}{SUFFIX}")
+    path = path_of(out)
     heading = _heading(spec, options)
     try:
         entries = journal.entries(path) if resume else None

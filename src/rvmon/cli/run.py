@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -163,19 +164,20 @@ def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
 def _judged(arguments: argparse.Namespace, spec: Spec, options: Options) -> list[Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
     from rvmon.cli.judging import judge_all
+    from rvmon.cli.resume import path_of, unfinished
 
     traces, jobs = arguments.traces, arguments.jobs
-    if arguments.out is None:
-        return list(judge_all(spec, traces, options, jobs))
-    from rvmon.cli.resume import unfinished
-
-    begun = unfinished(arguments.out, traces, spec, options, resume=arguments.resume)
-    left = [trace for trace in traces if trace not in begun.known]
-    if begun.known:
-        warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")
-    found = list(begun.judged(traces, judge_all(spec, left, options, jobs)))
-    _write_results(arguments.out, spec, found)
-    begun.path.unlink(missing_ok=True)
+    if arguments.out is None or len(traces) == 1:  # there is nothing to go on with
+        found = list(judge_all(spec, traces, options, jobs))
+    else:
+        begun = unfinished(arguments.out, traces, spec, options, resume=arguments.resume)
+        left = [trace for trace in traces if trace not in begun.known]
+        if begun.known:
+            warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")
+        found = list(begun.judged(traces, judge_all(spec, left, options, jobs)))
+    if arguments.out is not None:
+        _write_results(arguments.out, spec, found)
+        path_of(arguments.out).unlink(missing_ok=True)
     return found
 
 
@@ -206,6 +208,10 @@ def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
+    for written in (arguments.out, arguments.junit, arguments.coverage):
+        for read in (arguments.spec, *arguments.traces):
+            if written is not None and _is_same_file(written, read):
+                raise RvmonError(f"cannot write {written}: it is what is judged: name another")
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 
@@ -215,6 +221,13 @@ def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
     if arguments.report and not spec.requirements:
         name = spec.checked.name
         raise RvmonError(f"a page shows requirements, and {name} has none: add one")
+
+
+def _is_same_file(one: str, other: str) -> bool:
+    try:
+        return os.path.samefile(one, other)
+    except (OSError, ValueError):
+        return False
 
 
 def _show_warnings(spec: Spec) -> None:

@@ -101,10 +101,14 @@ class Report:
         a.csv R1 R1#1 P
         a.csv R2 None NT
         """
-        from rvmon.verdict.rows import VerdictRow, attempt_row
+        from rvmon.verdict.rows import VerdictRow, attempt_row, text_row
 
-        for attempt in self.attempts:
-            yield attempt_row(self.trace, self.origin, attempt)
+        if isinstance(self.attempts, LazyAttempts):  # their texts are made together
+            for name, text in self.attempts.texts(self.origin):
+                yield text_row(self.trace, name, text)
+        else:
+            for attempt in self.attempts:
+                yield attempt_row(self.trace, self.origin, attempt)
         for name, verdict in self.verdicts.items():
             found = [one for one, count in self.counts[name].items() if count]
             if not found or fold(found) is not verdict:  # none, or there may have been others

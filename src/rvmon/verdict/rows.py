@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
+import msgspec
+
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.attempt_json import encoded, seconds
 
@@ -90,4 +92,52 @@ def attempt_row(recording: str, origin: int | None, attempt: Attempt) -> Verdict
         attempt.robustness,
         encoded(attempt.captured) if attempt.captured else "",
         attempt.reason,
+    )
+
+
+class _Text(msgspec.Struct):
+    """What of an attempt's JSON text a row has."""
+
+    number: int
+    triggered: int
+    decided: int | None
+    verdict: str
+    decision: str
+    reason: str
+    triggered_s: float
+    decided_s: float | None
+    deadline: int | None = None
+    in_doubt: bool = False
+    robustness: float | None = None
+    captured: msgspec.Raw = msgspec.Raw()
+
+
+_decoder = msgspec.json.Decoder(_Text)
+
+
+def text_row(recording: str, requirement: str, text: str) -> VerdictRow:
+    """The row of an attempt that is there as JSON text.
+
+    Args:
+        recording: its name.
+        requirement: the id.
+        text: as `rvmon.verdict.attempt_json.attempt_text` writes it.
+    """
+    told = _decoder.decode(text)
+    return VerdictRow(
+        recording,
+        requirement,
+        f"{requirement}{'?' if told.in_doubt else '#'}{told.number}",
+        told.number,
+        told.verdict,
+        told.decision,
+        told.in_doubt,
+        told.triggered,
+        told.decided,
+        told.deadline,
+        told.triggered_s,
+        told.decided_s,
+        told.robustness,
+        bytes(told.captured).decode(),
+        told.reason,
     )

@@ -2,12 +2,15 @@
 
 import json
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import pytest
 
+import rvmon
 from rvmon.cli import main
 from rvmon.execute import journal
 from rvmon.results.read import read_results
+from rvmon.verdict.lazy import LazyAttempts
 
 SPEC = """signal p : bool
 requirement R1
@@ -70,9 +73,29 @@ def test_a_run_that_was_ended_goes_on(folder, capsys, monkeypatch, resume):
     assert (folder / "v.csv").read_text() == table
 
 
+@pytest.mark.parametrize("option", ["--out", "--junit"])
+def test_what_is_judged_is_not_written_over(folder, capsys, option):
+    """By whatever name it is called."""
+    before = (folder / "good.csv").read_text()
+    (folder / "link.csv").symlink_to(folder / "good.csv")
+    assert main(["run", "s.rv", "bad.csv", "good.csv", option, "link.csv"]) == 2
+    assert "cannot write link.csv: it is what is judged" in capsys.readouterr().err
+    assert (folder / "good.csv").read_text() == before
+
+
+def test_many_attempts_have_the_rows_that_few_have(folder):
+    """Those of a recording in columns are written together."""
+    rows = "".join(f"{t},{t % 3 > 0:d}\n" for t in range(3000))
+    (folder / "many.csv").write_text(f"t,p\n{rows}")
+    spec = rvmon.load("s.rv")
+    report = spec.evaluate("many.csv", engine="columns")
+    assert isinstance(report.attempts, LazyAttempts)
+    assert [*report.rows()] == [*replace(report, attempts=tuple(report.attempts)).rows()]
+
+
 def test_another_run_does_not_go_on_with_it(folder, capsys):
     """Nor is what is no unfinished run taken for one."""
-    words = ["run", "s.rv", "good.csv", "--out", "v.csv", "--resume"]
+    words = ["run", "s.rv", "good.csv", "good.csv", "--out", "v.csv", "--resume"]
     journal.begin(folder / "v.csv.unfinished", [b"another"])
     assert main(words) == 2
     assert "was begun with another specification" in capsys.readouterr().err
