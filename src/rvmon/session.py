@@ -202,9 +202,9 @@ class Spec:
         r"""Judge a finished trace; the same content gives the same records, whatever holds it.
 
         Args:
-            trace: a path (`.csv`, `.jsonl`, `.parquet`), a table (arrays or lists by name, an
-                Arrow table, a data frame), a `Recording`, or an iterable of `(t, values)` with t
-                in seconds.
+            trace: a path or address (`.csv`, `.jsonl`, `.parquet`; text packed, too), a table
+                (arrays or lists by name, an Arrow table, a data frame), a `Recording`, or an
+                iterable of `(t, values)` with t in seconds.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.

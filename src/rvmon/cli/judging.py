@@ -17,6 +17,7 @@ from rvmon.cli.reading import opened
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.inputs.missing import expect_names
+from rvmon.readers.places import without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec
@@ -76,6 +77,7 @@ def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) ->
             yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
 
 
+@without_copies()
 def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
     """Judge one recording; if it is broken, what was decided before the break stays decided.
 

@@ -45,7 +45,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings")
+    parser.add_argument(
+        "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
+    )
     add_only(parser, "judge these requirements")
     add_const(parser)
     parser.add_argument(
@@ -101,6 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.cli.beside import Options
     from rvmon.cli.judging import judge_all
     from rvmon.loading import load
+    from rvmon.readers.found import found_recordings
 
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     _show_warnings(spec)
@@ -115,7 +118,8 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.coverage is not None,
     )
     must_trigger = ids_of(arguments.require_triggered or None, spec)
-    judged = list(judge_all(spec, arguments.traces, options, arguments.jobs))
+    traces = list(found_recordings(arguments.traces))
+    judged = list(judge_all(spec, traces, options, arguments.jobs))
     _show(arguments.format, spec, judged)
     reports = [one.report for one in judged if one.report is not None]
     _write_files(arguments, spec, judged)

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
-from typing import TextIO
+from typing import BinaryIO, TextIO
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
+from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.health import Health, HealthKind
@@ -47,7 +50,8 @@ class FileRecording:
         """Open the recording and read its header.
 
         Args:
-            path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`.
+            path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`; text may be packed
+                (`.csv.gz`, `.jsonl.zst`), and any may be an address.
             schema: the names that the spec declares, and how the recording tells them.
             ordered: whether a stamp before the one above it is an error; not so under `max delay`.
 
@@ -58,9 +62,9 @@ class FileRecording:
         self._schema = schema
         self._ordered = ordered
         self.ignored: Counter[str] = Counter()
-        self._format = _format_of(self.path)
+        self._format = format_of(self.path)
         self.rows = Rows(schema, "row" if self._format == "parquet" else "line", ordered=ordered)
-        self._open_text: TextIO | None = None
+        self._open_file: BinaryIO | None = None
         self._stamps = schema.stamps or stamps_of("t")
         self.names: frozenset[str] | None = None
         if self._format == "csv" and self.path != "-":
@@ -71,7 +75,7 @@ class FileRecording:
             from rvmon.readers.parquet import parquet_layout
 
             with self._named_errors():
-                self._take_names(parquet_layout(self.path, schema))
+                self._take_names(parquet_layout(local_path(self.path), schema))
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
@@ -88,10 +92,9 @@ class FileRecording:
             from rvmon.readers.parquet import parquet_samples
 
             with self._named_errors():
-                yield from self._merged(parquet_samples(self.path, self._schema))
+                yield from self._merged(parquet_samples(local_path(self.path), self._schema))
             return
         with self._text() as text:
-            self._open_text = text
             lines = bounded_lines(text)
             if self._format == "csv":
                 rows = split_lines(lines)
@@ -170,7 +173,7 @@ class FileRecording:
         if self._format == "parquet":
             from rvmon.readers.parquet import parquet_blocks
 
-            return parquet_blocks(self.path, self._schema, fillable)
+            return parquet_blocks(local_path(self.path), self._schema, fillable)
         from rvmon.readers.jsonl_blocks import jsonl_blocks
 
         return jsonl_blocks(self.path, self._schema, fillable, ignored=seen)
@@ -183,9 +186,9 @@ class FileRecording:
     @property
     def fraction_read(self) -> float:
         """How much of the file has been read, 0 to 1; 0 where that is not known."""
-        if self._open_text is None or self.path == "-" or self._open_text.closed:
+        if self._open_file is None or self._open_file.closed:
             return 0.0
-        return self._open_text.buffer.tell() / max(1, Path(self.path).stat().st_size)
+        return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
 
     def unit_doubts(self) -> list[Health]:
         """Whether its first stamps look like milliseconds; they are read if they were not yet."""
@@ -220,7 +223,10 @@ class FileRecording:
                 yield sys.stdin
             else:
                 # The mark that some editors begin a text with would make its first cell odd.
-                with open(self.path, encoding="utf-8-sig", newline="") as text:
+                with (
+                    opened(self.path) as (plain, self._open_file),
+                    TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
+                ):
                     yield text
 
     @contextmanager
@@ -234,22 +240,31 @@ class FileRecording:
                 "is this a binary file?"
             ) from None
         except TraceError as error:
-            raise type(error)(f"{self.path}: {error}") from None
+            message = str(error)
+            placed = message if message.startswith(self.path) else f"{self.path}: {message}"
+            raise type(error)(placed) from None
         except OSError as error:
             raise TraceError(f"{self.path}: {error.strerror or error}") from None
 
 
 def can_be_read_again(path: str) -> bool:
     """Whether a recording is a file, and not a stream that is gone when it was read."""
-    return path != "-" and not Path(path).is_fifo()
+    return path != "-" and (is_address(path) or not Path(path).is_fifo())
 
 
-def _format_of(path: str) -> str:
+def format_of(path: str) -> str:
+    """The format that a name stands for.
+
+    Raises:
+        TraceError: it stands for none.
+    """
     if path == "-":
         return "jsonl"
-    suffix = Path(path).suffix.lower()
+    suffix, packed = endings_of(path)
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)
         ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"
         raise TraceError(f"{path}: {ending}: use one of {known}")
+    if packed and FORMATS[suffix] == "parquet":
+        raise TraceError(f"{path}: only text is read packed: unpack it first")
     return FORMATS[suffix]

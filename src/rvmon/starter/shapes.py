@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from pathlib import Path
+from io import TextIOWrapper
 from typing import Any
 
 import msgspec
@@ -13,7 +13,8 @@ from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
-from rvmon.readers.recording import FORMATS
+from rvmon.readers.places import opened
+from rvmon.readers.recording import format_of
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS
 from rvmon.starter.column import Shape, Shapes
 from rvmon.trace.schema import Kind, Stamps
@@ -88,7 +89,7 @@ class Seen:
 
 
 def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
-    """Look at the names and values of a `.csv`, `.jsonl` or `.ndjson` file.
+    """Look at the names and values of a CSV or JSON-lines file, packed or not.
 
     Args:
         path: of the file.
@@ -97,14 +98,10 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     Raises:
         TraceError: the file cannot be read, or has no time column.
     """
-    suffix = Path(path).suffix.lower()
-    if suffix not in FORMATS:
-        raise TraceError(
-            f"{path}: the ending `{suffix}` is no known format: use one of {', '.join(FORMATS)}"
-        )
+    form = format_of(path)
     try:
-        with open(path, encoding="utf-8-sig", newline="") as text:
-            look = _of_csv if FORMATS[suffix] == "csv" else _of_json
+        with opened(path) as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
+            look = _of_csv if form == "csv" else _of_json
             return look(bounded_lines(text), path, stamps)
     except OSError as error:
         raise TraceError(f"{path}: {error.strerror or error}") from None
