@@ -98,12 +98,12 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         missing = expect_names(
             spec.checked,
             recording,
-            spec.schema.columns,
+            spec.schema.named,
             only=options.only,
             allowed=options.allow_missing,
             coverage=True,
         )
-        end = None if options.until is None else ticks_of_seconds(options.until)
+        end = recording.end if options.until is None else ticks_of_seconds(options.until)
         beside = Beside(spec, options, recording.names, end)
         read = shown_while_reading if is_alone else iter
         source = Source(

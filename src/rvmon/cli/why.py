@@ -63,9 +63,9 @@ def run(arguments: argparse.Namespace) -> int:
     name, exact = _named(arguments.attempt, spec)
     recording = opened(spec, arguments.trace)
     allowed = allowed_names(arguments.allow_missing)
-    mapped = spec.schema.columns
+    mapped = spec.schema.named
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
-    until = None if arguments.until is None else ticks_of_seconds(arguments.until)
+    until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
     samples = [one for one in in_order(recording) if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)
     for sample in samples:

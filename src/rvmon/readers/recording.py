@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from io import TextIOWrapper
@@ -18,6 +18,7 @@ from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
+from rvmon.readers.messages.file import MESSAGE_FORMATS, MessageFile, is_bag_folder
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
@@ -26,7 +27,13 @@ from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema
 from rvmon.trace.stamps import stamps_of
 
-FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet"}
+FORMATS = {
+    ".csv": "csv",
+    ".jsonl": "jsonl",
+    ".ndjson": "jsonl",
+    ".parquet": "parquet",
+    **MESSAGE_FORMATS,
+}
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
 
 SHORT = 1 << 15
@@ -34,17 +41,16 @@ SHORT = 1 << 15
 
 
 class FileRecording:
-    """A CSV, JSON-lines or Parquet file, read as a stream: memory does not grow with its length.
+    """A recording, read as a stream: memory does not grow with its length.
 
     Attributes:
         path: the file, `-` for standard input.
         names: declared names that have a column; `None` for JSON lines, where any may come.
-        end: `None`: these formats end with their last sample.
-        ignored: the names that are not declared, counted as they are read.
+        end: of messages the last instant of the recording, ticks; `None`: its last sample.
+        ignored: the names that are not declared, counted as they are read; not of messages, which
+            are recorded for more than one purpose.
         rows: what makes samples of it.
     """
-
-    end: int | None = None
 
     def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
         """Open the recording and read its header.
@@ -63,10 +69,13 @@ class FileRecording:
         self._ordered = ordered
         self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
-        self.rows = Rows(schema, "row" if self._format == "parquet" else "line", ordered=ordered)
+        unit = "message" if self.is_of_messages else "row" if self._format == "parquet" else "line"
+        self.rows = Rows(schema, unit, ordered=ordered)
         self._open_file: BinaryIO | None = None
         self._stamps = schema.stamps or stamps_of("t")
         self.names: frozenset[str] | None = None
+        self.end: int | None = None
+        self._messages: MessageFile | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
                 layout = self._layout(split_lines(bounded_lines(text)))
@@ -76,6 +85,20 @@ class FileRecording:
 
             with self._named_errors():
                 self._take_names(parquet_layout(local_path(self.path), schema))
+        elif self.is_of_messages:
+            with self._named_errors():
+                self._messages = MessageFile(self.path, self._format, schema)
+            self.names, self.end = self._messages.names, self._messages.end
+
+    @property
+    def is_of_messages(self) -> bool:
+        """Whether it holds messages of topics, and no columns."""
+        return self._format in MESSAGE_FORMATS.values()
+
+    @property
+    def unread(self) -> Sequence[str]:
+        """The columns, or topics and fields, that nothing is declared for."""
+        return list(self.ignored) if self._messages is None else self._messages.unread
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
@@ -93,6 +116,10 @@ class FileRecording:
 
             with self._named_errors():
                 yield from self._merged(parquet_samples(local_path(self.path), self._schema))
+            return
+        if self._messages is not None:
+            with self._named_errors():
+                yield from self._merged(self._messages.rows(ordered=self._ordered))
             return
         with self._text() as text:
             lines = bounded_lines(text)
@@ -122,7 +149,7 @@ class FileRecording:
     def is_short(self) -> bool:
         """Whether it is a file of so little text that columns do not pay."""
         with suppress(OSError):
-            is_text = self._format != "parquet" and can_be_read_again(self.path)
+            is_text = self._format in ("csv", "jsonl") and can_be_read_again(self.path)
             return is_text and Path(self.path).stat().st_size < SHORT
         return False
 
@@ -141,6 +168,8 @@ class FileRecording:
         """
         if not can_be_read_again(self.path):
             raise NotPlainError("it is a stream")
+        if self.is_of_messages:
+            raise NotPlainError("its messages come one by one")
         if self._schema.gaps:
             raise NotPlainError("values that stand for no update are looked for in rows")
         seen = Counter[str]()
@@ -186,12 +215,16 @@ class FileRecording:
     @property
     def fraction_read(self) -> float:
         """How much of the file has been read, 0 to 1; 0 where that is not known."""
+        if self._messages is not None:
+            return min(1.0, self.rows.count / max(1, self._messages.count))
         if self._open_file is None or self._open_file.closed:
             return 0.0
         return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
 
     def unit_doubts(self) -> list[Health]:
         """Whether its first stamps look like milliseconds; they are read if they were not yet."""
+        if self.is_of_messages:
+            return []
         first = self.rows.first
         if not first and self._stamps.unit == "s" and self.path != "-":
             bare = replace(self._schema, signals={}, events={})
@@ -260,11 +293,13 @@ def format_of(path: str) -> str:
     """
     if path == "-":
         return "jsonl"
+    if is_bag_folder(path) or (is_address(path) and path.endswith("/")):
+        return "ros2"
     suffix, packed = endings_of(path)
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)
         ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"
         raise TraceError(f"{path}: {ending}: use one of {known}")
-    if packed and FORMATS[suffix] == "parquet":
+    if packed and FORMATS[suffix] not in ("csv", "jsonl"):
         raise TraceError(f"{path}: only text is read packed: unpack it first")
     return FORMATS[suffix]
