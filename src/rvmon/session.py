@@ -11,6 +11,8 @@ from rvmon.spec.checked.selection import requirements_asked, sources_asked
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rvmon.coverage.hits import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
@@ -59,6 +61,8 @@ class Spec:
         columns: Mapping[str, str] | None = None,
         nan: str | None = None,
         no_update: Any = None,
+        binding: str | Path | None = None,
+        clock: str | None = None,
     ) -> Spec:
         r"""The same specification, for recordings that tell things otherwise.
 
@@ -71,10 +75,15 @@ class Spec:
                 topics.
             no_update: a further value that stands for no update; in tables `None`, nulls and masked
                 values do anyway.
+            binding: a TOML file that says which topics and fields of messages (bags, MCAP) feed
+                which names.
+            clock: which stamps of messages count where the binding does not say it: `log`, when
+                each was recorded, which is the default, or `header`.
 
         Raises:
-            UnknownNameError: `columns` names what is not declared, `nan` what does not exist.
-            RvmonError: `columns` names a column twice.
+            UnknownNameError: `columns` names what is not declared, `nan` or `clock` what does not
+                exist.
+            RvmonError: `columns` names a column twice, or the binding is wrong.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
@@ -84,8 +93,21 @@ class Spec:
         """
         from rvmon.readers.naming import read_as
 
-        other, known = copy(self), self.schema
-        other.schema = read_as(known, time=time, columns=columns, nan=nan, no_update=no_update)
+        bound = None
+        if binding is not None:
+            from rvmon.binding.load import load_binding
+
+            bound = load_binding(binding, self.checked)
+        other = copy(self)
+        other.schema = read_as(
+            self.schema,
+            time=time,
+            columns=columns,
+            nan=nan,
+            no_update=no_update,
+            binding=bound,
+            clock=clock,
+        )
         return other
 
     @cached_property
@@ -202,18 +224,19 @@ class Spec:
         r"""Judge a finished trace; the same content gives the same records, whatever holds it.
 
         Args:
-            trace: a path or address (`.csv`, `.jsonl`, `.parquet`; text packed, too), a table
-                (arrays or lists by name, an Arrow table, a data frame), a `Recording`, or an
-                iterable of `(t, values)` with t in seconds.
+            trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
+                too), a table (arrays or lists by name, an Arrow table, a data frame), a
+                `Recording`, or an iterable of `(t, values)` with t in seconds.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
-            **reading: `time`, `columns`, `nan`, `no_update`: see `reading`. `sources`: the signals
-                and events that can arrive, the others are unknown throughout; default the columns
-                that there are, of JSON lines and pairs all that is declared. `allow_missing`:
-                whether a trace in columns may lack names that the requirements read, or the names
-                that it may lack: what reads them is inconclusive. If the sources are named, it may.
+            **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.
+                `sources`: the signals and events that can arrive, the others are unknown
+                throughout; default the columns or topics that there are, of JSON lines and pairs
+                all that is declared. `allow_missing`: whether a trace in columns or topics may
+                lack names that the requirements read, or the names that it may lack: what reads
+                them is inconclusive. If the sources are named, it may.
 
         Raises:
             MissingNameError: a trace in columns has none for a name that a requirement reads.

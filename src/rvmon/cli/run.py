@@ -40,8 +40,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "run",
         help="judge recordings by a specification",
-        description="Judge recordings (.csv, .jsonl, .parquet, or - for JSON lines on standard "
-        "input) by a specification: P passed, F failed, NT not triggered, I inconclusive.",
+        description="Judge recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
+        "lines on standard input) by a specification: P passed, F failed, NT not triggered, "
+        "I inconclusive.",
         epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")

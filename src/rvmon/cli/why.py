@@ -29,7 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon why specs/door.rv monday.csv D1#3",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument("trace", metavar="TRACE", help="a recording: .csv, .jsonl or .ndjson")
+    parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
     parser.add_argument(
         "attempt",
         metavar="ID#N",

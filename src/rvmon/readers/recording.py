@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from io import TextIOWrapper
@@ -19,9 +19,11 @@ from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.file import MESSAGE_FORMATS, MessageFile, is_bag_folder
+from rvmon.readers.messages.topic import Topic
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
+from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema
@@ -69,6 +71,11 @@ class FileRecording:
         self._ordered = ordered
         self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
+        if self.is_of_messages and schema.stamps is not None:
+            raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
+        if not self.is_of_messages and schema.binding != BY_NAME:
+            message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
+            raise TraceError(f"{self.path}: {message}")
         unit = "message" if self.is_of_messages else "row" if self._format == "parquet" else "line"
         self.rows = Rows(schema, unit, ordered=ordered)
         self._open_file: BinaryIO | None = None
@@ -278,6 +285,18 @@ class FileRecording:
             raise type(error)(placed) from None
         except OSError as error:
             raise TraceError(f"{self.path}: {error.strerror or error}") from None
+
+
+def topics_of(path: str) -> Mapping[str, Topic]:
+    """The topics of a recording of messages, by name.
+
+    Raises:
+        TraceError: it cannot be read, or holds no messages.
+    """
+    recording = FileRecording(path, Schema({}, {}))
+    if recording._messages is None:
+        raise TraceError(f"{path}: has columns and no topics: use --map")
+    return recording._messages.topics
 
 
 def can_be_read_again(path: str) -> bool:

@@ -55,6 +55,7 @@ class MessageFile:
         schema: the declared names, and how the recording tells them.
 
     Attributes:
+        topics: by name.
         names: declared names that have a topic.
         unread: the topics and fields that feed nothing.
         end: the last instant of the recording; `None` where another clock counts.
@@ -70,6 +71,7 @@ class MessageFile:
         self._place = path, form
         self._schema = schema
         with closing(self._opened()) as source:
+            self.topics = source.topics
             found = matched(schema, source.topics)
             self._bounds = found.bounds
             self.unread = found.unread

@@ -75,8 +75,7 @@ def _by_name(
 ) -> Bound | None:
     found = _place(schema.columns[name], columns, topics) if name in schema.columns else None
     if name not in schema.columns:
-        dotted = {_dotted(column): place for column, place in columns.items()}
-        found = dotted.get(name)
+        found = next((place for one, place in columns.items() if dotted(one) == name), None)
     if name in schema.signals:
         return None if found is None or found[1] is None else Bound(*found)
     payload = schema.events[name]
@@ -98,10 +97,10 @@ def _by_name(
     return Bound(topic, value, fields)
 
 
-def _dotted(column: str) -> str:
+def dotted(column: str) -> str:
     """A topic or field as a name of a specification.
 
-    >>> _dotted("/base/odom.twist.linear.x")
+    >>> dotted("/base/odom.twist.linear.x")
     'base.odom.twist.linear.x'
     """
     return column.strip("/").replace("/", ".")

@@ -113,8 +113,7 @@ class _OtherMessages:
             form, is_ros1 = _ROS.get(language, ("msg", encoding == "ros1"))
             text = schema.data.decode("utf-8", "replace") if schema is not None else ""
             type_name = type_name if type_name.count("/") != 1 else type_name.replace("/", "/msg/")
-            text = text or self._definitions.get(type_name, "")
-            return ros_topic(name, type_name, (form, text), is_ros1)
+            return ros_topic(name, type_name, (form, text), is_ros1, self._definitions)
         if encoding == "protobuf" and language == "protobuf":
             decode = _protobuf(schema)
             return Topic(name, type_name, dict(_protobuf_leaves(decode(b"").DESCRIPTOR))), decode
@@ -123,19 +122,17 @@ class _OtherMessages:
         return Topic(name, type_name, {}, fault), bytes
 
     def _json_leaves(self, schema: Any, topic: str) -> Iterator[tuple[str, Kind]]:
-        """The fields that the schema tells, or else those of the first message.
+        """The fields that the first message has, and those that the schema tells.
 
         What is wrong with them does not matter unless the topic is read.
         """
-        if schema is not None and schema.encoding == "jsonschema":
-            with suppress(TraceError, msgspec.DecodeError):
-                if leaves := list(_described_leaves(_json_object(schema.data), "", 0)):
-                    yield from leaves
-                    return
-        for _, _, message in self._reader.iter_messages(topics=[topic]):
-            with suppress(TraceError, msgspec.DecodeError):
-                yield from _found_leaves(_json_object(message.data), "")
-            return
+        first = next(iter(self._reader.iter_messages(topics=[topic])), None)
+        with suppress(TraceError, msgspec.DecodeError):
+            if first is not None:
+                yield from _found_leaves(_json_object(first[2].data), "")
+        with suppress(TraceError, msgspec.DecodeError):
+            if schema is not None and schema.encoding == "jsonschema":
+                yield from _described_leaves(_json_object(schema.data), "", 0)
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, in the order in which they were recorded."""

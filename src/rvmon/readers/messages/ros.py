@@ -14,7 +14,7 @@ from rvmon.readers.values import shorten
 from rvmon.trace.schema import Kind
 
 Definition = tuple[str, str]
-"""The language of a definition (`msg` or `idl`) and its text."""
+"""The language of a definition (`msg` or `idl`), or the type that it defines, and its text."""
 
 _MENDS = {
     "not indexed": "it was not closed: `rosbag reindex` closes it",
@@ -58,11 +58,12 @@ class BagMessages:
         topics: dict[str, Topic] = {}
         self._decoders: dict[int, Callable[[bytes], Any]] = {}
         for connection in self._reader.connections:
-            definition = (connection.msgdef.format.name.lower(), connection.msgdef.data)
-            if definition[0] == "none":
-                definition = ("msg", definitions.get(connection.msgtype, ""))
             topic, decode = ros_topic(
-                connection.topic, connection.msgtype, definition, self._form == "ros1"
+                connection.topic,
+                connection.msgtype,
+                (connection.msgdef.format.name.lower(), connection.msgdef.data),
+                self._form == "ros1",
+                definitions,
             )
             known = topics.setdefault(topic.name, topic)
             if known.type != topic.type:
@@ -121,17 +122,27 @@ def _bag_errors(form: str) -> Iterator[None]:
 
 
 def ros_topic(
-    name: str, type_name: str, definition: Definition, is_ros1: bool
+    name: str,
+    type_name: str,
+    definition: Definition,
+    is_ros1: bool,
+    others: Mapping[str, str],
 ) -> tuple[Topic, Callable[[bytes], Any]]:
     """A topic of messages of ROS, and what decodes them.
 
     Args:
         name: of the topic.
         type_name: of its messages, `package/msg/Name`.
-        definition: of them; without a text it has to be one that ROS brings along.
+        definition: of them; without a text it has to be among the others, or one of ROS itself.
         is_ros1: whether they are packed as ROS 1 does.
+        others: definitions by type.
     """
-    store, fault = _store(type_name, *definition)
+    if definition[1]:
+        store, fault = _store(type_name, *definition)
+    else:
+        store, fault = _store_of(tuple(sorted(others.items())))
+        if not fault and type_name not in store.fielddefs:
+            fault = _UNDEFINED
     if fault:
         return Topic(name, type_name, {}, fault), bytes
     leaves = dict(_leaves(store, type_name))
@@ -154,14 +165,6 @@ def _store(type_name: str, language: str, text: str) -> tuple[Any, str]:
         get_typestore,
     )
 
-    if not text:
-        store = get_typestore(Stores.LATEST)
-        if type_name in store.fielddefs:
-            return store, ""
-        return None, (
-            "the definition of its messages is neither in the recording nor one of ROS itself: "
-            "name the .msg file in a binding, as `definitions`"
-        )
     store = get_typestore(Stores.EMPTY)
     try:
         if language == "msg":
@@ -181,10 +184,33 @@ def _store(type_name: str, language: str, text: str) -> tuple[Any, str]:
     return store, ""
 
 
+_UNDEFINED = (
+    "the definition of its messages is neither in the recording nor one of ROS itself: name the "
+    ".msg file, and those that it names, in a binding, as `definitions`"
+)
+
+
+@lru_cache(maxsize=8)
+def _store_of(definitions: tuple[Definition, ...]) -> tuple[Any, str]:
+    """The types of ROS itself and these, by type and text; or why there are none."""
+    from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.LATEST)
+    try:
+        made = [get_types_from_msg(text, name) for name, text in definitions]
+        store.register({name: fields for one in made for name, fields in one.items()})
+    except (TypesysError, KeyError, ValueError, TypeError) as error:
+        return None, f"the `definitions` of the binding cannot be read ({_line(error)})"
+    return store, ""
+
+
 def _bare_idl(part: str) -> str:
     """A definition without the line that names it among others."""
     return part.partition("\n")[2] if part.startswith("IDL: ") else part
 
+
+_FILLER = "structure_needs_at_least_one_member"
+"""The field of messages that have none."""
 
 _KINDS = {"bool": Kind.BOOL, "string": Kind.LABEL, "wstring": Kind.LABEL, "wchar": Kind.LABEL}
 
@@ -195,6 +221,8 @@ def _leaves(
     from rosbags.interfaces import Nodetype
 
     for name, (node, inner) in store.fielddefs[type_name][1]:
+        if name == _FILLER:
+            continue
         path = f"{prefix}{name}"
         if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
             path += "[]"
