@@ -52,29 +52,25 @@ class Spec:
         """The requirements by id, in order of the file."""
         return self.checked.requirements
 
-    def reading(
-        self,
-        *,
-        time: str | None = None,
-        columns: Mapping[str, str] | None = None,
-        nan: str | None = None,
-        no_update: Any = None,
-    ) -> Spec:
+    def reading(self, **told: Unpack[SchemaArguments]) -> Spec:
         r"""The same specification, for recordings that tell things otherwise.
 
         Args:
-            time: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with `s`, `ms`,
-                `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name ends in
-                `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
-            columns: by declared name, of a payload's field `event.field`, the column.
-            nan: what NaN says: `unknown`, which is the default, or `no update`, as in a merge of
-                topics.
-            no_update: a further value that stands for no update; in tables `None`, nulls and masked
-                values do anyway.
+            **told: `time`: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with
+                `s`, `ms`, `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name
+                ends in `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
+                `columns`: by declared name, of a payload's field `event.field`, the column; of
+                messages `TOPIC.FIELD`. `nan`: what NaN says: `unknown`, which is the default, or
+                `no update`, as in a merge of topics. `no_update`: a further value that stands for
+                no update; in tables `None`, nulls and masked values do anyway. `binding`: a TOML
+                file that says which topics and fields of messages (bags, MCAP) feed which names.
+                `clock`: which stamps of messages count where the binding does not say it: `log`,
+                when each was recorded, which is the default, or `header`.
 
         Raises:
-            UnknownNameError: `columns` names what is not declared, `nan` what does not exist.
-            RvmonError: `columns` names a column twice.
+            UnknownNameError: `columns` names what is not declared, `nan` or `clock` what does not
+                exist.
+            RvmonError: `columns` names a column twice, or the binding is wrong.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
@@ -82,10 +78,10 @@ class Spec:
         >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
         20000000
         """
-        from rvmon.readers.naming import read_as
+        from rvmon.binding.told import schema_told
 
-        other, known = copy(self), self.schema
-        other.schema = read_as(known, time=time, columns=columns, nan=nan, no_update=no_update)
+        other = copy(self)
+        other.schema = schema_told(self.checked, self.schema, **told)
         return other
 
     @cached_property
@@ -202,18 +198,19 @@ class Spec:
         r"""Judge a finished trace; the same content gives the same records, whatever holds it.
 
         Args:
-            trace: a path (`.csv`, `.jsonl`, `.parquet`), a table (arrays or lists by name, an
-                Arrow table, a data frame), a `Recording`, or an iterable of `(t, values)` with t
-                in seconds.
+            trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
+                too), a table (arrays or lists by name, an Arrow table, a data frame), a
+                `Recording`, or an iterable of `(t, values)` with t in seconds.
             engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
                 that is installed, and gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
-            **reading: `time`, `columns`, `nan`, `no_update`: see `reading`. `sources`: the signals
-                and events that can arrive, the others are unknown throughout; default the columns
-                that there are, of JSON lines and pairs all that is declared. `allow_missing`:
-                whether a trace in columns may lack names that the requirements read, or the names
-                that it may lack: what reads them is inconclusive. If the sources are named, it may.
+            **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.
+                `sources`: the signals and events that can arrive, the others are unknown
+                throughout; default the columns or topics that there are, of JSON lines and pairs
+                all that is declared. `allow_missing`: whether a trace in columns or topics may
+                lack names that the requirements read, or the names that it may lack: what reads
+                them is inconclusive. If the sources are named, it may.
 
         Raises:
             MissingNameError: a trace in columns has none for a name that a requirement reads.

@@ -32,6 +32,7 @@ COMMANDS = {
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
     "init": "a starter specification from a recording",
+    "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as Python or C that runs alone, or as automata",
     "build": "a specification as a program that judges recordings",
     "prepare": "compile ahead what the engine c runs",

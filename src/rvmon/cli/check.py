@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.reading import add_binding
 from rvmon.cli.say import say, say_json, warn
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
@@ -30,6 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
     add_const(parser)
+    add_binding(parser)
     parser.add_argument(
         "--format",
         choices=("text", "concise", "json"),
@@ -76,6 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
             engines[name], table = _engines(checked)
             remarks.append(table)
         broken += checked is None
+        if arguments.binding is not None and checked is not None:
+            remarks += _bound(arguments.binding, checked)
         if arguments.analyse and checked is not None:
             more, remark = _analysed(checked, arguments.seconds)
             findings += more
@@ -115,6 +119,19 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
     analysis = analyse(compile_spec(checked), seconds=seconds)
     return analysis.findings, analysis_lines(analysis, checked)
+
+
+def _bound(path: str, checked: CheckedSpec) -> list[str]:
+    """What a binding leaves to the names of topics.
+
+    Raises:
+        RvmonError: it does not fit the specification.
+    """
+    from rvmon.binding.load import load_binding
+
+    bounds = load_binding(path, checked).bounds
+    free = [name for name in (*checked.signals, *checked.events) if name not in bounds]
+    return [f"{path} does not bind {', '.join(free)}"] if free else []
 
 
 def _engines(checked: CheckedSpec) -> tuple[dict[str, Any], str]:

@@ -31,7 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--tolerance 0.1",
     )
     parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
-    parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings")
+    parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings, folders of them")
     add_time(parser)
     parser.add_argument(
         "--observe",
@@ -57,6 +57,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compare, show, and return the exit code."""
+    from rvmon.readers.found import found_recordings
     from rvmon.timed.conformance.recordings import labels_of
     from rvmon.timed.language.load import load_network
     from rvmon.trace.stamps import stamps_of
@@ -67,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     stamps = None if arguments.time is None else stamps_of(arguments.time)
     answers: dict[str, Conformance] = {}
     broken = False
-    for path in arguments.traces:
+    for path in found_recordings(arguments.traces):
         try:
             answers[path] = _compare(network, path, stamps, labels, chosen, arguments)
         except TraceError as error:

@@ -38,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon cross specs/door.rv monday.csv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument("trace", metavar="TRACE", help="a recording: .csv, .jsonl or .ndjson")
+    parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
     add_only(parser)
     add_const(parser)
     add_reading(parser)

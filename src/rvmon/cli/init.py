@@ -26,7 +26,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "ranges and rates, events, and two requirements that run at once.",
         epilog="example: rvmon init monday.csv && rvmon run monday.rv monday.csv",
     )
-    parser.add_argument("data", metavar="DATA", help="a recording: .csv, .jsonl or .ndjson")
+    parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     parser.add_argument(
         "-o", "--output", metavar="FILE", help="where to write, - to print (default: DATA's .rv)"
     )

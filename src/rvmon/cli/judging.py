@@ -17,6 +17,7 @@ from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.inputs.missing import expect_names
+from rvmon.readers.places import without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec
@@ -76,6 +77,7 @@ def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) ->
             yield Judged(shown_path(trace), None, error=f"{shown_path(trace)}: not judged: {error}")
 
 
+@without_copies()
 def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
     """Judge one recording; if it is broken, what was decided before the break stays decided.
 
@@ -96,12 +98,12 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         missing = expect_names(
             spec.checked,
             recording,
-            spec.schema.columns,
+            spec.schema.named,
             only=options.only,
             allowed=options.allow_missing,
             coverage=True,
         )
-        end = None if options.until is None else ticks_of_seconds(options.until)
+        end = recording.end if options.until is None else ticks_of_seconds(options.until)
         beside = Beside(spec, options, recording.names, end)
         read = shown_while_reading if is_alone else iter
         source = Source(

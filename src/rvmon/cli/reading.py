@@ -34,7 +34,7 @@ def add_time(parser: argparse.ArgumentParser) -> None:
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
-    """Declare `--time`, `--map` and `--nan`."""
+    """Declare what says how recordings tell things."""
     add_time(parser)
     parser.add_argument(
         "--map",
@@ -47,6 +47,23 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
         "--nan",
         choices=[reading.replace(" ", "-") for reading in READINGS_OF_NAN],
         help="what NaN says: unknown (default), or no update, as where topics were merged",
+    )
+    add_binding(parser)
+    parser.add_argument(
+        "--clock",
+        choices=("log", "header"),
+        help="which stamps of messages count where the binding does not say it: log, when each "
+        "was recorded (default), or header",
+    )
+
+
+def add_binding(parser: argparse.ArgumentParser) -> None:
+    """Declare `--binding`."""
+    parser.add_argument(
+        "--binding",
+        metavar="FILE",
+        help="TOML that says which topics and fields of messages (bags, MCAP) feed which names; "
+        "`rvmon bind` proposes one",
     )
 
 
@@ -123,6 +140,10 @@ def reading_words(arguments: argparse.Namespace) -> list[str]:
         words += ["--map", text]
     if arguments.nan is not None:
         words += ["--nan", arguments.nan]
+    if arguments.binding is not None:
+        words += ["--binding", arguments.binding]
+    if arguments.clock is not None:
+        words += ["--clock", arguments.clock]
     if arguments.allow_missing is not None:
         words.append(f"--allow-missing={arguments.allow_missing}".rstrip("="))
     return words
@@ -131,7 +152,13 @@ def reading_words(arguments: argparse.Namespace) -> list[str]:
 def reading_arguments(arguments: argparse.Namespace) -> SchemaArguments:
     """What the command line says, as `Spec.reading` takes it."""
     nan = None if arguments.nan is None else arguments.nan.replace("-", " ")
-    return {"time": arguments.time, "columns": mapped_names(arguments.map), "nan": nan}
+    return {
+        "time": arguments.time,
+        "columns": mapped_names(arguments.map),
+        "nan": nan,
+        "binding": arguments.binding,
+        "clock": arguments.clock,
+    }
 
 
 def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:

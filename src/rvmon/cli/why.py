@@ -29,7 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon why specs/door.rv monday.csv D1#3",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument("trace", metavar="TRACE", help="a recording: .csv, .jsonl or .ndjson")
+    parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
     parser.add_argument(
         "attempt",
         metavar="ID#N",
@@ -63,9 +63,9 @@ def run(arguments: argparse.Namespace) -> int:
     name, exact = _named(arguments.attempt, spec)
     recording = opened(spec, arguments.trace)
     allowed = allowed_names(arguments.allow_missing)
-    mapped = spec.schema.columns
+    mapped = spec.schema.named
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
-    until = None if arguments.until is None else ticks_of_seconds(arguments.until)
+    until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
     samples = [one for one in in_order(recording) if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)
     for sample in samples:

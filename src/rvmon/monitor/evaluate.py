@@ -43,7 +43,7 @@ def open_trace(
     ordered = checked.max_delay is None
     recording = recording_of(trace, reading.schema, ordered=ordered, sources=reading.sources)
     if reading.sources is None and isinstance(recording, FileRecording | TableRecording):
-        mapped = reading.schema.columns
+        mapped = reading.schema.named
         expect_names(checked, recording, mapped, only=only, allowed=reading.allowed)
     return recording
 

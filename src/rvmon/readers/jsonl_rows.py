@@ -6,7 +6,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -18,6 +18,8 @@ from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import TIME_LIMIT
+
+Line = TypeVar("Line", str, bytes)
 
 _MISSING = object()
 
@@ -53,7 +55,7 @@ def jsonl_samples(
         if not line.strip():
             continue
         try:
-            t, values = read_object(_decoded(line, decode), schema, ignored)
+            t, values = read_object(decoded(line, decode), schema, ignored)
         except msgspec.DecodeError as error:
             if "truncated" in str(error) and _HALF_PAIR.search(line):
                 raise TraceError(
@@ -68,12 +70,17 @@ def jsonl_samples(
         yield number, t, values
 
 
-def _decoded(line: str, decode: Callable[[str], Any]) -> Any:
-    """The value of a line; JSON has no NaN and no infinity, but many that write JSON do."""
+def decoded(line: Line, decode: Callable[[Line], Any]) -> Any:
+    """The value of a line; JSON has no NaN and no infinity, but many that write JSON do.
+
+    Raises:
+        msgspec.DecodeError: it is no JSON.
+        TraceError: a number is too large.
+    """
     try:
         return decode(line)
     except msgspec.DecodeError:
-        if _NOT_FINITE.search(line):
+        if _NOT_FINITE.search(line if isinstance(line, str) else line.decode("utf-8", "replace")):
             try:
                 return json.loads(line, parse_float=double_of)
             except TraceError:

@@ -9,6 +9,7 @@ from typing import TextIO
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.places import opened
 
 BLOCK = 1 << 20
 """Bytes of a piece."""
@@ -45,7 +46,7 @@ def whole_lines(path: str | Path, size: int) -> Iterator[bytes]:
     """
     rest = b""
     try:
-        with open(path, "rb") as file:
+        with opened(path) as (file, _):
             while piece := file.read(size):
                 whole, newline, tail = piece.rpartition(b"\n")
                 if newline:
@@ -55,7 +56,7 @@ def whole_lines(path: str | Path, size: int) -> Iterator[bytes]:
                     rest += piece
                     if len(rest) > 4 * size:
                         raise NotPlainError("it has very long lines")
-    except OSError:
+    except (OSError, TraceError):  # whoever reads rows says why
         raise NotPlainError("it cannot be read") from None
     if rest:
         yield _plain(rest + b"\n")

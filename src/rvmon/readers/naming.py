@@ -9,6 +9,7 @@ from typing import Any
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import RvmonError, TraceError, UnknownNameError
 from rvmon.readers.values import shorten
+from rvmon.trace.binding import Binding, Clock
 from rvmon.trace.gaps import gaps_of
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import UNITS, stamps_of
@@ -24,6 +25,8 @@ def read_as(
     columns: Mapping[str, str] | None,
     nan: str | None,
     no_update: Any,
+    binding: Binding | None,
+    clock: str | None,
 ) -> Schema:
     """A schema for recordings that tell things otherwise; see `rvmon.session.Spec.reading`.
 
@@ -33,9 +36,12 @@ def read_as(
         columns: by declared name the column.
         nan: what NaN says.
         no_update: a further value that stands for no update.
+        binding: which topics and fields of messages stand for what.
+        clock: which stamps of messages count.
 
     Raises:
-        UnknownNameError: `columns` names what is not declared, or there is no such reading of NaN.
+        UnknownNameError: `columns` names what is not declared, or there is no such reading of NaN,
+            or no such clock.
         RvmonError: `columns` names a column twice.
     """
     fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
@@ -47,7 +53,9 @@ def read_as(
             raise UnknownNameError(f"nothing named `{name}` to map `{column}` to: {meant}")
         if list(given.values()).count(column) > 1:
             raise RvmonError(f"column `{column}` is mapped to two names: one column, one name")
-    gaps = schema.gaps
+    if clock is not None and clock not in list(Clock):
+        raise UnknownNameError(f"no clock `{clock}`: there is {' and '.join(Clock)}")
+    gaps, bound = schema.gaps, schema.binding if binding is None else binding
     return replace(
         schema,
         stamps=schema.stamps if time is None else stamps_of(time),
@@ -56,6 +64,7 @@ def read_as(
             gaps.reading_of_nan if nan is None else nan,
             gaps.no_update if no_update is None else no_update,
         ),
+        binding=bound if clock is None else replace(bound, clock=Clock(clock)),
     )
 
 

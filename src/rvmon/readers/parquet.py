@@ -54,8 +54,26 @@ def _opened(path: str | Path) -> Any:
         raise _damage(error) from None
 
 
-def _batches(path: str | Path, layout: Layout) -> Iterator[list[Any]]:
-    """The column of stamps and those that the spec reads, as the layout has them, rows by rows.
+def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
+    """The cells of all columns by name, rows by rows.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: it is no Parquet file, or cannot be read to its end.
+    """
+    names = list(_opened(path).schema_arrow.names)
+    for arrays in _batches(path, names):
+        yield dict(zip(names, map(arrow_cells, arrays), strict=True))
+
+
+def _names(layout: Layout) -> list[str]:
+    """The column of stamps and those that the spec reads."""
+    places = [layout.time, *(column.index for column in layout.columns)]
+    return [layout.header[place] for place in places]
+
+
+def _batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
+    """These columns, rows by rows.
 
     Raises:
         TraceError: it cannot be read to its end.
@@ -63,8 +81,6 @@ def _batches(path: str | Path, layout: Layout) -> Iterator[list[Any]]:
     file = _opened(path)
     import pyarrow
 
-    places = [layout.time, *(column.index for column in layout.columns)]
-    names = [layout.header[place] for place in places]
     threads = not is_short_of_memory()
     batches = file.iter_batches(ROWS, columns=names, use_threads=threads)
     while True:
@@ -126,7 +142,7 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
     layout = parquet_layout(path, schema)
     expect_plain_columns(layout)
     seam = Seam(layout)
-    for stamps, *arrays in _batches(path, layout):
+    for stamps, *arrays in _batches(path, _names(layout)):
         times = _instants(stamps, layout.stamps)
         yield seam.joined(block_of_arrays(times, arrays, layout, fillable, seam.held))
 
@@ -151,7 +167,7 @@ def parquet_samples(
     """
     layout = parquet_layout(path, schema)
     row = 0
-    for batch in _batches(path, layout):
+    for batch in _batches(path, _names(layout)):
         for stamp, *cells in zip(*map(arrow_cells, batch), strict=True):
             row += 1
             try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, TypedDict
 
 from rvmon.trace.schema import Schema
@@ -16,6 +17,8 @@ class SchemaArguments(TypedDict, total=False):
     columns: Mapping[str, str] | None
     nan: str | None
     no_update: Any
+    binding: str | Path | None
+    clock: str | None
 
 
 class ReadingArguments(SchemaArguments, total=False):

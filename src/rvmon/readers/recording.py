@@ -2,28 +2,43 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
+from rvmon.readers.messages.forms import MESSAGE_FORMATS, is_bag_folder
+from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
+from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema
 from rvmon.trace.stamps import stamps_of
 
-FORMATS = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet"}
+if TYPE_CHECKING:
+    from rvmon.readers.messages.file import MessageFile
+    from rvmon.readers.messages.topic import Topic
+
+FORMATS = {
+    ".csv": "csv",
+    ".jsonl": "jsonl",
+    ".ndjson": "jsonl",
+    ".parquet": "parquet",
+    **MESSAGE_FORMATS,
+}
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
 
 SHORT = 1 << 15
@@ -31,23 +46,23 @@ SHORT = 1 << 15
 
 
 class FileRecording:
-    """A CSV, JSON-lines or Parquet file, read as a stream: memory does not grow with its length.
+    """A recording, read as a stream: memory does not grow with its length.
 
     Attributes:
         path: the file, `-` for standard input.
         names: declared names that have a column; `None` for JSON lines, where any may come.
-        end: `None`: these formats end with their last sample.
-        ignored: the names that are not declared, counted as they are read.
+        end: of messages the last instant of the recording, ticks; `None`: its last sample.
+        ignored: the names that are not declared, counted as they are read; not of messages, which
+            are recorded for more than one purpose.
         rows: what makes samples of it.
     """
-
-    end: int | None = None
 
     def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
         """Open the recording and read its header.
 
         Args:
-            path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`.
+            path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`; text may be packed
+                (`.csv.gz`, `.jsonl.zst`), and any may be an address.
             schema: the names that the spec declares, and how the recording tells them.
             ordered: whether a stamp before the one above it is an error; not so under `max delay`.
 
@@ -58,11 +73,19 @@ class FileRecording:
         self._schema = schema
         self._ordered = ordered
         self.ignored: Counter[str] = Counter()
-        self._format = _format_of(self.path)
-        self.rows = Rows(schema, "row" if self._format == "parquet" else "line", ordered=ordered)
-        self._open_text: TextIO | None = None
+        self._format = format_of(self.path)
+        if self.is_of_messages and schema.stamps is not None:
+            raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
+        if not self.is_of_messages and schema.binding != BY_NAME:
+            message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
+            raise TraceError(f"{self.path}: {message}")
+        unit = "message" if self.is_of_messages else "row" if self._format == "parquet" else "line"
+        self.rows = Rows(schema, unit, ordered=ordered)
+        self._open_file: BinaryIO | None = None
         self._stamps = schema.stamps or stamps_of("t")
         self.names: frozenset[str] | None = None
+        self.end: int | None = None
+        self._messages: MessageFile | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
                 layout = self._layout(split_lines(bounded_lines(text)))
@@ -71,7 +94,23 @@ class FileRecording:
             from rvmon.readers.parquet import parquet_layout
 
             with self._named_errors():
-                self._take_names(parquet_layout(self.path, schema))
+                self._take_names(parquet_layout(local_path(self.path), schema))
+        elif self.is_of_messages:
+            from rvmon.readers.messages.file import MessageFile
+
+            with self._named_errors():
+                self._messages = MessageFile(self.path, self._format, schema)
+            self.names, self.end = self._messages.names, self._messages.end
+
+    @property
+    def is_of_messages(self) -> bool:
+        """Whether it holds messages of topics, and no columns."""
+        return self._format in MESSAGE_FORMATS.values()
+
+    @property
+    def unread(self) -> Sequence[str]:
+        """The columns, or topics and fields, that nothing is declared for."""
+        return list(self.ignored) if self._messages is None else self._messages.unread
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
@@ -88,10 +127,13 @@ class FileRecording:
             from rvmon.readers.parquet import parquet_samples
 
             with self._named_errors():
-                yield from self._merged(parquet_samples(self.path, self._schema))
+                yield from self._merged(parquet_samples(local_path(self.path), self._schema))
+            return
+        if self._messages is not None:
+            with self._named_errors():
+                yield from self._merged(self._messages.rows(ordered=self._ordered))
             return
         with self._text() as text:
-            self._open_text = text
             lines = bounded_lines(text)
             if self._format == "csv":
                 rows = split_lines(lines)
@@ -119,7 +161,7 @@ class FileRecording:
     def is_short(self) -> bool:
         """Whether it is a file of so little text that columns do not pay."""
         with suppress(OSError):
-            is_text = self._format != "parquet" and can_be_read_again(self.path)
+            is_text = self._format in ("csv", "jsonl") and can_be_read_again(self.path)
             return is_text and Path(self.path).stat().st_size < SHORT
         return False
 
@@ -138,6 +180,8 @@ class FileRecording:
         """
         if not can_be_read_again(self.path):
             raise NotPlainError("it is a stream")
+        if self.is_of_messages:
+            raise NotPlainError("its messages come one by one")
         if self._schema.gaps:
             raise NotPlainError("values that stand for no update are looked for in rows")
         seen = Counter[str]()
@@ -170,7 +214,7 @@ class FileRecording:
         if self._format == "parquet":
             from rvmon.readers.parquet import parquet_blocks
 
-            return parquet_blocks(self.path, self._schema, fillable)
+            return parquet_blocks(local_path(self.path), self._schema, fillable)
         from rvmon.readers.jsonl_blocks import jsonl_blocks
 
         return jsonl_blocks(self.path, self._schema, fillable, ignored=seen)
@@ -183,12 +227,16 @@ class FileRecording:
     @property
     def fraction_read(self) -> float:
         """How much of the file has been read, 0 to 1; 0 where that is not known."""
-        if self._open_text is None or self.path == "-" or self._open_text.closed:
+        if self._messages is not None:
+            return min(1.0, self.rows.count / max(1, self._messages.count))
+        if self._open_file is None or self._open_file.closed:
             return 0.0
-        return self._open_text.buffer.tell() / max(1, Path(self.path).stat().st_size)
+        return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
 
     def unit_doubts(self) -> list[Health]:
         """Whether its first stamps look like milliseconds; they are read if they were not yet."""
+        if self.is_of_messages:
+            return []
         first = self.rows.first
         if not first and self._stamps.unit == "s" and self.path != "-":
             bare = replace(self._schema, signals={}, events={})
@@ -220,7 +268,10 @@ class FileRecording:
                 yield sys.stdin
             else:
                 # The mark that some editors begin a text with would make its first cell odd.
-                with open(self.path, encoding="utf-8-sig", newline="") as text:
+                with (
+                    opened(self.path) as (plain, self._open_file),
+                    TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
+                ):
                     yield text
 
     @contextmanager
@@ -234,22 +285,45 @@ class FileRecording:
                 "is this a binary file?"
             ) from None
         except TraceError as error:
-            raise type(error)(f"{self.path}: {error}") from None
+            message = str(error)
+            placed = message if message.startswith(self.path) else f"{self.path}: {message}"
+            raise type(error)(placed) from None
         except OSError as error:
             raise TraceError(f"{self.path}: {error.strerror or error}") from None
 
 
+def topics_of(path: str) -> Mapping[str, Topic]:
+    """The topics of a recording of messages, by name.
+
+    Raises:
+        TraceError: it cannot be read, or holds no messages.
+    """
+    recording = FileRecording(path, Schema({}, {}))
+    if recording._messages is None:
+        raise TraceError(f"{path}: has columns and no topics: use --map")
+    return recording._messages.topics
+
+
 def can_be_read_again(path: str) -> bool:
     """Whether a recording is a file, and not a stream that is gone when it was read."""
-    return path != "-" and not Path(path).is_fifo()
+    return path != "-" and (is_address(path) or not Path(path).is_fifo())
 
 
-def _format_of(path: str) -> str:
+def format_of(path: str) -> str:
+    """The format that a name stands for.
+
+    Raises:
+        TraceError: it stands for none.
+    """
     if path == "-":
         return "jsonl"
-    suffix = Path(path).suffix.lower()
+    if is_bag_folder(path) or (is_address(path) and path.endswith("/")):
+        return "ros2"
+    suffix, packed = endings_of(path)
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)
         ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"
         raise TraceError(f"{path}: {ending}: use one of {known}")
+    if packed and FORMATS[suffix] not in ("csv", "jsonl"):
+        raise TraceError(f"{path}: only text is read packed: unpack it first")
     return FORMATS[suffix]

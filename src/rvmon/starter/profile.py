@@ -29,7 +29,7 @@ def profile_of(path: str, time: str | None = None) -> Profile:
     """Look a recording over, as `rvmon run` will read it.
 
     Args:
-        path: a `.csv`, `.jsonl` or `.ndjson` file.
+        path: of the recording.
         time: the column of stamps and its unit, as `Spec.reading` takes it.
 
     Raises:

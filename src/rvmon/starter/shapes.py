@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from pathlib import Path
+from io import TextIOWrapper
 from typing import Any
 
 import msgspec
@@ -12,99 +12,37 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
+from rvmon.readers.messages.forms import MESSAGE_FORMATS
 from rvmon.readers.naming import DEFAULT_COLUMNS
-from rvmon.readers.recording import FORMATS
-from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS
-from rvmon.starter.column import Shape, Shapes
-from rvmon.trace.schema import Kind, Stamps
-
-MOST_LABELS = 16
-"""A text column with more values than this is left out."""
+from rvmon.readers.places import local_path, opened
+from rvmon.readers.recording import format_of
+from rvmon.starter.column import Shapes
+from rvmon.starter.message_shapes import message_shapes
+from rvmon.starter.seen import Seen, shapes_seen
+from rvmon.trace.schema import Stamps
 
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
 
-_NUMBER = re.compile(
-    r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE
-)
-_WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
-
-
-class Seen:
-    """What was seen under one name; a CSV cell 0 or 1 is a bit: number or truth value."""
-
-    def __init__(self) -> None:
-        self.kinds: set[Kind] = set()
-        self.bits = False
-        self.labels: dict[str, None] = {}
-        self.fields: dict[str, Seen] = {}
-        self.payloads = 0
-        self.count = 0
-        self.other = False
-
-    def add(self, value: object) -> None:
-        """Take a JSON value that is neither null nor an object."""
-        self.count += 1
-        match value:
-            case bool():
-                self.kinds.add(Kind.BOOL)
-            case int():
-                self.kinds.add(Kind.INT)
-            case float():
-                self.kinds.add(Kind.REAL)
-            case str():
-                self.kinds.add(Kind.LABEL)
-                self._label(value)
-            case _:
-                self.other = True
-
-    def add_text(self, cell: str) -> None:
-        """Take a CSV cell that is not empty."""
-        self.count += 1
-        if cell in TRUE_WORDS or cell in FALSE_WORDS:
-            if cell in "01":
-                self.bits = True
-            else:
-                self.kinds.add(Kind.BOOL)
-        elif _WHOLE.fullmatch(cell):
-            self.kinds.add(Kind.INT)
-        elif _NUMBER.fullmatch(cell):
-            self.kinds.add(Kind.REAL)
-        else:
-            self.kinds.add(Kind.LABEL)
-        self._label(cell)
-
-    def _label(self, text: str) -> None:
-        if len(self.labels) <= MOST_LABELS:
-            self.labels[text] = None
-
-    def add_payload(self, payload: Mapping[str, object]) -> None:
-        """Take an object."""
-        self.count += 1
-        self.payloads += 1
-        for key, value in payload.items():
-            if value is not None:
-                self.fields.setdefault(key, Seen()).add(value)
-
 
 def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
-    """Look at the names and values of a `.csv`, `.jsonl` or `.ndjson` file.
+    """Look at the names and values of a recording.
 
     Args:
-        path: of the file.
+        path: of it.
         stamps: where it says when; default `t` or `t_ns`.
 
     Raises:
         TraceError: the file cannot be read, or has no time column.
     """
-    suffix = Path(path).suffix.lower()
-    if suffix not in FORMATS:
-        raise TraceError(
-            f"{path}: the ending `{suffix}` is no known format: use one of {', '.join(FORMATS)}"
-        )
+    form = format_of(path)
+    if form in MESSAGE_FORMATS.values():
+        return message_shapes(path)
     try:
-        with open(path, encoding="utf-8-sig", newline="") as text:
-            look = _of_csv if FORMATS[suffix] == "csv" else _of_json
+        if form == "parquet":
+            return _of_parquet(path, stamps)
+        with opened(path) as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
+            look = _of_csv if form == "csv" else _of_json
             return look(bounded_lines(text), path, stamps)
     except OSError as error:
         raise TraceError(f"{path}: {error.strerror or error}") from None
@@ -128,7 +66,22 @@ def _of_csv(text: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
         for seen, cell in zip(columns, row, strict=False):
             if cell:
                 seen.add_text(cell)
-    return _shapes(_without_time(dict(zip(header, columns, strict=True)), stamps))
+    return shapes_seen(_without_time(dict(zip(header, columns, strict=True)), stamps))
+
+
+def _of_parquet(path: str, stamps: Stamps | None) -> Shapes:
+    from rvmon.readers.parquet import parquet_cells
+
+    seen: dict[str, Seen] = {}
+    for columns in parquet_cells(local_path(path)):
+        if stamps is None:
+            _require_time(columns, path)
+        for name, cells in columns.items():
+            entry = seen.setdefault(name, Seen())
+            for cell in cells:
+                if cell is not None:
+                    entry.add(cell)
+    return shapes_seen(_without_time(seen, stamps))
 
 
 def _without_time(seen: Mapping[str, Seen], stamps: Stamps | None) -> dict[str, Seen]:
@@ -170,7 +123,7 @@ def _of_json(lines: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
             for name in listed:
                 events.setdefault(name, Seen()).add_payload({})
         _collect(fields, "", seen)
-    return _shapes({**_without_time(_without_rare_objects(seen, count), stamps), **events})
+    return shapes_seen({**_without_time(_without_rare_objects(seen, count), stamps), **events})
 
 
 def _collect(fields: Mapping[str, Any], prefix: str, seen: dict[str, Seen]) -> None:
@@ -201,49 +154,3 @@ def _without_rare_objects(seen: Mapping[str, Seen], lines: int) -> dict[str, See
             continue
         kept[name] = entry
     return kept
-
-
-def _shapes(seen: Mapping[str, Seen]) -> Shapes:
-    declared: dict[str, Shape] = {}
-    left_out: dict[str, str] = {}
-    for name, entry in seen.items():
-        shape = _shape(entry)
-        if "`" in name or not name.strip() or not name.isprintable():
-            left_out[name] = "its name cannot be written"
-        elif isinstance(shape, str):
-            left_out[name] = shape
-        else:
-            declared[name] = shape
-    return Shapes(declared, left_out)
-
-
-def _shape(seen: Seen) -> Shape | str:
-    """The shape, or why there is none."""
-    if seen.payloads:
-        if seen.kinds - {Kind.BOOL} or seen.other:
-            return "objects and other values"
-        kinds = {name: _shape(entry) for name, entry in seen.fields.items()}
-        return Shape(
-            None,
-            fields={
-                name: shape.kind
-                for name, shape in kinds.items()
-                if isinstance(shape, Shape) and shape.kind not in (None, Kind.LABEL)
-                if name.isidentifier()
-            },
-        )
-    if seen.other:
-        return "lists"
-    if not seen.kinds:
-        return Shape(Kind.BOOL) if seen.bits else "no value in the recording"
-    if seen.kinds == {Kind.BOOL}:
-        return Shape(Kind.BOOL)
-    if seen.kinds <= {Kind.INT, Kind.REAL}:
-        return Shape(Kind.REAL if Kind.REAL in seen.kinds else Kind.INT)
-    if seen.kinds != {Kind.LABEL} or seen.bits:
-        return "numbers and text"
-    if len(seen.labels) > MOST_LABELS:
-        return f"text with more than {MOST_LABELS} values"
-    if any("`" in label or not label.strip() or not label.isprintable() for label in seen.labels):
-        return "text that cannot be written as labels"
-    return Shape(Kind.LABEL, labels=tuple(seen.labels))

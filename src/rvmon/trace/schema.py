@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from rvmon.trace.binding import BY_NAME, Binding
 from rvmon.trace.gaps import NO_GAPS, Gaps
 
 
@@ -45,6 +46,7 @@ class Schema:
         columns: by declared name (of an event's field `event.field`) the column that stands for
             it, where that has another name.
         gaps: values that stand for no update, of whatever name.
+        binding: which topics and fields of messages stand for what.
     """
 
     signals: Mapping[str, Kind]
@@ -53,3 +55,10 @@ class Schema:
     stamps: Stamps | None = None
     columns: Mapping[str, str] = field(default_factory=dict)
     gaps: Gaps = NO_GAPS
+    binding: Binding = BY_NAME
+
+    @property
+    def named(self) -> Mapping[str, str]:
+        """By declared name the column or topic that a person named for it."""
+        topics = {name: bound.topic for name, bound in self.binding.bounds.items()}
+        return {**topics, **self.columns}

@@ -120,7 +120,7 @@ def test_a_response_is_timed_from_the_recording(tmp_path, capsys):
         ("a.jsonl", '{"t":0,\n', "line 1: not a JSON object"),
         ("a.jsonl", "[1]\n", "line 1: expected an object"),
         ("a.jsonl", '{"x":0}\n', "no time column"),
-        ("a.bag", "x", "no known format"),
+        ("a.txt", "x", "no known format"),
     ],
 )
 def test_bad_recordings_are_refused_with_their_place(name, text, said, tmp_path, capsys):

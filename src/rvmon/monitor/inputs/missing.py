@@ -58,7 +58,7 @@ def expect_names(
     Args:
         spec: the specification.
         recording: of which nothing but the names is looked at.
-        mapped: by declared name the column that a person named.
+        mapped: by declared name the column or topic that a person named.
         only: ids of the requirements; default all.
         allowed: the names that it may lack; whether all.
         coverage: whether what coverpoints and crosses read counts.
@@ -81,13 +81,15 @@ def expect_names(
     }
     refused = [] if allowed is True else [name for name in lacking if name not in (some or ())]
     if refused:
-        place = f"{recording.path}: " if isinstance(recording, FileRecording) else ""
-        free = list(recording.ignored)
-        close = {name: most_like(name, free) for name in refused}
+        place, what, free = "", "column", list(recording.ignored)
+        if isinstance(recording, FileRecording):
+            place, free = f"{recording.path}: ", list(recording.unread)
+            what = "topic" if recording.is_of_messages else what
+        close = {name: most_like(mapped.get(name, name), free) for name in refused}
         paths = [column for column in free if "/" in column or "." in column]
         if len(refused) == len(paths) == 1 and not close[refused[0]]:
             close[refused[0]] = paths[0]  # the one topic for the one name
-        raise MissingNameError(place + "\n".join(_listed(lacking, close, free, mapped)))
+        raise MissingNameError(place + "\n".join(_listed(lacking, close, free, mapped, what)))
     return tuple(lacking)
 
 
@@ -96,8 +98,9 @@ def _listed(
     close: Mapping[str, str],
     others: Sequence[str],
     mapped: Mapping[str, str],
+    what: str,
 ) -> Iterable[str]:
-    yield "there is no column for what requirements read:"
+    yield f"there is no {what} for what requirements read:"
     for name, column in close.items():
         meant = f": did you mean `{shorten(column)}`?" if column else ""
         wanted = f" (as `{shorten(mapped[name])}`)" if name in mapped else ""
@@ -105,10 +108,11 @@ def _listed(
     if not all(close.values()):
         shown = ", ".join(f"`{shorten(column)}`" for column in others[:_SHOWN]) or "none"
         more = f" and {len(others) - _SHOWN} more" if len(others) > _SHOWN else ""
-        yield f"  columns that nothing is declared for: {shown}{more}"
-    maps = [shlex.quote(f"{name}={column or 'COLUMN'}") for name, column in close.items()]
-    which, them = ("which column it is", "it") if len(maps) == 1 else ("which they are", "them")
-    yield f"  say {which}: {' '.join(f'--map {one}' for one in maps)}, in Python columns=…"
+        yield f"  {what}s that nothing is declared for: {shown}{more}"
+    maps = [shlex.quote(f"{name}={column or what.upper()}") for name, column in close.items()]
+    which, them = (f"which {what} it is", "it") if len(maps) == 1 else ("which they are", "them")
+    bind = ", or `rvmon bind SPEC DATA` in a file" if what == "topic" else ""
+    yield f"  say {which}: {' '.join(f'--map {one}' for one in maps)}, in Python columns=…{bind}"
     yield (
         f"  or leave what reads {them} inconclusive: --allow-missing={','.join(close)}, "
         "in Python allow_missing=…"

@@ -1,0 +1,123 @@
+"""The value of a binding: an expression of the language over the fields of a message."""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+
+from rvmon.binding.functions import CONNECTIVES, yaw
+from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.diagnostics.span import Source
+from rvmon.errors import RvmonError
+from rvmon.readers.messages.fields import field_of
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.functions import FUNCTIONS
+from rvmon.spec.checked.operators import UnaryOp
+from rvmon.spec.syntax.expressions import (
+    Call,
+    Comparison,
+    Expression,
+    Group,
+    Infix,
+    Name,
+    Number,
+    Operation,
+    Prefix,
+    Truth,
+)
+from rvmon.spec.syntax.parse import parse_expression
+from rvmon.trace.binding import Applied, Constant, Field, Term
+
+_WORDS = frozenset({"and", "or", "xor", "not", "true", "false"})
+
+_PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[\d+\])*(?!\w*\()")
+
+_ROTATION = ("x", "y", "z", "w")
+
+
+def term_of(text: str) -> Term:
+    """Read a value.
+
+    Args:
+        text: an expression without units and temporal operators; what is a name in it, also one
+            like `ranges[0]`, is a field of the message, and `yaw(q)` the heading of a quaternion.
+
+    Raises:
+        RvmonError: it is none; cause and mend are told.
+
+    >>> term_of("twist.linear.x")
+    Field(path=('twist', 'linear', 'x'))
+    >>> term_of("ranges[0] - 1").args
+    (Field(path=('ranges', 0)), Constant(value=1))
+    """
+    # Words of the language may be names of fields.
+    quoted = _PATH.sub(lambda found: _quoted(found[0]), text)
+    expression, wrong = parse_expression(Source("value", quoted))
+    if expression is None:
+        first = wrong[0]
+        raise RvmonError(f"{first.message}{f': {first.help}' if first.help else ''}")
+    return _term(expression)
+
+
+def _quoted(name: str) -> str:
+    return name if name in _WORDS or name.startswith("`") else f"`{name}`"
+
+
+def _term(expression: Expression) -> Term:
+    match expression:
+        case Group(inner=inner):
+            return _term(inner)
+        case Truth(value=value):
+            return Constant(value)
+        case Number(value=value, unit=unit):
+            return _number(value, unit)
+        case Name(text=text):
+            field = field_of(text)
+            if field is None:
+                raise RvmonError(f"`{text}` is no field: write `pose.position.x`, `ranges[0]`")
+            return field
+        case Operation(op=op, args=args):
+            return Applied(op.entry.apply, tuple(map(_term, args)))
+        case Comparison(op=op, left=left, right=right):
+            return Applied(op.holds, (_term(left), _term(right)))
+        case Infix(op=op, left=left, right=right) if op in CONNECTIVES:
+            return Applied(CONNECTIVES[op], (_term(left), _term(right)))
+        case Prefix(op=UnaryOp.NOT, operand=operand):
+            return Applied(operator.not_, (_term(operand),))
+        case Call(function=function, args=args):
+            return _applied(function.text, args)
+    raise RvmonError(
+        f"`{expression.span.text}` speaks of more than one message: put it into the specification"
+    )
+
+
+def _number(value: Fraction | None, unit: str) -> Constant:
+    if unit:
+        raise RvmonError(
+            f"a number in a value has no unit (`{unit}`): say that of the result, as `unit`"
+        )
+    try:
+        number = 0 if value is None else value
+        return Constant(int(number) if number.denominator == 1 else float(number))
+    except OverflowError:
+        raise RvmonError("a number is too large") from None
+
+
+def _applied(name: str, args: Sequence[Expression]) -> Term:
+    terms = tuple(map(_term, args))
+    if name == "yaw":
+        if len(terms) != 1 or not isinstance(terms[0], Field):
+            raise RvmonError("`yaw` takes a field that is a quaternion: `yaw(pose.orientation)`")
+        quaternion = terms[0].path
+        return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION))
+    known = {op.value: op for op in NumericOp if op.is_function}
+    if name not in known:
+        names = [*known, "yaw"]
+        meant = did_you_mean(name, names, f"there are {', '.join(names)}")
+        raise RvmonError(f"no function `{name}` in a value: {meant}")
+    wanted = len(FUNCTIONS[name].arguments)
+    if len(terms) < wanted or (len(terms) > wanted and not FUNCTIONS[name].more):
+        raise RvmonError(f"`{name}` takes {wanted} numbers, not {len(terms)}")
+    return Applied(known[name].entry.apply, terms)

@@ -1,0 +1,36 @@
+"""What is calculated of the fields of a message, besides the arithmetic of the language."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping
+
+from rvmon.spec.checked.operators import BinaryOp
+
+
+def yaw(x: float, y: float, z: float, w: float) -> float:
+    """The turn about the upright axis that a quaternion of length 1 says, in radians.
+
+    >>> round(yaw(0, 0, 0.7071067811865476, 0.7071067811865476), 9)
+    1.570796327
+    """
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def both(first: float, second: float) -> bool:
+    """Whether both are true."""
+    return bool(first) and bool(second)
+
+
+def either(first: float, second: float) -> bool:
+    """Whether one is true."""
+    return bool(first) or bool(second)
+
+
+CONNECTIVES: Mapping[BinaryOp, Callable[[float, float], bool]] = {
+    BinaryOp.AND: both,
+    BinaryOp.OR: either,
+    BinaryOp.XOR: operator.ne,
+}
+"""The connectives of a value."""

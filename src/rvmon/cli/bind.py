@@ -1,0 +1,42 @@
+"""`rvmon bind`: a binding proposed by names and types."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+
+from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.say import say, warn
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "bind",
+        help="which topics and fields of a recording feed a specification: a proposal",
+        description="Print a binding (TOML): by names and types, which topics and fields of a bag "
+        "or MCAP file feed the signals and events of a specification. Look it over, above all the "
+        "units. The exit code is 1 if nothing was found for a name.",
+        epilog="example: rvmon bind base.rv monday.bag > base.toml && "
+        "rvmon run base.rv monday.bag --binding base.toml",
+    )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument("data", metavar="DATA", help="a bag or MCAP file")
+    add_const(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Look at the topics, print the binding, and return the exit code."""
+    from rvmon.binding.propose import propose
+    from rvmon.loading import load
+    from rvmon.readers.recording import topics_of
+
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    proposal = propose(spec.checked, topics_of(arguments.data))
+    words = shlex.join(["rvmon", "run", arguments.spec, arguments.data, "--binding"])
+    say(f"# Proposed by names and types. {words} THIS_FILE")
+    say(proposal.text, end="")
+    if proposal.unmatched:
+        names = ", ".join(f"`{name}`" for name in proposal.unmatched)
+        warn(f"warning: {arguments.data} has nothing like {names}: fill it in by hand")
+    return int(bool(proposal.unmatched))

@@ -1,0 +1,59 @@
+"""The recordings that a path, a folder or a pattern stands for."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from rvmon.errors import TraceError
+from rvmon.readers.messages.forms import is_bag_folder
+from rvmon.readers.places import endings_of, is_address, matching_addresses
+from rvmon.readers.recording import FORMATS
+
+_MAGIC = frozenset("*?[")
+
+
+def found_recordings(paths: Iterable[str]) -> Iterator[str]:
+    """The recordings at paths, in their order.
+
+    Args:
+        paths: a file, a bag of ROS 2, `-` or an address stands for itself; another folder for the
+            recordings in it and in its folders, a pattern (`*`, `?`, `[…]`, `**`) for what is
+            called so, both sorted.
+
+    Raises:
+        TraceError: a folder or pattern stands for none.
+        RvmonError: what reads addresses is not installed.
+    """
+    for path in paths:
+        if is_address(path):
+            # Signed addresses have question marks.
+            yield from _some(matching_addresses(path), path) if "*" in path else [path]
+        elif os.path.isdir(path) and not is_bag_folder(path):
+            yield from _some(sorted(_recordings_at(path)), path)
+        elif _MAGIC.isdisjoint(path) or os.path.lexists(path):
+            yield path
+        else:
+            from glob import iglob
+
+            # `**` stands for a folder and for what is in it.
+            found = {one for match in iglob(path, recursive=True) for one in _recordings_at(match)}
+            yield from _some(sorted(found), path)
+
+
+def _some(found: list[str], path: str) -> list[str]:
+    if not found:
+        raise TraceError(f"{path}: there is no recording: one ends in {', '.join(FORMATS)}")
+    return found
+
+
+def _recordings_at(path: str) -> Iterator[str]:
+    """A recording, or those in a folder."""
+    if is_bag_folder(path):
+        yield path
+    elif os.path.isdir(path):
+        for name in os.listdir(path):
+            yield from _recordings_at(str(Path(path, name)))
+    elif endings_of(path)[0] in FORMATS:
+        yield path

@@ -1,0 +1,1 @@
+"""Recordings of messages: bags of ROS 1 and ROS 2, MCAP files."""

@@ -1,0 +1,193 @@
+"""Fields of messages: how they are written, found and read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from functools import reduce
+from operator import attrgetter
+from typing import Any, assert_never
+
+from rvmon.diagnostics.nearest import nearest
+from rvmon.errors import TraceError
+from rvmon.readers.messages.topic import Topic
+from rvmon.readers.values import plain, shorten
+from rvmon.runtime.past import finite
+from rvmon.trace.binding import Applied, Bound, Constant, Field, Term
+from rvmon.trace.schema import Kind
+
+_STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]")
+
+_SHOWN = 6
+"""Fields that a message lists."""
+
+_STAMPS = ("header.stamp", "stamp", "timestamp")
+_PARTS = (("sec", "nanosec"), ("sec", "nsec"), ("secs", "nsecs"), ("seconds", "nanos"))
+
+
+def field_of(text: str) -> Field | None:
+    """Read a path such as `pose.position.x` or `ranges[0]`; `None` if it is none.
+
+    >>> field_of("poses[0].x"), field_of("2x")
+    (Field(path=('poses', 0, 'x')), None)
+    """
+    steps: list[str | int] = []
+    place = 0
+    while place < len(text):
+        found = _STEP.match(text, place)
+        if found is None or (text[place] == ".") != (place > 0 and text[place] != "["):
+            return None
+        steps.append(found[1] or int(found[2]))
+        place = found.end()
+    return Field(tuple(steps)) if steps and isinstance(steps[0], str) else None
+
+
+def fields_in(term: Term | None) -> Iterator[Field]:
+    """The fields that a term reads."""
+    if isinstance(term, Field):
+        yield term
+    elif isinstance(term, Applied):
+        for arg in term.args:
+            yield from fields_in(arg)
+
+
+def kind_of(field: Field, topic: Topic) -> Kind | None:
+    """The kind of the values of a field; `None` if nobody knows.
+
+    Raises:
+        TraceError: the topic has no such field, or it is a message or an array itself.
+    """
+    path = re.sub(r"\[\d+\]", "[]", str(field))
+    if not topic.leaves or path in topic.leaves:
+        return topic.leaves.get(path)
+    where = f"topic {topic.name} ({topic.type})"
+    if f"{path}[]" in topic.leaves:
+        raise TraceError(f"{where}: `{field}` is an array: name an element, such as `{field}[0]`")
+    inner = [leaf for leaf in topic.leaves if leaf.startswith((f"{path}.", f"{path}[]."))]
+    if inner:
+        raise TraceError(f"{where}: `{field}` is a message: name a field of it: {_listed(inner)}")
+    ends = [leaf for leaf in topic.leaves if leaf.endswith(f".{path}")]
+    close = ends[0] if ends else nearest(path, topic.leaves)
+    meant = f"did you mean `{close}`?" if close else f"there are {_listed(list(topic.leaves))}"
+    raise TraceError(f"{where} has no field `{field}`: {meant}")
+
+
+def _listed(leaves: list[str]) -> str:
+    more = f" and {len(leaves) - _SHOWN} more" if len(leaves) > _SHOWN else ""
+    return ", ".join(f"`{leaf}`" for leaf in leaves[:_SHOWN]) + more
+
+
+def expect_kinds(
+    name: str, kind: Kind, term: Term, labels: Mapping[str, str], topic: Topic
+) -> None:
+    """See that the fields of a term can give values of a kind.
+
+    Args:
+        name: what is fed, for the message.
+        kind: as declared.
+        term: what feeds it.
+        labels: see `Bound`.
+        topic: of the messages.
+
+    Raises:
+        TraceError: a field is not there, or holds something else.
+    """
+    for field in fields_in(term):
+        found = kind_of(field, topic)
+        if found is None:
+            continue
+        mend = ""
+        if kind is Kind.LABEL and isinstance(term, Field):
+            fits = bool(labels) or found is Kind.LABEL
+            mend = ": say in a binding which `labels` its values stand for"
+        else:
+            fits = found is not Kind.LABEL
+        if kind is Kind.BOOL and found is Kind.REAL and isinstance(term, Field):
+            fits, mend = False, f": compare it in a binding, as `{field} > 0`"
+        if not fits:
+            holds = {Kind.LABEL: "text", Kind.REAL: "numbers"}.get(found, "whole numbers")
+            raise TraceError(
+                f"`{name}` is declared {kind}, and `{field}` of topic {topic.name} "
+                f"({topic.type}) holds {holds}{mend}"
+            )
+
+
+Get = Callable[[Any], Any]
+
+
+def getter(term: Term, *, mappings: bool) -> Get:
+    """A function that gives the value of a term for the content of a message.
+
+    It raises `KeyError` where a mapping lacks a field; an element behind the end of an array, and
+    what is calculated with it, is `None`, which is unknown.
+
+    Args:
+        term: of fields that exist.
+        mappings: whether contents are mappings.
+    """
+    match term:
+        case Constant(value=value):
+            return lambda _: value
+        case Field(path=path):
+            if not mappings and all(isinstance(step, str) for step in path):
+                return attrgetter(".".join(map(str, path)))
+            return _stepping(path, mappings=mappings)
+        case Applied(operation=operation, args=args):
+            read = [getter(arg, mappings=mappings) for arg in args]
+            return lambda content: _calculated(operation, [one(content) for one in read])
+        case _:
+            assert_never(term)
+
+
+def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
+    known = [plain(value) for value in values]
+    for value in known:
+        if isinstance(value, str):
+            raise TraceError(f"`{shorten(value)}` is no number to calculate with")
+        if value != value:
+            return None
+    return finite(operation, *known)
+
+
+def _stepping(path: tuple[str | int, ...], *, mappings: bool) -> Get:
+    def step(content: Any, name: str | int) -> Any:
+        if mappings or isinstance(name, int):
+            return content[name]
+        return getattr(content, name)
+
+    def read(content: Any) -> Any:
+        try:
+            return reduce(step, path, content)
+        except IndexError:
+            return None
+        except TypeError:
+            raise TraceError(f"there is no `{Field(path)}` in `{shorten(str(content))}`") from None
+
+    return read
+
+
+def stamp_getter(topic: Topic, *, mappings: bool) -> Callable[[Any], int]:
+    """A function that gives the ticks that the header of a message says.
+
+    Raises:
+        TraceError: the messages have no header.
+    """
+    for prefix in _STAMPS:
+        for seconds, parts in _PARTS:
+            if {f"{prefix}.{seconds}", f"{prefix}.{parts}"} <= topic.leaves.keys():
+                read = [
+                    getter(Field((*prefix.split("."), part)), mappings=mappings)
+                    for part in (seconds, parts)
+                ]
+                return lambda content: int(read[0](content)) * 1_000_000_000 + int(read[1](content))
+    raise TraceError(
+        f"topic {topic.name} ({topic.type}) has no header whose stamp could count: "
+        'bind what it feeds with `clock = "log"`'
+    )
+
+
+def terms_of(bound: Bound) -> Iterator[Term]:
+    """All that is read of a message."""
+    if bound.value is not None:
+        yield bound.value
+    yield from bound.fields.values()

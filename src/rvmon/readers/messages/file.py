@@ -1,0 +1,86 @@
+"""A recording of messages on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+from rvmon.errors import TraceError
+from rvmon.readers.messages.match import matched
+from rvmon.readers.messages.rows import message_rows
+from rvmon.readers.messages.topic import Messages
+from rvmon.readers.places import local_path
+from rvmon.readers.rows import Row
+from rvmon.trace.binding import Clock
+from rvmon.trace.schema import Schema
+
+
+def open_messages(path: Path, form: str, schema: Schema) -> Messages:
+    """Open a recording.
+
+    Args:
+        path: of the file or folder.
+        form: a value of `MESSAGE_FORMATS`.
+        schema: has the definitions of messages that the recording may lack.
+
+    Raises:
+        RvmonError: what reads it is not installed.
+        TraceError: it cannot be read.
+        OSError: it cannot be opened.
+    """
+    if form == "mcap":
+        from rvmon.readers.messages.mcap import mcap_messages
+
+        return mcap_messages(path, schema.binding.definitions)
+    from rvmon.readers.messages.ros import BagMessages
+
+    return BagMessages(path, form, schema.binding.definitions)
+
+
+class MessageFile:
+    """A recording of messages, looked at.
+
+    Args:
+        path: of it.
+        form: a value of `MESSAGE_FORMATS`.
+        schema: the declared names, and how the recording tells them.
+
+    Attributes:
+        topics: by name.
+        names: declared names that have a topic.
+        unread: the topics and fields that feed nothing.
+        end: the last instant of the recording; `None` where another clock counts.
+        count: of its messages; 0 if nobody knows.
+
+    Raises:
+        RvmonError: what reads it is not installed.
+        TraceError: it cannot be read, or does not fit the binding.
+        OSError: it cannot be opened.
+    """
+
+    def __init__(self, path: str, form: str, schema: Schema) -> None:
+        self._place = path, form
+        self._schema = schema
+        with closing(self._opened()) as source:
+            self.topics = source.topics
+            found = matched(schema, source.topics)
+            self._bounds = found.bounds
+            self.unread = found.unread
+            self.count = source.count
+            self.end = source.end
+        clocks = {bound.clock or schema.binding.clock for bound in self._bounds.values()}
+        if Clock.HEADER in clocks:
+            self.end = None
+        self.names = frozenset(self._bounds)
+
+    def _opened(self) -> Messages:
+        path, form = self._place
+        return open_messages(local_path(path), form, self._schema)
+
+    def rows(self, *, ordered: bool) -> Iterator[Row]:
+        """The rows of its messages; see `message_rows`."""
+        if not self._bounds:
+            raise TraceError("holds no topic that is read")
+        with closing(self._opened()) as source:
+            yield from message_rows(source, self._bounds, self._schema, ordered=ordered)

@@ -1,0 +1,255 @@
+"""MCAP files: those of ROS 2 by rosbags, others by mcap, the extra `mcap`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from rvmon.errors import RvmonError, TraceError
+from rvmon.readers.jsonl_rows import decoded
+from rvmon.readers.messages.ros import BagMessages, ros_topic
+from rvmon.readers.messages.topic import Message, Messages, Topic
+from rvmon.readers.values import shorten
+from rvmon.trace.schema import Kind
+
+_MAGIC = b"\x89MCAP0\r\n"
+
+Decode = Callable[[bytes], Any]
+
+_ROS = {"ros1msg": ("msg", True), "ros2msg": ("msg", False), "ros2idl": ("idl", False)}
+"""By the encoding of a schema the language of the definition, and whether it is of ROS 1."""
+
+
+def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
+    """Open a file.
+
+    Args:
+        path: of the file.
+        definitions: of messages of ROS by type, which the file may lack.
+
+    Raises:
+        RvmonError: what reads it is not installed.
+        TraceError: it is no MCAP file, or a damaged one.
+        OSError: it cannot be opened.
+    """
+    with open(path, "rb") as file:
+        head = file.read(64)
+    if not head:
+        raise TraceError("is an empty file: record it again")
+    if not head.startswith(_MAGIC):
+        raise TraceError("is no MCAP file: it begins otherwise")
+    # Behind the magic: one byte, the length in eight, and the profile, led by its length in four.
+    if head[17:21] == b"\4\0\0\0" and head[21:25] == b"ros2":
+        found = BagMessages(path, "ros2", definitions)
+        if all(not topic.fault for topic in found.topics.values()):
+            return found
+        found.close()
+    return _OtherMessages(path, definitions)
+
+
+class _OtherMessages:
+    """An open MCAP file of any encodings; see `mcap_messages`."""
+
+    def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
+        try:
+            from mcap.reader import make_reader
+        except ImportError:
+            raise RvmonError(
+                "MCAP needs the package mcap, which is not installed: pip install 'rvmon[mcap]'"
+            ) from None
+        self._definitions = definitions
+        self._file = open(path, "rb")  # noqa: SIM115 - closed by `close`
+        try:
+            with _mcap_errors():
+                self._reader = make_reader(self._file)
+                self._look()
+        except BaseException:
+            self._file.close()
+            raise
+
+    def _look(self) -> None:
+        """Find the topics, by all messages where the file has no index of them."""
+        summary = self._reader.get_summary()
+        statistics = None if summary is None else summary.statistics
+        self.end: int | None = None
+        self.count = 0
+        if summary is not None and statistics is not None:
+            channels = [
+                (summary.schemas.get(channel.schema_id), channel)
+                for channel in summary.channels.values()
+            ]
+            self.count = statistics.message_count
+            self.end = statistics.message_end_time if self.count else None
+        else:
+            found = {}
+            for schema, channel, message in self._reader.iter_messages(log_time_order=False):
+                found[channel.id] = schema, channel
+                self.count += 1
+                self.end = max(self.end or 0, message.log_time)
+            channels = list(found.values())
+        topics: dict[str, Topic] = {}
+        self._decoders: dict[int, Decode] = {}
+        for schema, channel in channels:
+            topic, self._decoders[channel.id] = self._topic(schema, channel)
+            known = topics.setdefault(channel.topic, topic)
+            if known.type != topic.type:
+                fault = f"it holds messages of two types, {known.type} and {topic.type}"
+                topics[channel.topic] = Topic(topic.name, topic.type, {}, fault)
+        self.topics: Mapping[str, Topic] = topics
+
+    def _topic(self, schema: Any, channel: Any) -> tuple[Topic, Decode]:
+        """A topic, and what decodes its messages."""
+        name, encoding = channel.topic, channel.message_encoding
+        type_name = schema.name if schema is not None else "no type"
+        language = schema.encoding if schema is not None else ""
+        if encoding == "json":
+            leaves = dict(self._json_leaves(schema, name))
+            return Topic(name, type_name, leaves), _json_object
+        if encoding in ("cdr", "ros1"):
+            form, is_ros1 = _ROS.get(language, ("msg", encoding == "ros1"))
+            text = schema.data.decode("utf-8", "replace") if schema is not None else ""
+            type_name = type_name if type_name.count("/") != 1 else type_name.replace("/", "/msg/")
+            return ros_topic(name, type_name, (form, text), is_ros1, self._definitions)
+        if encoding == "protobuf" and language == "protobuf":
+            decode = _protobuf(schema)
+            return Topic(name, type_name, dict(_protobuf_leaves(decode(b"").DESCRIPTOR))), decode
+        known = "JSON, Protocol Buffers, CDR and ROS 1"
+        fault = f"its messages are encoded as `{shorten(encoding)}`: there is {known}"
+        return Topic(name, type_name, {}, fault), bytes
+
+    def _json_leaves(self, schema: Any, topic: str) -> Iterator[tuple[str, Kind]]:
+        """The fields that the first message has, and those that the schema tells.
+
+        What is wrong with them does not matter unless the topic is read.
+        """
+        first = next(iter(self._reader.iter_messages(topics=[topic])), None)
+        with suppress(TraceError, msgspec.DecodeError):
+            if first is not None:
+                yield from _found_leaves(_json_object(first[2].data), "")
+        with suppress(TraceError, msgspec.DecodeError):
+            if schema is not None and schema.encoding == "jsonschema":
+                yield from _described_leaves(_json_object(schema.data), "", 0)
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The messages of these topics, in the order in which they were recorded."""
+        with _mcap_errors():
+            for _, channel, message in self._reader.iter_messages(topics=list(topics)):
+                try:
+                    content = self._decoders[channel.id](message.data)
+                except MemoryError:
+                    raise
+                except Exception as error:  # noqa: BLE001 - each decoder has errors of its own
+                    raise TraceError(
+                        f"a message of {channel.topic} at {message.log_time} ns cannot be decoded "
+                        f"({_line(error)})"
+                    ) from None
+                yield channel.topic, message.log_time, content
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+@contextmanager
+def _mcap_errors() -> Iterator[None]:
+    """What goes wrong in a file is the fault of the file."""
+    try:
+        yield
+    except (RvmonError, MemoryError, GeneratorExit):
+        raise
+    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
+        raise TraceError(
+            f"cannot be read as MCAP ({_line(error)}): is it cut off? Copy it again, or try "
+            "`mcap recover`"
+        ) from None
+
+
+def _json_object(data: bytes) -> Mapping[str, Any]:
+    found = decoded(data, msgspec.json.decode)
+    if not isinstance(found, dict):
+        raise TraceError(f"it is no object: `{shorten(str(found))}`")
+    return found
+
+
+_DESCRIBED = {
+    "boolean": Kind.BOOL,
+    "integer": Kind.INT,
+    "number": Kind.REAL,
+    "string": Kind.LABEL,
+}
+
+_DEEPEST = 20
+"""Schemas nested more deeply are not followed."""
+
+
+def _described_leaves(
+    schema: Mapping[str, Any], path: str, depth: int
+) -> Iterator[tuple[str, Kind]]:
+    """The fields of a JSON schema; references are not followed."""
+    form = schema.get("type")
+    if isinstance(form, str) and form in _DESCRIBED:
+        yield path, _DESCRIBED[form]
+    if depth == _DEEPEST:
+        return
+    items, properties = schema.get("items"), schema.get("properties")
+    if isinstance(items, dict):
+        yield from _described_leaves(items, f"{path}[]", depth + 1)
+    if isinstance(properties, dict):
+        for name, inner in properties.items():
+            if isinstance(inner, dict):
+                yield from _described_leaves(inner, f"{path}.{name}".lstrip("."), depth + 1)
+
+
+_FOUND = {bool: Kind.BOOL, int: Kind.REAL, float: Kind.REAL, str: Kind.LABEL}
+"""What is written as a whole number may be no such number in the next message."""
+
+
+def _found_leaves(value: Any, path: str) -> Iterator[tuple[str, Kind]]:
+    """The fields of an object."""
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from _found_leaves(inner, f"{path}.{name}".lstrip("."))
+    elif isinstance(value, list):
+        for inner in value[:1]:
+            yield from _found_leaves(inner, f"{path}[]")
+    elif type(value) in _FOUND:
+        yield path, _FOUND[type(value)]
+
+
+def _protobuf(schema: Any) -> Decode:
+    try:
+        from mcap_protobuf.decoder import DecoderFactory
+    except ImportError:
+        raise RvmonError(
+            "messages of Protocol Buffers need mcap-protobuf-support, which is not installed: "
+            "pip install 'rvmon[mcap]'"
+        ) from None
+    decode = DecoderFactory().decoder_for("protobuf", schema)
+    assert decode is not None, "it is of this encoding"  # noqa: S101
+    return decode
+
+
+def _protobuf_leaves(
+    descriptor: Any, prefix: str = "", above: frozenset[str] = frozenset()
+) -> Iterator[tuple[str, Kind]]:
+    for field in descriptor.fields:
+        path = f"{prefix}{field.name}{'[]' if field.is_repeated else ''}"
+        if field.message_type is not None:
+            if field.message_type.full_name not in above:
+                inside = above | {descriptor.full_name}
+                yield from _protobuf_leaves(field.message_type, f"{path}.", inside)
+        elif field.cpp_type == field.CPPTYPE_BOOL:
+            yield path, Kind.BOOL
+        elif field.cpp_type in (field.CPPTYPE_DOUBLE, field.CPPTYPE_FLOAT):
+            yield path, Kind.REAL
+        else:
+            is_text = field.cpp_type == field.CPPTYPE_STRING
+            yield path, Kind.LABEL if is_text else Kind.INT
+
+
+def _line(error: Exception) -> str:
+    return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)

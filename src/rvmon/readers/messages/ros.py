@@ -1,0 +1,240 @@
+"""Bags of ROS 1 and ROS 2, and the messages in them; needs rosbags, the extra `ros`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+from rvmon.errors import RvmonError, TraceError
+from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.values import shorten
+from rvmon.trace.schema import Kind
+
+Definition = tuple[str, str]
+"""The language of a definition (`msg` or `idl`), or the type that it defines, and its text."""
+
+_MENDS = {
+    "not indexed": "it was not closed: `rosbag reindex` closes it",
+    "encryption": "it is encrypted: decrypt it first",
+    "empty": "it is an empty file: record it again",
+}
+_MEND = {
+    "ros1": "is it cut off? Copy it again, or try `rosbag reindex`",
+    "ros2": "is it cut off? Copy it again, or try `ros2 bag reindex`",
+}
+
+
+class BagMessages:
+    """An open bag.
+
+    Args:
+        path: a `.bag`, `.db3` or `.mcap` file, or a folder of ROS 2.
+        form: `ros1` or `ros2`.
+        definitions: of messages by type, which the bag may lack.
+
+    Attributes:
+        topics: by name.
+        end: the tick of the last message of all.
+        count: of all messages.
+
+    Raises:
+        RvmonError: rosbags is not installed.
+        TraceError: it is no bag, or a damaged one.
+    """
+
+    def __init__(self, path: Path, form: str, definitions: Mapping[str, str]) -> None:
+        self._form = form
+        reader = _readers()[form]
+        # The file itself is opened first: the system says why it cannot be.
+        inner = path / "metadata.yaml" if path.is_dir() else path
+        with open(inner, "rb"), _bag_errors(self._form):
+            self._reader = reader(path)
+            self._reader.open()
+        self.count: int = self._reader.message_count
+        self.end: int | None = self._reader.end_time - 1 if self.count else None
+        topics: dict[str, Topic] = {}
+        self._decoders: dict[int, Callable[[bytes], Any]] = {}
+        for connection in self._reader.connections:
+            topic, decode = ros_topic(
+                connection.topic,
+                connection.msgtype,
+                (connection.msgdef.format.name.lower(), connection.msgdef.data),
+                self._form == "ros1",
+                definitions,
+            )
+            known = topics.setdefault(topic.name, topic)
+            if known.type != topic.type:
+                fault = f"it holds messages of two types, {known.type} and {topic.type}"
+                topics[topic.name] = Topic(topic.name, topic.type, {}, fault)
+            self._decoders[connection.id] = decode
+        self.topics: Mapping[str, Topic] = topics
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The messages of these topics, in the order in which they were recorded."""
+        wanted = [one for one in self._reader.connections if one.topic in topics]
+        if not wanted:
+            return
+        decoders = self._decoders
+        with _bag_errors(self._form):
+            for connection, t, raw in self._reader.messages(wanted):
+                try:
+                    content = decoders[connection.id](raw)
+                except MemoryError:
+                    raise
+                except Exception as error:  # noqa: BLE001 - code that was made of the definition
+                    raise TraceError(
+                        f"a message of {connection.topic} ({connection.msgtype}) at {t} ns does "
+                        f"not fit its definition ({_line(error)})"
+                    ) from None
+                yield connection.topic, t, content
+
+    def close(self) -> None:
+        """Close the files."""
+        self._reader.close()
+
+
+@cache
+def _readers() -> Mapping[str, Callable[[Path], Any]]:
+    """What opens bags, by their form."""
+    try:
+        from rosbags import rosbag1, rosbag2
+    except ImportError:
+        raise RvmonError(
+            "bags need rosbags, which is not installed: pip install 'rvmon[ros]'"
+        ) from None
+    return {"ros1": rosbag1.Reader, "ros2": rosbag2.Reader}
+
+
+@contextmanager
+def _bag_errors(form: str) -> Iterator[None]:
+    """What goes wrong in a bag is the fault of the bag."""
+    try:
+        yield
+    except (TraceError, MemoryError, GeneratorExit):
+        raise
+    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
+        text = str(error)
+        mend = next((mend for sign, mend in _MENDS.items() if sign in text), _MEND[form])
+        raise TraceError(f"cannot be read as a bag ({_line(error)}): {mend}") from None
+
+
+def ros_topic(
+    name: str,
+    type_name: str,
+    definition: Definition,
+    is_ros1: bool,
+    others: Mapping[str, str],
+) -> tuple[Topic, Callable[[bytes], Any]]:
+    """A topic of messages of ROS, and what decodes them.
+
+    Args:
+        name: of the topic.
+        type_name: of its messages, `package/msg/Name`.
+        definition: of them; without a text it has to be among the others, or one of ROS itself.
+        is_ros1: whether they are packed as ROS 1 does.
+        others: definitions by type.
+    """
+    if definition[1]:
+        store, fault = _store(type_name, *definition)
+    else:
+        store, fault = _store_of(tuple(sorted(others.items())))
+        if not fault and type_name not in store.fielddefs:
+            fault = _UNDEFINED
+    if fault:
+        return Topic(name, type_name, {}, fault), bytes
+    leaves = dict(_leaves(store, type_name))
+    unpack = store.deserialize_ros1 if is_ros1 else store.deserialize_cdr
+    return Topic(name, type_name, leaves), lambda raw: unpack(raw, type_name)
+
+
+@lru_cache(maxsize=512)
+def _store(type_name: str, language: str, text: str) -> tuple[Any, str]:
+    """The types that a definition names, or why there are none.
+
+    The packages of many bags define the same messages: to prepare them takes longer than to read
+    a small bag.
+    """
+    from rosbags.typesys import (
+        Stores,
+        TypesysError,
+        get_types_from_idl,
+        get_types_from_msg,
+        get_typestore,
+    )
+
+    store = get_typestore(Stores.EMPTY)
+    try:
+        if language == "msg":
+            store.register(get_types_from_msg(text, type_name))
+        else:
+            store.register(
+                {
+                    name: fields
+                    for part in text.split("=" * 80 + "\n")
+                    for name, fields in get_types_from_idl(_bare_idl(part)).items()
+                }
+            )
+    except (TypesysError, KeyError, ValueError, TypeError) as error:
+        return None, f"the definition of its messages cannot be read ({_line(error)})"
+    if type_name not in store.fielddefs:
+        return None, "the definition of its messages is not in the recording"
+    return store, ""
+
+
+_UNDEFINED = (
+    "the definition of its messages is neither in the recording nor one of ROS itself: name the "
+    ".msg file, and those that it names, in a binding, as `definitions`"
+)
+
+
+@lru_cache(maxsize=8)
+def _store_of(definitions: tuple[Definition, ...]) -> tuple[Any, str]:
+    """The types of ROS itself and these, by type and text; or why there are none."""
+    from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.LATEST)
+    try:
+        made = [get_types_from_msg(text, name) for name, text in definitions]
+        store.register({name: fields for one in made for name, fields in one.items()})
+    except (TypesysError, KeyError, ValueError, TypeError) as error:
+        return None, f"the `definitions` of the binding cannot be read ({_line(error)})"
+    return store, ""
+
+
+def _bare_idl(part: str) -> str:
+    """A definition without the line that names it among others."""
+    return part.partition("\n")[2] if part.startswith("IDL: ") else part
+
+
+_FILLER = "structure_needs_at_least_one_member"
+"""The field of messages that have none."""
+
+_KINDS = {"bool": Kind.BOOL, "string": Kind.LABEL, "wstring": Kind.LABEL, "wchar": Kind.LABEL}
+
+
+def _leaves(
+    store: Any, type_name: str, prefix: str = "", above: frozenset[str] = frozenset()
+) -> Iterator[tuple[str, Kind]]:
+    from rosbags.interfaces import Nodetype
+
+    for name, (node, inner) in store.fielddefs[type_name][1]:
+        if name == _FILLER:
+            continue
+        path = f"{prefix}{name}"
+        if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+            path += "[]"
+            node, inner = inner[0]
+        if node is Nodetype.NAME:
+            if inner in store.fielddefs and inner not in above:
+                yield from _leaves(store, inner, f"{path}.", above | {type_name})
+        else:
+            base = inner[0]
+            number = Kind.REAL if base.startswith("float") else Kind.INT
+            yield path, _KINDS.get(base, number)
+
+
+def _line(error: Exception) -> str:
+    return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)

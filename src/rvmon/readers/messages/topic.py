@@ -1,0 +1,55 @@
+"""What recordings of messages have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from rvmon.trace.schema import Kind
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic of a recording.
+
+    Attributes:
+        name: of it.
+        type: of its messages.
+        leaves: the kinds of the fields that are no messages themselves, by their path, where an
+            array is `name[]`; empty if nobody knows.
+        fault: why its messages cannot be read; empty if they can.
+    """
+
+    name: str
+    type: str
+    leaves: Mapping[str, Kind]
+    fault: str = ""
+
+
+Message = tuple[str, int, Any]
+"""Topic, ticks at which it was recorded, content: an object with attributes, or a mapping."""
+
+
+class Messages(Protocol):
+    """An open recording.
+
+    Attributes:
+        topics: by name.
+        end: the tick of the last message of all; `None` if nobody knows.
+        count: of all messages; 0 if nobody knows.
+    """
+
+    topics: Mapping[str, Topic]
+    end: int | None
+    count: int
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The messages of these topics, as they were recorded.
+
+        Raises:
+            TraceError: one cannot be read.
+        """
+
+    def close(self) -> None:
+        """Close the files."""

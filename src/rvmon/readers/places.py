@@ -1,0 +1,216 @@
+"""Where recordings lie: files, packed ones, and addresses, of which a copy is read."""
+
+from __future__ import annotations
+
+import os
+import re
+import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from io import BufferedReader, RawIOBase
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from rvmon.errors import RvmonError, TraceError
+from rvmon.readers.values import shorten
+
+PACKED = (".gz", ".zst")
+"""Endings of text that is packed."""
+
+_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+://")
+
+
+def is_address(path: str) -> bool:
+    """Whether it is an address such as `https://…` or `s3://…`, and no path.
+
+    >>> is_address("s3://runs/monday.csv"), is_address("C:/runs/monday.csv")
+    (True, False)
+    """
+    return _ADDRESS.match(path) is not None
+
+
+def endings_of(path: str) -> tuple[str, str]:
+    """The ending that says the format, and that of a packed file; each empty if there is none.
+
+    >>> endings_of("runs/Monday.CSV.gz"), endings_of("https://host/a.mcap?version=3")
+    (('.csv', '.gz'), ('.mcap', ''))
+    """
+    name = Path(_path_in(path) if is_address(path) else path)
+    packed = name.suffix.lower()
+    if packed not in PACKED:
+        return packed, ""
+    return Path(name.stem).suffix.lower(), packed
+
+
+def _path_in(address: str) -> str:
+    from urllib.parse import urlsplit
+
+    return urlsplit(address).path
+
+
+@contextmanager
+def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
+    """The bytes of a file or address, unpacked, and the file as it lies there.
+
+    Raises:
+        TraceError: an address cannot be read; or, while it is read, what is packed is damaged.
+        RvmonError: a package is not installed.
+        OSError: a file cannot be opened.
+    """
+    with open(local_path(str(path)), "rb") as raw:
+        packed = endings_of(str(path))[1]
+        if packed:
+            with BufferedReader(_Unpacked(raw, packed)) as plain:
+                yield plain, raw
+        else:
+            yield raw, raw
+
+
+class _Unpacked(RawIOBase):
+    """The text of a packed file.
+
+    Args:
+        raw: the file.
+        packed: its ending.
+    """
+
+    def __init__(self, raw: BinaryIO, packed: str) -> None:
+        import zlib
+
+        self._damage: tuple[type[Exception], ...] = (EOFError, OSError, zlib.error)
+        self._plain: Any
+        if packed == ".gz":
+            from gzip import GzipFile
+
+            self._plain = GzipFile(fileobj=raw)
+        else:
+            zstd = _zstd()
+            self._damage += (zstd.ZstdError,)
+            self._plain = zstd.ZstdFile(raw)
+
+    def readable(self) -> bool:
+        """It is."""
+        return True
+
+    def readinto(self, buffer: Any, /) -> int:
+        """Fill the buffer with what comes next; 0 at the end."""
+        try:
+            count: int = self._plain.readinto(buffer)
+        except self._damage as error:
+            cut = isinstance(error, EOFError)
+            mend = "was it cut off? Copy it again" if cut else "is it packed as its ending says?"
+            raise TraceError(f"cannot be unpacked ({_line(error)}): {mend}") from None
+        return count
+
+    def close(self) -> None:
+        """Close it; the file stays open."""
+        self._plain.close()
+        super().close()
+
+
+def _zstd() -> Any:
+    try:
+        from compression import zstd  # of Python from 3.14 on
+    except ImportError:
+        try:
+            from backports import zstd
+        except ImportError:
+            raise RvmonError(
+                "Zstandard needs backports.zstd, which is not installed: pip install 'rvmon[zstd]'"
+            ) from None
+    return zstd
+
+
+def local_path(path: str) -> Path:
+    """Where a file lies; of an address, its copy, which lasts while no other one is asked for.
+
+    Raises:
+        TraceError: the address cannot be read.
+        RvmonError: a package is not installed.
+    """
+    if not is_address(path):
+        return Path(path)
+    with _remote_errors(path):
+        system, inner = _system(path)
+        info = system.info(inner)
+        # What was read must not pass for what has been put there since.
+        state = repr(sorted((key, str(value)) for key, value in info.items()))
+        return _copy(path, state).path
+
+
+@contextmanager
+def without_copies() -> Iterator[None]:
+    """Leave no copy of an address behind."""
+    try:
+        yield
+    finally:
+        _copy.cache_clear()
+
+
+class _Copy:
+    """A file that goes with its last user, but not with a copy of the process."""
+
+    def __init__(self, name: str) -> None:
+        from tempfile import mkdtemp
+
+        folder = mkdtemp(prefix="rvmon-")
+        weakref.finalize(self, _remove, folder, os.getpid())
+        self.path = Path(folder, name)
+
+
+def _remove(folder: str, process: int) -> None:
+    if os.getpid() == process:
+        import shutil
+
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@lru_cache(maxsize=1)
+def _copy(address: str, _state: str) -> _Copy:
+    """A copy of a file; a folder is copied whole."""
+    system, inner = _system(address)
+    made = _Copy(Path(_path_in(address)).name or "recording")
+    system.get(inner, str(made.path), recursive=system.isdir(inner))
+    return made
+
+
+def matching_addresses(pattern: str) -> list[str]:
+    """The addresses that a pattern with `*` stands for, sorted.
+
+    Raises:
+        TraceError: the place cannot be read.
+        RvmonError: a package is not installed.
+    """
+    with _remote_errors(pattern):
+        system, inner = _system(pattern)
+        return sorted(system.unstrip_protocol(name) for name in system.glob(inner))
+
+
+def _system(address: str) -> tuple[Any, str]:
+    try:
+        from fsspec.core import url_to_fs
+    except ImportError:
+        raise RvmonError(
+            "addresses need fsspec, which is not installed: pip install 'rvmon[remote]'"
+        ) from None
+    system, inner = url_to_fs(address)
+    return system, str(inner)
+
+
+@contextmanager
+def _remote_errors(address: str) -> Iterator[None]:
+    try:
+        yield
+    except (RvmonError, MemoryError):
+        raise
+    except FileNotFoundError:
+        raise TraceError(f"{address}: there is nothing at this address") from None
+    except ImportError as error:
+        raise RvmonError(f"{address}: {_line(error)}") from None
+    except Exception as error:  # noqa: BLE001 - each kind of place has errors of its own
+        raise TraceError(f"{address}: cannot be read ({_line(error)})") from None
+
+
+def _line(error: Exception) -> str:
+    return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)

@@ -1,0 +1,91 @@
+"""Which topic and field of recorded messages feed a signal or an event."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class Clock(StrEnum):
+    """Which of the stamps of a message counts: when it was recorded, or what its header says."""
+
+    LOG = "log"
+    HEADER = "header"
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A field of a message.
+
+    Attributes:
+        path: names that lead to it, and the places of elements of arrays.
+
+    >>> str(Field(("poses", 0, "position", "x")))
+    'poses[0].position.x'
+    """
+
+    path: tuple[str | int, ...]
+
+    def __str__(self) -> str:
+        steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in self.path)
+        return "".join(steps).removeprefix(".")
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A number, or a truth value."""
+
+    value: float | int | bool
+
+
+@dataclass(frozen=True, slots=True)
+class Applied:
+    """An operation on terms; a result that is no number is unknown."""
+
+    operation: Callable[..., float]
+    args: tuple[Term, ...]
+
+
+Term = Field | Constant | Applied
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """What feeds a signal or an event.
+
+    Attributes:
+        topic: of the messages.
+        value: of a signal its value, of an event whether it occurs; `None`: an event occurs with
+            each message.
+        fields: of an event's payload, by name.
+        labels: of a signal of labels, by the number or text that stands for it; empty: the text.
+        clock: which stamp counts; `None`: that of the whole recording.
+        on_change: whether a message whose value is that of the one before says nothing.
+    """
+
+    topic: str
+    value: Term | None = None
+    fields: Mapping[str, Term] = field(default_factory=dict)
+    labels: Mapping[str, str] = field(default_factory=dict)
+    clock: Clock | None = None
+    on_change: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """How recorded messages are read.
+
+    Attributes:
+        bounds: by declared name.
+        clock: which stamps count.
+        definitions: texts of message definitions by type, for recordings that bring none along.
+    """
+
+    bounds: Mapping[str, Bound] = field(default_factory=dict)
+    clock: Clock = Clock.LOG
+    definitions: Mapping[str, str] = field(default_factory=dict)
+
+
+BY_NAME = Binding()
+"""Names lead to topics and fields, and what was recorded when counts."""

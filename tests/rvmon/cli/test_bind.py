@@ -1,0 +1,145 @@
+"""`rvmon bind`, and `--binding` of the other commands."""
+
+import math
+
+import pytest
+from tests.tools.bags import START, write_json_mcap, write_ros1
+
+from rvmon.cli import main
+
+pytest.importorskip("rosbags")
+pytest.importorskip("mcap")
+
+SPEC = """
+spec base
+signal speed      : real [mm/s]
+signal heading    : real [deg]
+signal scan_state : {idle, busy}
+signal mode       : {idle, busy}
+event  go
+event  ready
+event  pick(id: int)
+requirement R1
+  always speed < 2 m/s
+requirement R2
+  upon go
+  then within 1 s (heading > 80 deg and mode == busy)
+"""
+SENT = [
+    (
+        "/base/odom",
+        START,
+        {
+            "twist": {"twist": {"linear": {"x": 0.6, "y": 0.8}}},
+            "pose": {"pose": {"orientation": {"z": math.sin(0.75), "w": math.cos(0.75)}}},
+        },
+    ),
+    ("/base/scan", START + 1, {"state": 1}),
+    ("/mode", START + 2, {"data": "busy"}),
+    ("/go", START + 3, {}),
+    ("/ready", START + 4, {"data": True}),
+    ("/pick", START + 5, {"id": 4, "x": 1.0}),
+]
+
+
+@pytest.fixture
+def words(tmp_path):
+    """A specification and a bag."""
+    (tmp_path / "base.rv").write_text(SPEC)
+    return [str(tmp_path / "base.rv"), str(write_ros1(tmp_path / "a.bag", SENT))]
+
+
+def test_what_is_proposed_runs(words, tmp_path, capsys):
+    """By names, types, and what ROS calls things; with what else may be meant."""
+    assert main(["bind", *words]) == 0
+    proposed = capsys.readouterr().out
+    for line in (
+        'value = "hypot(twist.twist.linear.x, twist.twist.linear.y)"',
+        'value = "yaw(pose.pose.orientation)"',
+        'labels = { 0 = "idle", 1 = "busy" }',
+        'fields = { id = "id" }',
+        '[bind.ready]  # event\ntopic = "/ready"  # std_msgs/msg/Bool',
+    ):
+        assert line in proposed
+    (tmp_path / "base.toml").write_text(proposed)
+    binding = ["--binding", str(tmp_path / "base.toml")]
+    assert main(["check", words[0], *binding]) == 0
+    assert "does not bind" not in capsys.readouterr().out
+    assert main(["run", *words, *binding, "--strict"]) == 0
+    assert main(["why", *words, "R2", *binding]) == 0
+    assert main(["run", *words, *binding, "--report", str(tmp_path / "pages")]) == 0
+    page = "".join(path.read_text() for path in (tmp_path / "pages").rglob("*.html"))
+    assert "--binding" in page
+
+
+def test_what_finds_nothing_is_told(words, tmp_path, capsys):
+    """In the binding and beside it."""
+    (tmp_path / "base.rv").write_text(SPEC.replace("mode ", "arm_torque"))
+    (tmp_path / "base.rv").write_text(SPEC.replace("event  go", "event  go, zapped"))
+    assert main(["bind", *words]) == 1
+    told = capsys.readouterr()
+    assert "# Nothing was found for `zapped` (event):" in told.out
+    assert "has nothing like `zapped`" in told.err
+
+
+def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys):
+    """And what is wrong with it."""
+    path = tmp_path / "base.toml"
+    path.write_text('[bind.go]\ntopic = "/go"\n')
+    assert main(["check", words[0], "--binding", str(path)]) == 0
+    assert "does not bind speed, heading, scan_state, mode, ready, pick" in capsys.readouterr().out
+    path.write_text('[bind.goo]\ntopic = "/go"\n')
+    assert main(["check", words[0], "--binding", str(path)]) == 2
+    assert "did you mean `go`?" in capsys.readouterr().err
+
+
+def test_columns_have_no_topics(words, tmp_path, capsys):
+    """Their names are mapped."""
+    (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
+    assert main(["bind", words[0], str(tmp_path / "a.csv")]) == 2
+    assert "use --map" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("name", "writer"), [("a.bag", write_ros1), ("b.mcap", write_json_mcap)])
+def test_a_starter_of_a_bag_runs_on_it(tmp_path, monkeypatch, capsys, name, writer):
+    """Names lead to topics and fields; what cannot be declared is told."""
+    monkeypatch.chdir(tmp_path)
+    sent = [*SENT, ("/speed", START + 10, {"data": 2.5}), ("/base/scan", START + 11, {"state": 0})]
+    writer(tmp_path / name, sent)
+    assert main(["init", name, "-o", "a.rv"]) == 0
+    text = " ".join((tmp_path / "a.rv").read_text().split())
+    assert "signal speed : real" in text
+    assert "signal mode : {busy}" in text
+    assert "signal base.odom.twist.twist.linear.x : real" in text
+    assert "event go" in text
+    assert main(["run", "a.rv", name, "--strict"]) == 0
+
+
+def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
+    """As one of any table."""
+    arrow = pytest.importorskip("pyarrow")
+    monkeypatch.chdir(tmp_path)
+    table = {"t": [0.0, 1.0, 2.0], "speed": [1.0, None, 2.5], "mode": ["idle", "busy", "idle"]}
+    pytest.importorskip("pyarrow.parquet").write_table(arrow.table(table), "a.parquet")
+    assert main(["init", "a.parquet"]) == 0
+    text = " ".join((tmp_path / "a.rv").read_text().split())
+    assert "signal speed : real" in text
+    assert "{idle, busy}" in text
+    assert main(["run", "a.rv", "a.parquet", "--strict"]) == 0
+
+
+def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, capsys):
+    """Also shared among processes."""
+    runs = tmp_path / "runs"
+    runs.mkdir()
+    for number in range(6):
+        write_ros1(runs / f"{number}.bag", SENT)
+    (runs / "3.bag").write_bytes((runs / "3.bag").read_bytes()[:900])
+    main(["bind", *words])
+    (tmp_path / "base.toml").write_text(capsys.readouterr().out)
+    for jobs in ("1", "2"):
+        binding = ["--binding", str(tmp_path / "base.toml"), "--jobs", jobs]
+        assert main(["run", words[0], str(runs), *binding]) == 2
+        told = capsys.readouterr()
+        assert "3.bag: cannot be read as a bag" in told.err
+        assert all(f"{number}.bag" in told.out for number in (0, 1, 2, 4, 5))

@@ -1,0 +1,204 @@
+"""Bags and MCAP files that cannot be read, or lack what is read: place, cause, mend."""
+
+import struct
+
+import pytest
+from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
+
+import rvmon
+from rvmon.cli import main
+from rvmon.errors import UnknownNameError
+
+pytest.importorskip("rosbags")
+pytest.importorskip("mcap")
+
+SPEC = """
+spec base
+signal speed : real
+event go
+requirement R1
+  always speed < 3
+requirement R2
+  upon go
+  then within 1 s speed < 1
+"""
+SENT = [
+    part
+    for t in range(400)
+    for part in (
+        ("/speed", START + t * 10**7, {"data": t / 300}),
+        ("/mode", START + t * 10**7, {"data": "idle"}),
+        ("/base/scan", START + t * 10**7, {"ranges": [1.0, 2.0], "state": 1}),
+        ("/go", START + t * 10**7, {}),
+    )
+]
+
+
+def written(folder, name):
+    """A recording, and the file of it that can be damaged."""
+    match name:
+        case "a.bag":
+            path = write_ros1(folder / name, SENT)
+        case "b.mcap":
+            path = write_json_mcap(folder / name, SENT)
+        case _:
+            path = write_ros2(folder / name, SENT, name)
+    return path, next(iter(path.glob(f"{name}.*"))) if path.is_dir() else path
+
+
+@pytest.fixture
+def spec():
+    return rvmon.loads(SPEC)
+
+
+@pytest.mark.parametrize("kept", [0.999, 0.5, 0.02])
+@pytest.mark.parametrize(
+    ("name", "mend"),
+    [
+        ("a.bag", "rosbag reindex"),
+        ("sqlite3", "ros2 bag reindex"),
+        ("mcap", "ros2 bag reindex"),
+        ("b.mcap", "mcap recover"),
+    ],
+)
+def test_what_was_cut_off_is_told_and_the_others_are_judged(tmp_path, capsys, name, mend, kept):
+    """Nothing of it passes for the whole."""
+    whole = write_ros1(tmp_path / "whole.bag", SENT)
+    path, file = written(tmp_path, name)
+    data = file.read_bytes()
+    file.write_bytes(data[: int(len(data) * kept)])
+    (tmp_path / "base.rv").write_text(SPEC)
+    assert main(["run", str(tmp_path / "base.rv"), str(path), str(whole)]) == 2
+    told = capsys.readouterr()
+    assert f"error: {path}: cannot be read as" in told.err
+    assert mend in told.err
+    assert "whole.bag" in told.out
+    assert "Traceback" not in told.err
+
+
+@pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
+def test_damage_anywhere_is_told_or_harmless(tmp_path, spec, name):
+    """Whatever bytes are wrong: a message for people, or the verdicts."""
+    path, file = written(tmp_path, name)
+    data = file.read_bytes()
+    for place in range(0, len(data), max(1, len(data) // 20)):
+        file.write_bytes(data[:place] + bytes([data[place] ^ 0x55]) * 30 + data[place + 30 :])
+        try:
+            told = ", ".join(spec.evaluate(path).verdicts)
+        except rvmon.TraceError as error:
+            told = str(error)
+        assert told == "R1, R2" or told.startswith(str(path))
+
+
+@pytest.mark.parametrize("name", ["a.bag", "a.db3", "a.mcap"])
+@pytest.mark.parametrize("data", [b"", b"t,speed\n0,1\n" * 90], ids=["empty", "text"])
+def test_what_is_no_bag_is_told(tmp_path, spec, name, data):
+    """Empty files, and others by that name."""
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(rvmon.TraceError, match=rf"{name}: (cannot be read as|is an empty|is no )"):
+        spec.evaluate(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["a.bag", "a.db3", "a.mcap"])
+def test_a_bag_that_is_not_there_is_told(tmp_path, spec, name):
+    """As any file."""
+    with pytest.raises(rvmon.TraceError, match=rf"{name}: No such file"):
+        spec.evaluate(tmp_path / name)
+
+
+def test_an_encrypted_bag_is_told(tmp_path, spec):
+    """ROS 1 can encrypt bags; nobody here has the key."""
+    fields = {
+        "op": b"\3",
+        "index_pos": struct.pack("<Q", 4117),
+        "conn_count": struct.pack("<I", 1),
+        "chunk_count": struct.pack("<I", 1),
+        "encryptor": b"rosbag/AesCbcEncryptor",
+    }
+    header = b"".join(
+        struct.pack("<I", len(name) + 1 + len(value)) + name.encode() + b"=" + value
+        for name, value in fields.items()
+    )
+    data = struct.pack("<I", len(header)) + header + struct.pack("<I", 0)
+    (tmp_path / "a.bag").write_bytes(b"#ROSBAG V2.0\n" + data)
+    with pytest.raises(rvmon.TraceError, match=r"AesCbcEncryptor.*decrypt it first"):
+        spec.evaluate(tmp_path / "a.bag")
+
+
+@pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
+def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, capsys, name):
+    """And how to say what was meant."""
+    path, _ = written(tmp_path, name)
+    (tmp_path / "base.rv").write_text(SPEC.replace("speed", "sped"))
+    words = ["run", str(tmp_path / "base.rv"), str(path)]
+    assert main(words) == 2
+    told = capsys.readouterr().err
+    assert "there is no topic for what requirements read:" in told
+    assert "`sped`, read by R1, R2: did you mean `/speed`?" in told
+    assert main([*words, "--map", "sped=/speed"]) == 0
+    assert main([*words, "--allow-missing"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("declared", "column", "message"),
+    [
+        ("real", "/mode", "declared real, and `data` of topic /mode .* holds text"),
+        ("bool", "/speed", "declared bool, and `data` of topic /speed .* holds numbers: compare"),
+        (
+            "{idle, busy}",
+            "/base/scan.state",
+            "whole numbers: say in a binding which `labels`",
+        ),
+        ("real", "/base/scan.stat", "has no field `stat`: did you mean `state`"),
+        (
+            "real",
+            "/base/scan.ranges",
+            r"`ranges` is an array: .* `ranges\[0\]`",
+        ),
+        ("real", "/base/scan.header.stamp", "is a message: name a field of it: `header.stamp.sec`"),
+    ],
+)
+def test_a_field_that_does_not_fit_is_told(tmp_path, declared, column, message):
+    """Topic, field, type, and what is there instead."""
+    path, _ = written(tmp_path, "sqlite3")
+    spec = rvmon.loads(f"spec s\nsignal x : {declared}\nrequirement R\n  always known(x)\n")
+    with pytest.raises(rvmon.TraceError, match=message):
+        spec.evaluate(path, columns={"x": column})
+
+
+def test_an_element_of_an_array_is_read(tmp_path):
+    """One behind its end is unknown."""
+    path, _ = written(tmp_path, "a.bag")
+    spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x > 1.5\n")
+    for place, verdict in enumerate("FPI"):
+        report = spec.evaluate(path, columns={"x": f"/base/scan.ranges[{place}]"})
+        assert report.verdicts["R"] == verdict
+
+
+def test_a_recording_without_messages_is_told(tmp_path, spec):
+    """There is nothing to judge."""
+    write_ros1(tmp_path / "a.bag", [])
+    with pytest.raises(rvmon.TraceError, match="there is no topic"):
+        spec.evaluate(tmp_path / "a.bag")
+    with pytest.raises(rvmon.TraceError, match="holds no topic that is read"):
+        spec.evaluate(tmp_path / "a.bag", allow_missing=True)
+
+
+def test_options_of_columns_are_none_of_messages(tmp_path, spec):
+    """And the other way round."""
+    path, _ = written(tmp_path, "a.bag")
+    with pytest.raises(rvmon.TraceError, match="use --clock"):
+        spec.evaluate(path, time="t")
+    (tmp_path / "a.csv").write_text("t,speed,go\n0,1,0\n")
+    with pytest.raises(rvmon.TraceError, match="use --map"):
+        spec.evaluate(tmp_path / "a.csv", clock="header")
+    with pytest.raises(UnknownNameError, match="there is log and header"):
+        spec.evaluate(path, clock="wall")
+
+
+def test_json_that_does_not_fit_is_told_with_its_message(tmp_path, spec):
+    """A file of JSON may say something else in each message."""
+    sent = [("/speed", START, {"data": 1.0}), ("/speed", START + 1, {"data": "fast"})]
+    path = write_json_mcap(tmp_path / "a.mcap", sent)
+    with pytest.raises(rvmon.TraceError, match=r"message 2 of /speed: `speed`: `fast` is not"):
+        spec.evaluate(path, allow_missing=True)

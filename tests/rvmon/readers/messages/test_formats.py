@@ -1,0 +1,118 @@
+"""The same data in every format of messages, written by the libraries of that format."""
+
+import gc
+import random
+
+import pytest
+from tests.tools.bags import (
+    START,
+    sent_at_random,
+    write_csv,
+    write_json_mcap,
+    write_protobuf_mcap,
+    write_ros1,
+    write_ros2,
+)
+
+import rvmon
+
+pytest.importorskip("rosbags")
+pytest.importorskip("mcap_protobuf")
+
+SPEC = """
+spec shop
+signal speed : real
+signal ready : bool
+signal count : int
+signal mode  : {idle, busy}
+event  go
+event  pick(id: int, x: real)
+
+requirement R1
+  upon go
+  then within 20 ms ready
+requirement R2
+  always (mode == busy -> speed < 1.2)
+requirement R3
+  upon pick
+  then within 50 ms (ready and count > n)
+  for each n in pick.id
+"""
+HEADER = ["speed", "ready", "count", "mode", "go", "pick.id", "pick.x"]
+
+FORMATS = {
+    "a.bag": write_ros1,
+    "sqlite3": lambda path, sent: write_ros2(path, sent, "sqlite3"),
+    "mcap": lambda path, sent: write_ros2(path, sent, "mcap"),
+    "b.mcap": write_json_mcap,
+    "c.mcap": write_protobuf_mcap,
+}
+"""By the name of a recording."""
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_the_same_data_gives_the_records_that_csv_gives(tmp_path, name):
+    """Samples, attempts, decision instants and health, whatever holds the messages."""
+    spec = rvmon.loads(SPEC)
+    verdicts = set()
+    for seed in range(8):
+        sent = sent_at_random(random.Random(seed), 120)
+        table = write_csv(tmp_path / f"{seed}.csv", sent, HEADER)
+        folder = tmp_path / str(seed)
+        folder.mkdir()
+        path = FORMATS[name](folder / name, sent)
+        expected, found = spec.evaluate(table), spec.evaluate(path)
+        assert found.attempts == expected.attempts
+        assert (found.verdicts, found.end) == (expected.verdicts, expected.end)
+        assert repr(found.health) == repr(expected.health)
+        assert repr(samples(spec, path)) == repr(samples(spec, table))
+        verdicts |= {str(attempt.verdict) for attempt in found.attempts}
+    assert {"P", "F"} <= verdicts
+    gc.collect()  # a file that was left open would be told
+
+
+def samples(spec, path):
+    """What a recording says, instant by instant."""
+    return [(sample.t, sorted(sample.values.items())) for sample in spec.recording(path)]
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_deadline_runs_out_while_other_topics_go_on(tmp_path, name):
+    """A recording ends with its last message, also of a topic that nothing is declared for."""
+    sent = [("/go", START, {}), ("/speed", START + 10**9, {"data": 1.0})]
+    path = FORMATS[name](tmp_path / name, sent)
+    spec = rvmon.loads("spec s\nevent go\nrequirement R\n upon go then for 500 ms go")
+    assert spec.evaluate(path).verdicts["R"] == "F"
+    spec = rvmon.loads("spec s\nevent go\nrequirement R\n upon go then within 500 ms (not go)")
+    assert spec.evaluate(path).verdicts["R"] == "P"
+    assert spec.evaluate(path).end == START + 10**9
+
+
+def test_an_older_bag_of_ros_2_needs_no_definitions_of_what_ros_brings_along(tmp_path):
+    """Bags of sqlite3 have their definitions from version 7 on."""
+    sent = [("/speed", START, {"data": 1.0}), ("/pick", START + 1, {"id": 1})]
+    path = write_ros2(tmp_path / "old", sent, "sqlite3", 8)
+    import apsw
+
+    database = apsw.Connection(str(path / "old.db3"))
+    database.execute("UPDATE schema SET schema_version = 3")
+    database.close()
+    spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n  always speed < 2\n")
+    assert spec.evaluate(path).verdicts["R"] == "P"
+    assert spec.evaluate(path / "old.db3").verdicts["R"] == "P"
+    spec = rvmon.loads("spec s\nevent pick\nrequirement R\n  upon pick then for 1 ms pick\n")
+    with pytest.raises(rvmon.TraceError, match=r"/pick \(shop_msgs/msg/Pick\).*`definitions`"):
+        spec.evaluate(path)
+
+
+def test_a_file_of_json_without_schemas_or_index_is_read(tmp_path):
+    """Its first messages say what there is."""
+    from mcap.writer import IndexType
+
+    sent = [("/speed", START + t * 10**7, {"data": t / 10}) for t in range(9)]
+    for options in ({}, {"index_types": IndexType.NONE, "use_summary_offsets": False}):
+        path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False, **options)
+        spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n  always speed < 0.75\n")
+        report = spec.evaluate(path)
+        assert report.verdicts["R"] == "F"
+        assert report.end == START + 8 * 10**7

@@ -1,0 +1,218 @@
+"""Recordings of messages as the libraries of ROS, MCAP and Protocol Buffers write them."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+Content = Mapping[str, Any]
+Sent = tuple[str, int, Content]
+"""Topic, nanoseconds, fields by name."""
+
+START = 1_700_000_000_000_000_000
+"""The first instant of a recording, as bags have them: nanoseconds since 1970."""
+
+TYPES = {
+    "/speed": "std_msgs/msg/Float64",
+    "/ready": "std_msgs/msg/Bool",
+    "/count": "std_msgs/msg/Int32",
+    "/mode": "std_msgs/msg/String",
+    "/go": "std_msgs/msg/Empty",
+    "/pick": "shop_msgs/msg/Pick",
+    "/base/scan": "shop_msgs/msg/Scan",
+    "/base/odom": "nav_msgs/msg/Odometry",
+    "/odom": "nav_msgs/msg/Odometry",
+    "/range": "sensor_msgs/msg/Range",
+    "/stop": "std_msgs/msg/Bool",
+}
+"""Of topics, what they hold."""
+
+DEFINITIONS = {
+    "shop_msgs/msg/Pick": "int32 id\nfloat64 x\n",
+    "shop_msgs/msg/Scan": "std_msgs/Header header\nfloat32[] ranges\nuint8 state\n",
+}
+"""Of messages that ROS does not bring along."""
+
+
+def sent_at_random(rng: Any, count: int) -> list[Sent]:
+    """Messages of the first six topics; some at one instant."""
+    sent: list[Sent] = []
+    t = START
+    for _ in range(count):
+        t += rng.choice([0, 1, 1_000_003, 10_000_000])
+        topic = rng.choice([*TYPES][:6])
+        content: dict[str, Content] = {
+            "/speed": {"data": rng.choice([0.0, 1.5, 0.1 + rng.random(), float("nan")])},
+            "/ready": {"data": rng.random() < 0.5},
+            "/count": {"data": rng.randrange(-3, 9)},
+            "/mode": {"data": rng.choice(["idle", "busy"])},
+            "/go": {},
+            "/pick": {"id": rng.randrange(5), "x": rng.random()},
+        }
+        sent.append((topic, t, content[topic]))
+    return sent
+
+
+def drive(*, stops_in_s: float) -> list[Sent]:
+    """A drive of the base of `examples/base.rv`, which is asked to stop after two seconds."""
+    sent: list[Sent] = []
+    for tick in range(500):
+        t = START + tick * 10_000_000
+        speed = 0.0 if tick >= 200 + 100 * stops_in_s else 0.25
+        stamp = {"sec": t // 10**9, "nanosec": t % 10**9}
+        twist = {"twist": {"linear": {"x": speed}}}
+        sent.append(("/odom", t, {"header": {"stamp": stamp}, "twist": twist}))
+        if tick % 5 == 0:
+            near = 0.25 if 300 <= tick < 350 else 1.5
+            sent.append(("/range", t, {"header": {"stamp": stamp}, "range": near}))
+            sent.append(("/stop", t, {"data": tick >= 200}))
+    return sent
+
+
+def write_csv(path: Path, sent: Sequence[Sent], header: Sequence[str]) -> Path:
+    """The same as rows, of which each holds a message."""
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, ["t_ns", *header])
+        writer.writeheader()
+        for topic, t, content in sent:
+            name = topic.strip("/").replace("/", ".")
+            cells: dict[str, Any] = {name: "1"} if not content else {}
+            for field, value in content.items():
+                cells[name if field == "data" else f"{name}.{field}"] = value
+            writer.writerow({"t_ns": t, **cells})
+    return path
+
+
+def write_ros1(path: Path, sent: Sequence[Sent]) -> Path:
+    """A bag of ROS 1."""
+    from rosbags.rosbag1 import Writer
+    from rosbags.typesys import Stores
+
+    store = _store(Stores.ROS1_NOETIC)
+    return _write_ros(path, sent, Writer(path), store, store.serialize_ros1)
+
+
+def write_ros2(path: Path, sent: Sequence[Sent], plugin: str, version: Any = 9) -> Path:
+    """A bag of ROS 2, a folder; the plugin is `sqlite3` or `mcap`."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores
+
+    store = _store(Stores.LATEST)
+    writer = Writer(path, version=version, storage_plugin=StoragePlugin[plugin.upper()])
+    return _write_ros(path, sent, writer, store, store.serialize_cdr)
+
+
+def _store(which: Any) -> Any:
+    from rosbags.typesys import get_types_from_msg, get_typestore
+
+    store = get_typestore(which)
+    for name, text in DEFINITIONS.items():
+        store.register(get_types_from_msg(text, name))
+    return store
+
+
+def _write_ros(
+    path: Path, sent: Sequence[Sent], writer: Any, store: Any, pack: Callable[[Any, str], bytes]
+) -> Path:
+    with writer:
+        connections = {
+            topic: writer.add_connection(topic, TYPES[topic], typestore=store)
+            for topic in dict.fromkeys(topic for topic, _, _ in sent)
+        }
+        for topic, t, content in sent:
+            message = _message(store, TYPES[topic], content)
+            writer.write(connections[topic], t, pack(message, TYPES[topic]))
+    return path
+
+
+def _message(store: Any, name: str, content: Content) -> Any:
+    """A message of which fields that are not given are zero."""
+    import numpy as np
+    from rosbags.interfaces import Nodetype
+
+    values: dict[str, Any] = {}
+    for field, (node, inner) in store.fielddefs[name][1]:
+        given = content.get(field)
+        if node is Nodetype.NAME:
+            values[field] = _message(store, inner, given or {})
+        elif node is Nodetype.BASE:
+            zero = {"string": "", "bool": False}.get(inner[0], 0)
+            values[field] = zero if given is None else given
+        else:
+            kind = inner[0][1][0]
+            values[field] = np.array(given or [0] * inner[1], kind)
+    if name == "std_msgs/msg/Empty":
+        values = dict.fromkeys(store.types[name].__dataclass_fields__.keys() - {"__msgtype__"}, 0)
+    return store.types[name](**values)
+
+
+def write_json_mcap(
+    path: Path, sent: Sequence[Sent], *, schemas: bool = True, **options: Any
+) -> Path:
+    """An MCAP file of JSON."""
+    from mcap.writer import Writer
+
+    kinds = {bool: "boolean", int: "integer", float: "number", str: "string"}
+    with path.open("wb") as file:
+        writer: Any = Writer(file, **options)
+        writer.start()
+        channels = {}
+        for topic, t, content in sent:
+            if topic not in channels:
+                described = {
+                    "type": "object",
+                    "properties": {
+                        name: {"type": kinds[type(value)]}
+                        for name, value in content.items()
+                        if type(value) in kinds
+                    },
+                }
+                schema = 0
+                if schemas:
+                    data = json.dumps(described).encode()
+                    schema = writer.register_schema(topic, "jsonschema", data)
+                channels[topic] = writer.register_channel(topic, "json", schema)
+            writer.add_message(channels[topic], t, json.dumps(content).encode(), t)
+        writer.finish()
+    return path
+
+
+def write_protobuf_mcap(path: Path, sent: Sequence[Sent]) -> Path:
+    """An MCAP file of Protocol Buffers."""
+    from mcap_protobuf.writer import Writer
+
+    made = _protobuf_types()
+    with path.open("wb") as file, Writer(file) as writer:
+        for topic, t, content in sent:
+            writer.write_message(topic, made[topic](**content), t, t)
+    return path
+
+
+def _protobuf_types() -> dict[str, Any]:
+    from google.protobuf.descriptor_pb2 import FieldDescriptorProto, FileDescriptorProto
+    from google.protobuf.descriptor_pool import DescriptorPool
+    from google.protobuf.message_factory import GetMessageClass
+
+    kinds = FieldDescriptorProto
+    fields = {
+        "/speed": {"data": kinds.TYPE_DOUBLE},
+        "/ready": {"data": kinds.TYPE_BOOL},
+        "/count": {"data": kinds.TYPE_INT32},
+        "/mode": {"data": kinds.TYPE_STRING},
+        "/go": {},
+        "/pick": {"id": kinds.TYPE_INT32, "x": kinds.TYPE_DOUBLE},
+    }
+    file = FileDescriptorProto(name="shop.proto", package="shop", syntax="proto3")
+    for topic, own in fields.items():
+        message = file.message_type.add(name=topic[1:].title())
+        for number, (name, kind) in enumerate(own.items(), 1):
+            message.field.add(name=name, number=number, type=kind, label=kinds.LABEL_OPTIONAL)
+    pool = DescriptorPool()
+    pool.Add(file)
+    return {
+        topic: GetMessageClass(pool.FindMessageTypeByName(f"shop.{topic[1:].title()}"))
+        for topic in fields
+    }
