@@ -177,7 +177,12 @@ def _judged(
     if arguments.out is None or len(traces) == 1:  # there is nothing to go on with
         found = list(judge_all(spec, traces, options, jobs))
     else:
-        begun = unfinished(arguments.out, traces, spec, options, resume=arguments.resume)
+        reading = reading_words(arguments)
+        if arguments.binding is not None:
+            reading.append(Path(arguments.binding).read_text("utf-8"))
+        begun = unfinished(
+            arguments.out, traces, spec, options, reading=reading, resume=arguments.resume
+        )
         left = [trace for trace in traces if trace not in begun.known]
         if begun.known:
             warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")
