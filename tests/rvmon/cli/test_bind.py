@@ -128,6 +128,7 @@ def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
     assert main(["run", "a.rv", "a.parquet", "--strict"]) == 0
 
 
+@pytest.mark.process
 def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, capsys):
     """Also shared among processes."""
     runs = tmp_path / "runs"
@@ -145,6 +146,7 @@ def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, 
         assert all(f"{number}.bag" in told.out for number in (0, 1, 2, 4, 5))
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, capsys):
     """Unless a bag, or the binding, is another one since."""
     runs = tmp_path / "runs"
