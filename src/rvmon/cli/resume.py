@@ -19,6 +19,7 @@ from rvmon.cli.judging import Judged
 from rvmon.coverage.hits import Hit
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
+from rvmon.readers.messages.forms import is_bag_folder
 from rvmon.session import Spec
 from rvmon.spec.checked.plain_data import to_plain
 from rvmon.verdict.report import Report
@@ -131,12 +132,13 @@ def _judged(one: _Entry) -> Judged:
 
 
 def _stamp(trace: str) -> tuple[int, int] | None:
-    """What tells the file of a recording from others; `None` if it is none."""
+    """What tells the files of a recording from others; `None` if there are none."""
     try:
-        found = os.stat(trace)
+        files = list(os.scandir(trace)) if is_bag_folder(trace) else [Path(trace)]
+        found = [file.stat() for file in files]
     except (OSError, ValueError):
         return None
-    return found.st_size, found.st_mtime_ns
+    return sum(one.st_size for one in found), max(one.st_mtime_ns for one in found)
 
 
 def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
