@@ -49,7 +49,7 @@ def program_build(plan: Plan) -> Build:
     made = c_files(plan)
     name = f"{made.prefix}_program.c"
     texts = {**made.texts, name: program_source(plan)}
-    return Build(texts, [f"{made.prefix}.c", name], ".program", ["-O3"])
+    return Build(texts, [f"{made.prefix}.c", *made.units, name], ".program", ["-O3"])
 
 
 def program_source(plan: Plan) -> str:
@@ -57,7 +57,6 @@ def program_source(plan: Plan) -> str:
     names = Names(plan)
     places = {
         "ENTRIES": "\n".join(_entries(plan, names)),
-        "WIDEN": template("widen.c.in"),
         "STEADY": str(int(_is_steady(plan))),
         "LAW": str(LAW),
         "SPEC": comment(plan.spec.name),
@@ -81,7 +80,7 @@ def _is_steady(plan: Plan) -> bool:
 def _entries(plan: Plan, names: Names) -> Iterator[str]:
     spec = plan.spec
     limits = whole_limits(plan)
-    read = {name for rule in plan.rules for name in names_of_requirement(rule.requirement)}
+    read = {name for rule in plan.asked for name in names_of_requirement(rule.requirement)}
     things: list[tuple[str, int, int, Type | None]] = [
         (name, names.signal(name), -1, signal.type) for name, signal in spec.signals.items()
     ]
@@ -114,7 +113,7 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
     yield f"#define ENTRY_COUNT {max(len(things), 1)}"
     yield ""
     # As JSON, which the program prints as it is.
-    ids = [shown_json(encoded(rule.requirement.id)) for rule in plan.rules]
+    ids = [shown_json(encoded(rule.requirement.id)) for rule in plan.asked]
     yield f"static const char *const requirements[] = {{{', '.join(map(c_string, ids))}}};"
 
 
