@@ -68,7 +68,7 @@ class CapturedValues:
             case Kind.LABEL:
                 return self._labels[int(value)]
             case _:
-                return value
+                return float(value)
 
 
 def _type(plan: Plan, value: Numeric) -> Type:

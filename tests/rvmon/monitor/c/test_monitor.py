@@ -375,7 +375,7 @@ def test_captured_values_are_told():
         "  let h = x / 2\n"
     ).monitor(engine="c")
     monitor.step(0.0, {"x": 3, "e": ({"k": 2}, {"k": 1})})
-    assert [one.captured["i"] for one in monitor.open()] == [2, 1]
+    assert [one.captured["i"] for one in monitor.open] == [2, 1]
     passed = monitor.step(0.5, {"x": 4, "mode": "green"})
     assert [(one.name, one.captured["i"]) for one in passed] == [("R1#1", 2), ("R1#2", 1)]
     assert passed[0].captured == {"i": 2, "v": 3, "m": None, "h": 1.5}
