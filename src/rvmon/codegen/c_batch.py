@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.codegen.c_build import NATIVE, Build, loaded
+from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import too_large, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
@@ -24,21 +25,31 @@ if TYPE_CHECKING:
 NOTHING, NO, UNKNOWN, YES = range(4)
 """What a row says of a name."""
 
+SAMPLE, ADVANCE, MORE = range(3)
+"""What a row is."""
+
 WHERE_IT_ENDS = -(1 << 63)
 
-RECORD = np.dtype(
-    [
-        ("requirement", np.int32),
-        ("number", np.uint32),
-        ("triggered", np.int64),
-        ("decided", np.int64),
-        ("verdict", np.uint8),
-        ("decision", np.uint8),
-        ("in_doubt", np.uint8),
-    ],
-    align=True,
-)
-"""The record of an attempt; verdict and decision count in `rvmon.codegen.c_tables`."""
+_RECORD = [
+    ("requirement", np.int32),
+    ("number", np.uint32),
+    ("triggered", np.int64),
+    ("decided", np.int64),
+    ("verdict", np.uint8),
+    ("decision", np.uint8),
+    ("in_doubt", np.uint8),
+]
+
+
+def record_type(plan: Plan) -> np.dtype[Any]:
+    """The record of an attempt; verdict and decision count in `rvmon.codegen.c_tables`.
+
+    Args:
+        plan: of the monitor.
+    """
+    count = CapturedValues(plan).count
+    captured = [("captured", np.float64, (count,))] if count else []
+    return np.dtype([*_RECORD, *captured], align=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +72,7 @@ class RunRecords:
     """What a compiled monitor said of a recording.
 
     Attributes:
-        records: array of `RECORD`, in the order in which they were made.
+        records: array of `record_type`, in the order in which they were made.
         ordered: whether that is the order of reports.
         counts: int64[requirements, 4], how many attempts failed, passed, and stayed inconclusive,
             and 1 if the trigger was ever true or false.
@@ -102,7 +113,8 @@ def batch_build(plan: Plan, *, optimised: bool = True) -> Build:
     """
     made = c_files(plan)
     speed = ("-O3", "-fno-math-errno", NATIVE) if optimised else ("-O0",)
-    return Build(made.texts, [f"{made.prefix}_batch.c"], ".so", [*speed, "-shared", "-fPIC"])
+    sources = [f"{made.prefix}_batch.c", *made.units]
+    return Build(made.texts, sources, ".so", [*speed, "-shared", "-fPIC"])
 
 
 class BatchLibrary:
@@ -121,6 +133,7 @@ class BatchLibrary:
         self.names = Names(plan)
         self.plan = plan
         self.limits = whole_limits(plan)
+        self.record = record_type(plan)
         library = loaded(batch_build(plan, optimised=optimised), _library)
         address, number = ctypes.c_void_p, ctypes.c_int64
 
@@ -138,7 +151,7 @@ class BatchLibrary:
         self.free = function("free", None, address)
         rows = ctypes.c_int64()
         sizes = function("sizes", number, address)
-        if (sizes(ctypes.byref(rows)), rows.value) != (RECORD.itemsize, ctypes.sizeof(_In)):
+        if (sizes(ctypes.byref(rows)), rows.value) != (self.record.itemsize, ctypes.sizeof(_In)):
             raise RvmonError("the C compiler lays out records otherwise than Python does")
         self.value_types = [
             np.dtype(bool if value_type(plan, name) == "uint8_t" else np.float64)
@@ -175,14 +188,15 @@ class BatchRun:
         self,
         times: NDArray[np.int64],
         columns: Mapping[str, Column],
-        advances: NDArray[np.uint8] | None = None,
+        kinds: NDArray[np.uint8] | None = None,
     ) -> int:
         """Judge some rows.
 
         Args:
-            times: int64[n] ticks, strictly increasing.
+            times: int64[n] ticks, strictly increasing but for rows of further payloads.
             columns: by signal, event, and `event.field`; what is left out does not come.
-            advances: uint8[n], 1 where a row is no sample but says how far time has come.
+            kinds: uint8[n], what each row is: `ADVANCE` says how far time has come, `MORE` holds
+                further payloads of the sample that comes next; `None`: all are samples.
 
         Returns:
             How many rows were taken: fewer than given if one is out of order.
@@ -194,7 +208,7 @@ class BatchRun:
         plan = self._library.plan
         for name, limit in self._library.limits.items():
             _expect_exact(name, columns.get(name, Column()).values, limit, times)
-        keep: list[Any] = [times := np.ascontiguousarray(times, np.int64), advances]
+        keep: list[Any] = [times := np.ascontiguousarray(times, np.int64), kinds]
         none = Column()
         values = [
             _laid(columns.get(name, none).values, kind)
@@ -203,7 +217,7 @@ class BatchRun:
         given = _In(
             n=len(times),
             t=times.ctypes.data,
-            advance=None if advances is None else advances.ctypes.data,
+            advance=None if kinds is None else kinds.ctypes.data,
             signal=_pointers([columns.get(name, none).states for name in plan.signals], keep),
             value=_pointers(values, keep),
             event=_pointers([columns.get(name, none).states for name in plan.events], keep),
@@ -221,12 +235,12 @@ class BatchRun:
         """
         end = self._library.close(self._batch, WHERE_IT_ENDS if until is None else until)
         self._take_records()
-        counts = np.zeros((len(self._library.plan.rules), 4), np.int64)
+        counts = np.zeros((len(self._library.plan.asked), 4), np.int64)
         ordered = True
         for index, own in enumerate(counts):
             ordered = self._library.counts(self._batch, index, own.ctypes.data)
         return RunRecords(
-            np.frombuffer(b"".join(self._records), RECORD),
+            np.frombuffer(b"".join(self._records), self._library.record),
             ordered,
             counts,
             None if end == WHERE_IT_ENDS else end,
@@ -240,7 +254,7 @@ class BatchRun:
         start = ctypes.c_void_p()
         count = self._library.records(self._batch, ctypes.byref(start))
         if count:
-            self._records.append(ctypes.string_at(start, count * RECORD.itemsize))
+            self._records.append(ctypes.string_at(start, count * self._library.record.itemsize))
 
 
 def _expect_exact(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.codegen.c_batch import NO, UNKNOWN, YES, Column
-from rvmon.codegen.c_exact import several_payloads, too_large
+from rvmon.codegen.c_batch import ADVANCE, MORE, NO, SAMPLE, UNKNOWN, YES, Column
+from rvmon.codegen.c_exact import too_large
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_samples import value_type
 from rvmon.trace.sample import Sample, Value
@@ -17,20 +18,62 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-def columns_of_samples(
-    samples: Sequence[Sample], names: Names, limits: Mapping[str, int]
-) -> dict[str, Column]:
-    """One row per sample.
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Samples as `rvmon.codegen.c_batch.BatchRun.feed` takes them.
+
+    Attributes:
+        times: int64[n] ticks.
+        columns: by signal, event, and `event.field`.
+        kinds: uint8[n], of each row.
+    """
+
+    times: NDArray[np.int64]
+    columns: Mapping[str, Column]
+    kinds: NDArray[np.uint8]
+
+
+def rows_of_samples(
+    samples: Sequence[Sample | int], names: Names, limits: Mapping[str, int]
+) -> Rows:
+    """One row per sample, and one before it for each further payload of an event in it.
 
     Args:
-        samples: with names and values that the specification can take.
+        samples: with names and values that the specification can take; an instant instead says how
+            far time has come.
         names: of the compiled plan.
         limits: of whole numbers, by signal and `event.field`.
 
     Raises:
-        TraceError: an instant has two payloads of one event, or a whole number is too large.
+        TraceError: a whole number is too large.
     """
-    return _Columns(names, limits, len(samples)).of(samples)
+    rows: list[tuple[int, int, Mapping[str, Value]]] = []
+    for sample in samples:
+        if isinstance(sample, int):
+            rows.append((sample, ADVANCE, {}))
+        else:
+            *more, last = _payloads_apart(sample.values)
+            rows += [(sample.t, MORE, values) for values in more]
+            rows.append((sample.t, SAMPLE, last))
+    columns = _Columns(names, limits, len(rows)).of([Sample(t, values) for t, _, values in rows])
+    return Rows(
+        np.array([t for t, _, _ in rows], np.int64),
+        columns,
+        np.array([kind for _, kind, _ in rows], np.uint8),
+    )
+
+
+def _payloads_apart(values: Mapping[str, Value]) -> list[Mapping[str, Value]]:
+    """What stands in each row of a sample: payloads but the last ones, then the rest."""
+    several = {
+        name: value for name, value in values.items() if isinstance(value, tuple) and len(value) > 1
+    }
+    count = max(map(len, several.values()), default=1)
+    rows: list[Mapping[str, Value]] = [
+        {name: value[n - count] for name, value in several.items() if count - n <= len(value)}
+        for n in range(count - 1)
+    ]
+    return [*rows, {**values, **{name: value[-1] for name, value in several.items()}}]
 
 
 class _Columns:
@@ -65,8 +108,6 @@ class _Columns:
 
     def set_event(self, event: str, row: int, value: Value, t: int) -> None:
         if isinstance(value, tuple):
-            if len(value) > 1:
-                raise several_payloads(event, len(value), t)
             value = value[0] if value else False
         self.states[event][row] = UNKNOWN if value is None else NO if value is False else YES
         if isinstance(value, Mapping):

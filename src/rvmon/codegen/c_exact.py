@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import assert_never
 
 from rvmon.errors import TraceError
@@ -21,6 +22,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
+from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 
 EXACT = 1 << 53
@@ -37,7 +39,7 @@ def whole_limits(plan: Plan) -> Mapping[str, int]:
     limits = dict.fromkeys(plan.signals, EXACT)
     for event in plan.events:
         limits |= {f"{event}.{field}": EXACT for field in plan.spec.events[event].fields}
-    for expression in _compared(plan):
+    for expression in (one for part in (plan, *plan.units) for one in _compared(part)):
         limit = next(limit for limit in _LIMITS if limit == 0 or _stays_exact(expression, limit))
         for name in map(_input, operands(expression)):
             if name is not None:
@@ -53,19 +55,40 @@ def too_large(name: str, value: int, limit: int, t: int) -> TraceError:
     )
 
 
-def several_payloads(event: str, count: int, t: int) -> TraceError:
-    """The error that an instant has more payloads of an event than compiled monitors take."""
-    return TraceError(
-        f"sample at {format_ticks(t)}: {count} payloads of `{event}`: compiled monitors take one "
-        "at an instant"
-    )
-
-
 def _compared(plan: Plan) -> Iterator[Numeric]:
+    """What is compared or captured, captured values spelt out."""
+    captured: dict[str, Numeric] = {}
+    for rule in plan.rules:
+        captured |= spelt_out(rule.requirement)
+    yield from captured.values()
     for state in plan.graph.nodes:
         if isinstance(state.leaf, Compare):
-            yield state.leaf.left
-            yield state.leaf.right
+            yield _spelt_out(state.leaf.left, captured)
+            yield _spelt_out(state.leaf.right, captured)
+
+
+def spelt_out(requirement: Requirement) -> Mapping[str, Numeric]:
+    """By name, the values that a requirement captures, in their order, by what is read."""
+    each = requirement.for_each
+    captured: dict[str, Numeric] = {} if each is None else {each.name: each.value}
+    for capture in requirement.captures:
+        captured[capture.name] = _spelt_out(capture.value, captured)
+    return captured
+
+
+def is_whole(expression: Numeric) -> bool:
+    """Whether the result is a whole number if all that is read are."""
+    return _size(expression, 1) is not None
+
+
+def _spelt_out(expression: Numeric, captured: Mapping[str, Numeric]) -> Numeric:
+    match expression:
+        case Captured(name=name):
+            return captured[name]
+        case Arithmetic(args=args):
+            return replace(expression, args=tuple(_spelt_out(arg, captured) for arg in args))
+        case _:
+            return expression
 
 
 def _input(part: Numeric) -> str | None:
@@ -107,7 +130,7 @@ def _size(expression: Numeric, limit: int) -> int | None:
         case Arithmetic(op=op, args=args):
             return _size_of_result(op, [_size(arg, limit) for arg in args])
         case Captured():
-            raise ValueError("captured values are not generated")
+            raise AssertionError("it stands for what it captures")
         case _:
             assert_never(expression)
 

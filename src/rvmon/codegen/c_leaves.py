@@ -50,7 +50,9 @@ def uses_library(plan: Plan) -> bool:
     """Whether some expression needs `<math.h>`."""
     leaves = (state.leaf for state in plan.graph.nodes)
     compared = (leaf for leaf in leaves if isinstance(leaf, Compare))
-    return any(_of_mathematics(side) for leaf in compared for side in (leaf.left, leaf.right))
+    sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
+    sides += [capture.value for rule in plan.rules for capture in rule.requirement.captures]
+    return any(map(_of_mathematics, sides))
 
 
 def _of_mathematics(expression: Numeric) -> bool:
@@ -97,8 +99,8 @@ def node_value(names: Names, place: int, state: State, operands: Sequence[str]) 
             return f"truth_of(true, {operands[0]} == IS_TRUE)"
         case StateOp.DOUBT:
             timer, slot = names.timers[place], names.memory[place]
-            pulse = str(state.pulse).lower()
-            return f"doubt(m, {timer}, {slot}, t, m->truth[{place}], {operands[0]}, {pulse})"
+            how = ", ".join(str(flag).lower() for flag in (state.pulse, state.every))
+            return f"doubt(m, {timer}, {slot}, t, m->truth[{place}], {operands[0]}, {how})"
         case StateOp.PREVIOUS:
             return f"previous(m, {names.timers[place]}, {names.memory[place]}, t, {operands[0]})"
         case StateOp.SINCE:
@@ -129,7 +131,7 @@ def leaf_value(names: Names, leaf: Leaf, unborn: int = UNKNOWN) -> str:
         case Constant(value=value):
             return TRUTHS[TRUE if value else FALSE]
         case Lapsed():
-            raise ValueError("captured values are not generated")
+            return "truth_of(true, t >= m->cut)"
         case Lost():
             return TRUTHS[UNKNOWN]
         case Unborn(signals=signals):
@@ -178,7 +180,7 @@ def _probe(names: Names, probe: Probe, name: str) -> str:
 
 def _comparison(names: Names, leaf: Compare) -> str:
     """A call: each side is worked out once."""
-    left, right = _number(names, leaf.left), _number(names, leaf.right)
+    left, right = number_value(names, leaf.left), number_value(names, leaf.right)
     return f"{leaf.op.c}({left}, {right})"
 
 
@@ -214,20 +216,21 @@ def _over_occurrences(
     yield "return found;"
 
 
-def _number(names: Names, expression: Numeric) -> str:
+def number_value(names: Names, expression: Numeric) -> str:
+    """The value of a number as an expression."""
     match expression:
         case Literal(value=value):
             return real(names.label(value) if isinstance(value, str) else value)
         case SignalValue(name=name):
             return names.value(name)
         case FieldValue(event=event, field=field):
-            return f"m->payload[p{names.event(event)}][{names.field(event, field)}]"
+            return names.payload(event, field)
         case UpdateValue(function=function, name=name):
             return _update(names, function, name)
         case Arithmetic(op=op, args=args):
-            return _arithmetic(op, [_number(names, arg) for arg in args])
-        case Captured():
-            raise ValueError("captured values are not generated")
+            return _arithmetic(op, [number_value(names, arg) for arg in args])
+        case Captured(name=name):
+            return names.captured(name)
         case _:
             assert_never(expression)
 

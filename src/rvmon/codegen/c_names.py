@@ -51,11 +51,24 @@ class Names:
     Args:
         plan: what is generated.
         value: how the value of a signal is written, by its number.
+        captured: how a captured value is.
+        payload: how a field of a payload is, by the numbers of the event and of the field.
+        prefix: what all identifiers start with; default: made of the specification's name.
     """
 
-    def __init__(self, plan: Plan, value: str = "m->value[{}]") -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        value: str = "m->value[{}]",
+        captured: str = "m->captured[{}]",
+        payload: str = "m->payload[p{}][{}]",
+        prefix: str = "",
+    ) -> None:
         self.plan = plan
         self._value = value
+        self._captured = captured
+        self._payload = payload
+        self._prefix = prefix
         self._signals = {name: number for number, name in enumerate(plan.signals)}
         self._events = {name: number for number, name in enumerate(plan.events)}
         self.fields = {
@@ -69,6 +82,8 @@ class Names:
     @cached_property
     def prefix(self) -> str:
         """What all identifiers start with."""
+        if self._prefix:
+            return self._prefix
         made = re.sub(r"[^A-Za-z0-9]+", "_", self.plan.spec.name).strip("_").lower()
         if made and made[0].isalpha() and made not in _TAKEN.split():
             return made
@@ -81,6 +96,15 @@ class Names:
     def value(self, name: str) -> str:
         """The value of a signal, as an expression."""
         return self._value.format(self._signals[name])
+
+    def captured(self, name: str) -> str:
+        """A captured value, as an expression."""
+        (rule,) = self.plan.rules
+        return self._captured.format(list(rule.captured).index(name))
+
+    def payload(self, event: str, field: str) -> str:
+        """The field of a payload, as an expression."""
+        return self._payload.format(self._events[event], self.fields[event, field])
 
     def event(self, name: str) -> int:
         """The number of an event."""

@@ -63,7 +63,8 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
         yield "{"
         yield "    uint32_t changed = 0;"
         for place in range(GROUP * group, min(GROUP * (group + 1), len(plan.graph.nodes))):
-            lines = [*_node(plan, names, place, momentary[place], guards)]
+            operands = [_operand(place, one, guards) for one in plan.graph.operands[place]]
+            lines = [*_node(plan, names, place, momentary[place], operands)]
             if place in stored:
                 lines.append(_storing(place, heard[group]))
             if place in guards:
@@ -94,6 +95,23 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
     yield "}"
 
 
+def varying_source(plan: Plan, names: Names, places: Iterable[int]) -> Iterator[str]:
+    """The function `vary`, which works out nodes that remember nothing, the others standing."""
+    momentary = momentary_counts(plan)
+    yield ""
+    yield "/* Work out anew what depends on captured values. */"
+    yield "static void vary(monitor *m, int64_t t)"
+    yield "{"
+    for place in sorted(places):
+        operands = [f"m->truth[{operand}]" for operand in plan.graph.operands[place]]
+        lines = [*_node(plan, names, place, momentary[place], operands)]
+        yield from (f"    {line}" for line in lines)
+        yield f"    m->truth[{place}] = n{place};"
+    yield "    (void)m;"
+    yield "    (void)t;"
+    yield "}"
+
+
 def _listed(rules: str, index: int, mask: int) -> str:
     """Add a rule to a set of rules if some node changed."""
     return f"{rules}[{index // 32}] |= (uint32_t){_any(mask)} << {index % 32}U;"
@@ -119,9 +137,10 @@ def _heard(plan: Plan) -> list[_Heard]:
         for state in rule.alphabet.propositions:
             place = graph.index[state]
             note(place, heard[group_of(place)].letters, index)
-        if rule.trigger is not None:
-            place = graph.index[rule.trigger]
-            note(place, heard[group_of(place)].triggers, index)
+        for named in (rule.trigger, rule.running):
+            if named is not None:
+                place = graph.index[named]
+                note(place, heard[group_of(place)].triggers, index)
     return heard
 
 
@@ -167,7 +186,7 @@ def guards_of(plan: Plan) -> dict[int, int]:
 
 def _asked(rule: PlannedRule) -> Iterator[State]:
     """The state formulas of a rule that matter also when its trigger was true or false."""
-    named = (rule.trigger, rule.again, rule.unborn)
+    named = (rule.trigger, rule.again, rule.unborn, rule.running, rule.blurs)
     yield from (state for state in named if state is not None)
     yield from rule.alphabet.propositions
 
@@ -177,13 +196,15 @@ def _guarded(
 ) -> Iterator[str]:
     """What works a node out, where that has to be.
 
-    A `DOUBT` has to be if its trigger is or was unknown, or may be hidden in this stretch.
+    A `DOUBT` has to be if its trigger is or was unknown, or may be hidden in this stretch; where no
+    trigger is sure, if there is one.
     """
     guard = guards[place]
     if guard == place:
         now = _operand(place, plan.graph.operands[place][0], guards)
         seen = f"m->seen[{names.memory[place]}]"
-        yield f"const bool doubt{place} = ({now} == IS_UNKNOWN) || ({seen} == IS_UNKNOWN)"
+        unsure = "!= IS_FALSE" if plan.graph.nodes[place].every else "== IS_UNKNOWN"
+        yield f"const bool doubt{place} = ({now} {unsure}) || ({seen} == IS_UNKNOWN)"
         yield f"                          || (m->truth[{place}] != IS_FALSE);"
     yield f"if ({'m->undetermined' if guard == UNDETERMINED else f'doubt{guard}'}) {{"
     yield from (f"    {line}" for line in lines)
@@ -199,12 +220,11 @@ def _operand(place: int, operand: int, guards: dict[int, int]) -> str:
 
 
 def _node(
-    plan: Plan, names: Names, place: int, momentary: int, guards: dict[int, int]
+    plan: Plan, names: Names, place: int, momentary: int, operands: list[str]
 ) -> Iterator[str]:
     state = plan.graph.nodes[place]
     text = f"node{place}(m, t)"
     if not node_statements(names, place, state):
-        operands = [_operand(place, operand, guards) for operand in plan.graph.operands[place]]
         text = node_value(names, place, state, operands)
     yield f"const uint8_t n{place} = {text};"
     if momentary:
@@ -223,6 +243,8 @@ def _storing(place: int, heard: _Heard) -> str:
 def _stored(plan: Plan) -> set[int]:
     """The nodes whose truth is read elsewhere than in their group."""
     graph = plan.graph
+    if any(rule.is_apart for rule in plan.rules):
+        return set(range(len(graph.nodes)))  # also by `varying_source`
     found = {graph.index[state] for rule in plan.rules for state in rule.states}
     found |= set(graph.reads)  # samples are compared with the leaves
     for place, parents in enumerate(graph.parents):

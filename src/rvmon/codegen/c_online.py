@@ -14,9 +14,11 @@ from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from itertools import accumulate
 from pathlib import Path
+from struct import unpack
 from typing import Any, Protocol
 
 from rvmon.codegen.c_build import NATIVE, Build, loaded
+from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
@@ -57,10 +59,22 @@ _SLOTS = (
 """The fields of an attempt that are set in C, in the order of the template's `SLOT_…`."""
 
 
-def _no_details(attempt: Attempt, _: None) -> Mapping[str, Any]:
-    """The fields of an attempt of which nothing more is known."""
-    bare = Attempt(attempt.requirement, 0, 0, None, attempt.verdict)
-    return {one.name: getattr(bare, one.name) for one in fields(Attempt) if one.name not in _SLOTS}
+class _Details:
+    """Gives attempts the fields that are not set in C: nothing, but for captured values."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._captured = CapturedValues(plan)
+        self._numbers = {rule.requirement.id: n for n, rule in enumerate(plan.asked)}
+
+    def __call__(self, attempt: Attempt, noted: bytes | None) -> Mapping[str, Any]:
+        bare = Attempt(attempt.requirement, 0, 0, None, attempt.verdict)
+        names = [one.name for one in fields(Attempt) if one.name not in _SLOTS]
+        found = {name: getattr(bare, name) for name in names}
+        if noted is not None:
+            values = unpack(f"{self._captured.count}d", noted)
+            number = self._numbers[attempt.requirement]
+            found["captured"] = self._captured.of(number, values)
+        return found
 
 
 class Core(Protocol):
@@ -82,7 +96,7 @@ class Core(Protocol):
         """End the run; gives the last instant, or `NOT_YET`."""
 
     def records(self) -> bytes:
-        """All records, each as `rvmon.codegen.c_batch.RECORD` has it."""
+        """All records, each as `rvmon.codegen.c_batch.record_type` has it."""
 
     def counts(self) -> list[tuple[int, int, int, int]]:
         """How many attempts of each requirement failed, passed, and stayed open.
@@ -155,10 +169,10 @@ class OnlineLibrary:
             (
                 Attempt,
                 tuple(getattr(Attempt, name) for name in _SLOTS),
-                tuple(rule.requirement.id for rule in plan.rules),
+                tuple(rule.requirement.id for rule in plan.asked),
                 VERDICTS,
                 DECISIONS,
-                _no_details,
+                _Details(plan),
             ),
         )
 
@@ -179,7 +193,9 @@ def online_build(plan: Plan, *, optimised: bool = True) -> Build:
     name = f"{made.prefix}_online.c"
     texts = {**made.texts, name: online_source(named), "python.txt": sys.version}
     flags = [*(FAST if optimised else ("-O0",)), *_SHARED]
-    return Build(texts, [name], EXTENSION_SUFFIXES[0], flags, sysconfig.get_path("include"))
+    return Build(
+        texts, [name, *made.units], EXTENSION_SUFFIXES[0], flags, sysconfig.get_path("include")
+    )
 
 
 def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
@@ -213,7 +229,6 @@ def online_source(plan: Plan) -> str:
     names = Names(plan)
     places = {  # the first ones hold others
         "HEAP": template("heap.c.in"),
-        "WIDEN": template("widen.c.in"),
         "KINDS": "\n".join(_kinds(plan, names)),
         "SPEC": comment(plan.spec.name),
         "PREFIX": names.prefix.upper(),

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rvmon.codegen.c_build import THREADS, Build
+from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import EXACT, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
 from rvmon.diagnostics.shown import shown_json
+from rvmon.plan.numbers import events_of
 from rvmon.plan.plan import Plan
+from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.reads import names_of_requirement
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
@@ -51,7 +54,8 @@ def program_build(plan: Plan) -> Build:
     made = c_files(plan)
     name = f"{made.prefix}_program.c"
     texts = {**made.texts, name: program_source(plan)}
-    return Build(texts, [f"{made.prefix}.c", name], ".program", ["-O3", THREADS])
+    units = [f"{made.prefix}.c", *made.units, name]
+    return Build(texts, units, ".program", ["-O3", THREADS])
 
 
 def program_source(plan: Plan) -> str:
@@ -59,7 +63,6 @@ def program_source(plan: Plan) -> str:
     names = Names(plan)
     places = {
         "ENTRIES": "\n".join(_entries(plan, names)),
-        "WIDEN": template("widen.c.in"),
         "STEADY": str(int(_is_steady(plan))),
         "LAW": str(LAW),
         "SPEC": comment(plan.spec.name),
@@ -83,7 +86,7 @@ def _is_steady(plan: Plan) -> bool:
 def _entries(plan: Plan, names: Names) -> Iterator[str]:
     spec = plan.spec
     limits = whole_limits(plan)
-    read = {name for rule in plan.rules for name in names_of_requirement(rule.requirement)}
+    read = {name for rule in plan.asked for name in names_of_requirement(rule.requirement)}
     things: list[tuple[str, int, int, Type | None]] = [
         (name, names.signal(name), -1, signal.type) for name, signal in spec.signals.items()
     ]
@@ -115,9 +118,46 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
     yield f"static const int32_t by_name[] = {{{', '.join(map(str, order or [0]))}}};"
     yield f"#define ENTRY_COUNT {max(len(things), 1)}"
     yield ""
+    yield from _several(plan)
+    yield from _captured(plan, names)
     # As JSON, which the program prints as it is.
-    ids = [shown_json(encoded(rule.requirement.id)) for rule in plan.rules]
-    yield f"static const char *const requirements[] = {{{', '.join(map(c_string, ids))}}};"
+    ids = [_json(rule.requirement.id) for rule in plan.asked]
+    yield f"static const char *const requirements[] = {{{', '.join(ids)}}};"
+
+
+def _several(plan: Plan) -> Iterator[str]:
+    """The events of which an instant can hold several payloads: all that read them are apart."""
+    each = {one.value.event for rule in plan.asked if (one := rule.requirement.for_each)}
+    for part in (plan, *plan.units):
+        own = {one.value.event for rule in part.rules if (one := rule.requirement.for_each)}
+        leaves = [state.leaf for state in part.graph.nodes if isinstance(state.leaf, Compare)]
+        sides = [side for leaf in leaves for side in (leaf.left, leaf.right)]
+        each -= {*events_of(*sides)} - own
+    flags = ", ".join(str(event in each).lower() for event in plan.events)
+    yield f"static const bool several[] = {{{flags or 'false'}}};"
+
+
+def _captured(plan: Plan, names: Names) -> Iterator[str]:
+    """What the values are called that attempts capture, as JSON, and what they are."""
+    captured = CapturedValues(plan)
+    if not captured.count:
+        return
+    yield "typedef struct {"
+    yield "    const char *name;"
+    yield "    uint8_t kind;"
+    yield "} captured;"
+    yield f"static const captured captured_of[][{captured.count}] = {{"
+    for own in captured.names:
+        entries = [f"{{{_json(name)}, {_KINDS[type_.kind]}}}" for name, type_ in own.items()]
+        yield f"    {{{', '.join(entries or ['{NULL, KIND_BOOL}'])}}},"
+    yield "};"
+    labels = ", ".join(map(_json, names.labels)) or "NULL"
+    yield f"static const char *const label_texts[] = {{{labels}}};"
+
+
+def _json(text: str) -> str:
+    """A C string literal of a text as JSON."""
+    return c_string(shown_json(encoded(text)))
 
 
 def _labels(place: int, labels: Sequence[str], names: Names) -> Iterator[str]:

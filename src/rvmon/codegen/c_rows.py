@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_samples import ROW, read_signals, take_source
+from rvmon.codegen.c_samples import ROW, read_signals, take_source, value_type
 from rvmon.codegen.c_text import called, template
 from rvmon.codegen.c_words import words_source
 from rvmon.plan.plan import Plan
@@ -17,8 +17,10 @@ def rows_source(plan: Plan, names: Names) -> Iterator[str]:
     yield from called("\n".join(own), template("words.c.in"))
     yield from own
     yield from _refreshing(plan, names)
-    if read_signals(plan):
+    if read_signals(plan) or plan.units:
         yield from _saying(names)
+    if plan.units:
+        yield from _values(plan)
     yield from take_source(plan, names, ROW)
 
 
@@ -57,4 +59,17 @@ def _saying(names: Names) -> Iterator[str]:
     yield f"        state = (states == NULL) ? (uint8_t){prefix}_YES : states[row];"
     yield "    }"
     yield "    return state;"
+    yield "}"
+
+
+def _values(plan: Plan) -> Iterator[str]:
+    yield ""
+    yield "static double column_value(const batch_in *in, int32_t signal, int64_t row)"
+    yield "{"
+    yield "    switch (signal) {"
+    for number, name in enumerate(plan.signals):
+        kind = value_type(plan, name)
+        yield f"    case {number}: return (double)((const {kind} *)in->value[{number}])[row];"
+    yield "    default: return unknown_value();"
+    yield "    }"
     yield "}"

@@ -11,7 +11,7 @@ from rvmon.codegen.c_nodes import group_count, groups_of
 from rvmon.codegen.comment import comment
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import UNKNOWN, Leaf, State, Unborn
-from rvmon.plan.numbers import inputs_of
+from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import Compare, SignalAtom
 from rvmon.trace.schema import Kind
@@ -89,15 +89,35 @@ def read_signals(plan: Plan) -> list[str]:
     """The signals whose updates matter."""
     signals = plan.spec.signals
     return [
-        name
-        for name in plan.signals
-        if name in plan.graph.by_name or signals[name].stale_after is not None
+        name for name in plan.signals if name in plan.uses or signals[name].stale_after is not None
     ]
 
 
 def read_events(plan: Plan) -> list[str]:
     """The events whose occurrences matter."""
-    return [name for name in plan.events if name in plan.graph.by_name]
+    return [name for name in plan.events if name in plan.uses or name == _key(plan)[0]]
+
+
+def _key(plan: Plan) -> tuple[str, str]:
+    """The event and the field whose values tell instances apart; empty: nothing does."""
+    for rule in plan.rules:
+        if rule.requirement.for_each is not None:
+            source = rule.requirement.for_each.value
+            return source.event, source.field
+    return "", ""
+
+
+def _captured(plan: Plan) -> frozenset[str]:
+    """The signals and events whose values are captured."""
+    return inputs_of(*(one.value for rule in plan.rules for one in rule.requirement.captures))
+
+
+def _has_read_fields(plan: Plan, event: str) -> bool:
+    """Whether something reads the payloads of an event."""
+    leaves = [state.leaf for state in plan.graph.nodes if isinstance(state.leaf, Compare)]
+    sides = [side for leaf in leaves for side in (leaf.left, leaf.right)]
+    sides += [one.value for rule in plan.rules for one in rule.requirement.captures]
+    return event in events_of(*sides)
 
 
 def births_asked(plan: Plan) -> dict[str, bool]:
@@ -148,6 +168,8 @@ def _take_signal(plan: Plan, names: Names, name: str, source: Source) -> Iterato
     yield "    (void)known;"
     ignores = plan.spec.signals[name].ignores_nan
     yield f"    if ({'known' if ignores else f'state != {prefix}_NOTHING'}) {{"
+    if name in _captured(plan):
+        yield "        dirty = true; /* another value may be captured */"
     if stale_after is not None:
         yield f"        m->stale_at[{number}] = sum(t, INT64_C({stale_after + 1}));"
         # The update may change no value: then nothing else has the timer seen to.
@@ -212,10 +234,16 @@ def _value(plan: Plan, name: str, number: int) -> Iterator[str]:
 def _take_event(plan: Plan, names: Names, name: str, source: Source) -> Iterator[str]:
     prefix = names.prefix
     number = names.event(name)
-    places = plan.graph.by_name[name]
+    places = plan.graph.by_name.get(name, ())
+    uses = plan.uses.get(name)
     yield "{" + f" /* {comment(name)} */"
-    yield f"    const uint8_t state = {source.event.format(n=number, prefix=prefix)};"
-    if plan.uses[name].marked:
+    given = source.event.format(n=number, prefix=prefix)
+    if name == _key(plan)[0]:
+        key = source.field.format(n=names.field(*_key(plan)))
+        yield f"    const uint8_t state = concerning({given}, {key}, m->captured[0]);"
+    else:
+        yield f"    const uint8_t state = {given};"
+    if uses is not None and uses.marked:
         yield f"    if (state != {prefix}_NOTHING) {{"
         yield f"        m->updated[{names.number(name)}] = 1;"
         yield "        m->gathered = true;"
@@ -226,7 +254,7 @@ def _take_event(plan: Plan, names: Names, name: str, source: Source) -> Iterator
     yield "        m->gathered = true;"
     yield f"        m->occurs[{number}] = either(m->occurs[{number}], truth_of(known, true));"
     fields = [names.field(name, field) for field in plan.spec.events[name].fields]
-    if fields:
+    if fields and _has_read_fields(plan, name):
         upper = prefix.upper()
         yield f"        if (m->payloads[{number}] < {upper}_PAYLOADS) {{"
         yield f"            const int32_t p = m->payloads[{number}];"
@@ -235,8 +263,9 @@ def _take_event(plan: Plan, names: Names, name: str, source: Source) -> Iterator
             yield f"            m->payload[p][{field}] = {source.field.format(n=field)};"
         yield f"            m->payloads[{number}]++;"
         yield "        } else {"
-        yield "            m->overflow = true;"
+        yield "            HOME(m)->overflow = true;"
         yield "        }"
+    yield "        dirty = true;"
     yield from (f"        {line}" for line in _soil(places))
     yield "    }"
     yield "}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -24,6 +24,7 @@ from rvmon.codegen.c_rows import rows_source
 from rvmon.codegen.c_samples import SAMPLE, take_source
 from rvmon.codegen.c_tables import array, automata_source, lists, repeats, runs_on
 from rvmon.codegen.c_text import called, filled, template
+from rvmon.codegen.c_units import Unit
 from rvmon.codegen.comment import comment
 from rvmon.errors import RvmonError
 from rvmon.formula.state import StateOp
@@ -32,14 +33,9 @@ from rvmon.plan.plan import Plan
 _LIBRARY = ("helpers.c.in", "monitor_past.c.in")
 """Functions of which a source has those that it calls."""
 
-_PARTS = (
-    "monitor_head.c.in",
-    "monitor_tokens.c.in",
-    "monitor_attempts.c.in",
-    "monitor_drive.c.in",
-    "monitor_clock.c.in",
-    "monitor_api.c.in",
-)
+_BEGIN = ("monitor_head.c.in", "monitor_tokens.c.in")
+_DRIVE = ("monitor_drive.c.in", "monitor_clock.c.in", "monitor_run.c.in")
+_UNIT = ("unit_monitors.c.in", "unit_keys.c.in", "unit_api.c.in")
 
 _NETWORK = tuple(
     f"network_{part}.c.in" for part in ("ranges", "known", "nodes", "state", "attempts", "judge")
@@ -47,12 +43,23 @@ _NETWORK = tuple(
 """What stands behind the attempts where a network judges some of them."""
 
 
+_SHARED = {"APART": 0, "EACH": 0, "PAST_SAMPLES": 0}
+"""Of what has no captured values."""
+
+
 @dataclass(frozen=True, slots=True)
 class CFiles:
-    """Generated C by file name."""
+    """Generated C by file name.
+
+    Attributes:
+        prefix: what all identifiers start with.
+        texts: the files.
+        units: those of them that are compiled beside the source of that name.
+    """
 
     prefix: str
     texts: dict[str, str]
+    units: tuple[str, ...] = ()
 
 
 def c_files(plan: Plan) -> CFiles:
@@ -61,53 +68,78 @@ def c_files(plan: Plan) -> CFiles:
     Raises:
         RvmonError: there is no requirement, or a number of the specification is no double.
     """
-    if not plan.rules:
+    if not plan.asked:
         raise RvmonError("the specification has no requirements: there is nothing to compile")
-    return _Writer(plan).files()
+    return _Whole(plan).files()
 
 
 class _Writer:
-    def __init__(self, plan: Plan) -> None:
-        self.plan = plan
-        self.names = Names(plan)
-        self.networks = Networks(plan)
+    """Of one source: of a unit, or of all else.
 
-    def files(self) -> CFiles:
-        prefix = self.names.prefix
-        places = {  # the first ones hold others
+    Args:
+        plan: what is generated.
+        prefix: what all identifiers start with.
+        main: the same of the source of the whole.
+        numbers: of the requirements of its rules, among all.
+    """
+
+    def __init__(self, plan: Plan, prefix: str, main: str, numbers: Sequence[int]) -> None:
+        self.plan = plan
+        self.names = Names(plan, prefix=prefix)
+        self.networks = Networks(plan)
+        self.prefix = prefix
+        self.numbers = numbers
+        self.unit = Unit(plan) if any(rule.is_apart for rule in plan.rules) else None
+        self._main = main
+
+    @property
+    def places(self) -> dict[str, str]:
+        """What templates are filled with; the first ones hold others."""
+        return {
             "HELPERS": "\n".join(self._helpers()),
             "TABLES": "\n".join(self._tables()),
             "NETWORK_TABLES": "\n".join(self.networks.tables()),
-            "ROWS": "\n".join(rows_source(self.plan, self.names)),
-            "HEAP": template("heap.c.in"),
-            "WIDEN": template("widen.c.in"),
             "SPEC": comment(self.plan.spec.name),
-            "GUARD": f"{prefix.upper()}_MONITOR_H",
-            "HEADER": f"{prefix}.h",
-            "PREFIX": prefix.upper(),
-            "prefix": prefix,
+            "GUARD": f"{self.prefix.upper()}_MONITOR_H",
+            "HEADER": f"{self._main}.h",
+            "PREFIX": self.prefix.upper(),
+            "prefix": self.prefix,
+            "MAIN": self._main.upper(),
+            "main": self._main,
             "GAP": str(self.plan.gap or 0),
             "REPEATING": str(int(any(map(repeats, self.plan.rules)))),
             "EPISODES": str(int(any(map(runs_on, self.plan.rules)))),
-            "NAMES": "\n".join(self._constants()),
+            "NAMES": "\n".join(self.constants()),
             "INCLUDES": "#include <math.h>\n" if uses_library(self.plan) else "",
         }
-        behind = _PARTS.index("monitor_attempts.c.in") + 1
-        network = _NETWORK if self.networks.number else ()
-        source = "".join(map(template, (*_PARTS[:behind], *network, *_PARTS[behind:])))
-        return CFiles(
-            prefix,
-            {
-                f"{prefix}.h": filled(template("monitor.h.in"), places),
-                f"{prefix}.c": filled(source, places),
-                f"{prefix}.hpp": filled(template("monitor.hpp.in"), places),
-                f"{prefix}_batch.c": filled(template("batch.c.in"), places),
-            },
-        )
 
-    def _constants(self) -> Iterator[str]:
+    @property
+    def source(self) -> str:
+        """The text of the source."""
+        network = _NETWORK if self.networks.number else ()
+        first: tuple[str, ...] = ()
+        last: tuple[str, ...] = ("monitor_api.c.in",)
+        if self.unit is not None:
+            first, last = ("unit_attempts.c.in",), _UNIT
+        parts = (*_BEGIN, *first, "monitor_attempts.c.in", *network, *_DRIVE, *last)
+        return filled("".join(map(template, parts)), self.places)
+
+    @property
+    def types(self) -> str:
+        """What the header says of a unit."""
+        number = f"#define {self.prefix.upper()}_REQUIREMENT {self.numbers[0]}"
+        places = {
+            "STATE": template("monitor_state.h.in"),
+            "UNIT_FIELDS": "",
+            "ID": comment(self.plan.rules[0].requirement.id),
+            **self.places,
+        }
+        return f"{number}\n{filled(template('unit.h.in'), places)}"
+
+    def constants(self) -> Iterator[str]:
+        """Sizes, as the header has them."""
         plan, names = self.plan, self.names
-        upper = names.prefix.upper()
+        upper = self.prefix.upper()
         clocks = max((r.automaton.clocks for _, r in plan.judges if r.automaton), default=0)
         sizes = {
             "SIGNALS": len(plan.signals),
@@ -115,31 +147,22 @@ class _Writer:
             "NAMES": len(plan.signals) + len(plan.events),
             "FIELDS": len(names.fields),
             "NODES": len(plan.graph.nodes),
-            "RULES": len(plan.rules),
+            "OWN_RULES": len(plan.rules),
+            "RULES": len(plan.asked),
+            "UNITS": len(plan.units),
             "JUDGES": len(plan.judges),
             "CLOCKS": clocks,
             "GROUPS": group_count(plan),
             "TIMED": len(names.timers),
             **{kind.name: names.memories(kind) for kind in Memory},
             **self.networks.sizes,
+            **(_SHARED if self.unit is None else self.unit.sizes),
         }
         for name, size in sizes.items():
             yield f"#define {upper}_{name} {size}"
             yield f"#define {upper}_{name}_MIN {max(size, 1)}"
         yield f"#define {upper}_PERISHABLE {len(self._perishable())}"
         yield f"#define {upper}_STATEFUL {len(self._stateful())}"
-        for what, listed in (
-            ("SIGNAL", plan.signals),
-            ("EVENT", plan.events),
-            ("RULE", [rule.requirement.id for rule in plan.rules]),
-        ):
-            yield ""
-            for number, name in enumerate(listed):
-                yield f"#define {upper}_{what}_{number} {number} /* {comment(name)} */"
-        for (event, field), number in names.fields.items():
-            yield f"#define {upper}_FIELD_{number} {number} /* {comment(f'{event}.{field}')} */"
-        for label, number in names.labels.items():
-            yield f"#define {upper}_LABEL_{number} {number} /* {comment(label)} */"
 
     def _perishable(self) -> list[int]:
         signals = self.plan.spec.signals
@@ -166,7 +189,8 @@ class _Writer:
 
     def _helpers(self) -> Iterator[str]:
         """Functions of the library of helpers that the nodes call."""
-        calls = "\n".join((*nodes_source(self.plan, self.names), *self._taking()))
+        own = () if self.unit is None else self.unit.source(self.names)
+        calls = "\n".join((*nodes_source(self.plan, self.names), *self._taking(), *own))
         return called(calls, "\n".join(template(part) for part in _LIBRARY))
 
     def _taking(self) -> Iterator[str]:
@@ -178,8 +202,11 @@ class _Writer:
         yield from nodes_source(self.plan, self.names)
         yield from self._taking()
         yield from self._index_tables()
-        yield from automata_source(self.plan, self.networks.number)
+        yield from automata_source(self.plan, self.networks.number, self.numbers)
         yield from self._letters()
+        if self.unit is not None:
+            yield ""
+            yield from self.unit.source(self.names)
 
     def _index_tables(self) -> Iterator[str]:
         """Timers and what else makes groups of nodes be worked out anew."""
@@ -232,3 +259,60 @@ class _Writer:
         yield "        *better += better_weights[3 * i + truth];"
         yield "    }"
         yield "}"
+
+
+class _Whole:
+    """All sources of a plan."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        prefix = Names(plan).prefix
+        number = {id(rule): place for place, rule in enumerate(plan.asked)}
+
+        def writer(own: Plan, name: str) -> _Writer:
+            return _Writer(own, name, prefix, [number[id(rule)] for rule in own.rules])
+
+        self.main = writer(plan, prefix)
+        self.units = [writer(one, f"{prefix}_{n}") for n, one in enumerate(plan.units, start=1)]
+
+    def files(self) -> CFiles:
+        """Their texts."""
+        prefix = self.main.prefix
+        fields = [f"    {one.prefix}_home unit{n};\n" for n, one in enumerate(self.units, start=1)]
+        places = {  # the first ones hold others
+            "STATE": template("monitor_state.h.in"),
+            "UNIT_TYPES": "".join(unit.types for unit in self.units),
+            "UNIT_FIELDS": "".join(fields),
+            "ROWS": "\n".join(rows_source(self.plan, self.main.names)),
+            "HEAP": template("heap.c.in"),
+            **self.main.places,
+            "NAMES": "\n".join((*self.main.constants(), *self._names())),
+        }
+        texts = {
+            f"{prefix}.h": filled(template("monitor.h.in"), places),
+            f"{prefix}.c": self.main.source,
+            f"{prefix}.hpp": filled(template("monitor.hpp.in"), places),
+            f"{prefix}_batch.c": filled(template("batch.c.in"), places),
+        }
+        units = {f"{unit.prefix}.c": unit.source for unit in self.units}
+        return CFiles(prefix, texts | units, tuple(units))
+
+    def _names(self) -> Iterator[str]:
+        plan, names = self.plan, self.main.names
+        upper = names.prefix.upper()
+        units = range(1, len(plan.units) + 1)
+        yield f"#define {upper}_EACH_UNIT(DO) {' '.join(f'DO({n})' for n in units)}".rstrip()
+        captured = max((len(rule.captured) for rule in plan.asked), default=0)
+        yield f"#define {upper}_CAPTURED {captured}"
+        for what, listed in (
+            ("SIGNAL", plan.signals),
+            ("EVENT", plan.events),
+            ("RULE", [rule.requirement.id for rule in plan.asked]),
+        ):
+            yield ""
+            for number, name in enumerate(listed):
+                yield f"#define {upper}_{what}_{number} {number} /* {comment(name)} */"
+        for (event, field), number in names.fields.items():
+            yield f"#define {upper}_FIELD_{number} {number} /* {comment(f'{event}.{field}')} */"
+        for label, number in names.labels.items():
+            yield f"#define {upper}_LABEL_{number} {number} /* {comment(label)} */"

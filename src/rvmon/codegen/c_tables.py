@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.table import TableData, tables_of
+from rvmon.formula.state import State
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.specification import EndPolicy, Mode
 from rvmon.verdict.attempt import Decision
@@ -25,26 +26,33 @@ _WAITING = ", ".join([str(PASSED + 1), "0", *("NULL" for _ in _TABLES)])
 """In place of an automaton where a network judges: an attempt is neither passed nor failed."""
 
 
-def automata_source(plan: Plan, networks: Mapping[int, int]) -> Iterator[str]:
+def automata_source(
+    plan: Plan, networks: Mapping[int, int], numbers: Sequence[int]
+) -> Iterator[str]:
     """The tables of all requirements, and the array `automata` of them.
 
     Args:
         plan: what is generated.
         networks: by number of a judge without an automaton, that of its network.
+        numbers: of the requirements of its rules, among all.
     """
     width = max((r.automaton.clocks for _, r in plan.judges if r.automaton), default=0) or 1
     entries = []
     for index, (owner, rule) in enumerate(plan.judges):
         yield ""
         doubt = ", its attempts in doubt" if index >= len(plan.rules) else ""
-        yield f"/* Requirement number {owner}{doubt}. */"
+        yield f"/* Requirement number {numbers[owner]}{doubt}. */"
         machine = _WAITING
         if rule.automaton is not None:
             data = tables_of(rule.automaton)
             yield from _arrays(data, index, width)
             machine = _machine(data, index)
         yield array("uint8_t", f"outcomes{index}", outcomes(rule.requirement.at_end))
-        entries.append(_entry(plan, owner, rule, f"{machine}, {networks.get(index, -1)}", index))
+        judging = f"{machine}, {networks.get(index, -1)}"
+        entries.append(_entry(plan, (owner, numbers[owner]), rule, judging, index))
+    if not entries:  # which C does not have
+        places, flags = ", ".join(["-1"] * 9), ", ".join(["false"] * 4)
+        entries.append(f"    {{{_WAITING}, {places}, {flags}, NULL}},")
     yield ""
     yield "static const automaton automata[] = {"
     yield from entries
@@ -125,14 +133,19 @@ def _machine(data: TableData, index: int) -> str:
     return ", ".join([str(data.initial), str(classes), *(f"{name}{index}" for name in _TABLES)])
 
 
-def _entry(plan: Plan, owner: int, rule: PlannedRule, judging: str, index: int) -> str:
-    formulas = (rule.trigger, rule.again, rule.unborn, rule.determined)
-    places = ", ".join(str(-1 if state is None else plan.graph.index[state]) for state in formulas)
+def _entry(plan: Plan, owner: tuple[int, int], rule: PlannedRule, judging: str, index: int) -> str:
+    def places(*formulas: State | None) -> str:
+        index = plan.graph.index
+        return ", ".join(str(-1 if state is None else index[state]) for state in formulas)
+
     requirement = rule.requirement
+    named = places(rule.trigger, rule.again, rule.unborn, rule.determined)
+    running = places(rule.running if requirement.captures else rule.trigger, rule.blurs)
+    whose = ", ".join(map(str, owner))
     hidden = index >= len(plan.rules)
-    episodic = hidden or runs_on(rule)
-    flags = ", ".join(str(flag).lower() for flag in (requirement.pulse, episodic, hidden))
-    return f"    {{{judging}, {places}, {owner}, {flags}, outcomes{index}}},"
+    own = (rule.blurs_anywhere, requirement.pulse, hidden or runs_on(rule), hidden)
+    flags = ", ".join(str(flag).lower() for flag in own)
+    return f"    {{{judging}, {named}, {whose}, {running}, {flags}, outcomes{index}}},"
 
 
 def array(kind: str, name: str, values: Sequence[int]) -> str:

@@ -150,7 +150,7 @@ def _plain(plan: Plan, names: Names) -> Iterator[str]:
     yield "/* Whether values alone say which rows matter. */"
     yield "static bool is_plain(const batch_in *in)"
     yield "{"
-    yield "    bool plain = in->advance == NULL;"
+    yield f"    bool plain = in->advance == NULL{' && false' if plan.units else ''};"
     for name in read_signals(plan):
         number = names.signal(name)
         uses = plan.uses.get(name)

@@ -65,8 +65,14 @@ def python_file(plan: Plan) -> str:
     """The text of a module that judges what a plan holds.
 
     Raises:
-        RvmonError: a requirement has no automaton.
+        RvmonError: a requirement has no automaton, or captures values.
     """
+    for unit in plan.units:
+        raise RvmonError(
+            f"{unit.rules[0].requirement.id} captures values (`let`, `for each`), which a Python "
+            "file does not: leave it out with --only, or have it judged by C (`rvmon build`, "
+            "--to c)"
+        )
     parts = [_HEAD.format(spec=comment(plan.spec.name))]
     parts += [_body(name) for name in _RUNTIME]
     parts.append(unit_source(plan))

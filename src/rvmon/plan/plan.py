@@ -18,7 +18,7 @@ class PlannedRule:
     """One requirement.
 
     Attributes:
-        requirement: as checked; without `let` and `for each`.
+        requirement: as checked.
         trigger: what starts its attempts; `None` if that is the end of the trace.
         owed: by an attempt.
         alphabet: of what it owes.
@@ -33,6 +33,11 @@ class PlannedRule:
             is FALSE.
         noted: the formulas of which a record of a decision notes the values; `None`: no records
             are kept.
+        doubted: as `hidden`, where it is not known whether there is such an instance.
+        running: of an episode with captured values, what is FALSE where it is over.
+        blurs: of attempts with captured values, UNKNOWN where another may have begun, whose values
+            may be others; `None`: none may.
+        blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
     """
 
     requirement: Requirement
@@ -46,15 +51,32 @@ class PlannedRule:
     determined: State | None = None
     hidden: PlannedRule | None = None
     noted: tuple[State, ...] | None = None
+    doubted: PlannedRule | None = None
+    running: State | None = None
+    blurs: State | None = None
+    blurs_anywhere: bool = False
 
     @property
     def states(self) -> Iterator[State]:
         """The state formulas that are asked for their values."""
-        named = (self.trigger, self.again, self.unborn, self.determined)
+        named = (self.trigger, self.again, self.unborn, self.determined, self.running, self.blurs)
         yield from (state for state in named if state is not None)
         yield from self.alphabet.propositions
-        if self.hidden is not None:
-            yield from self.hidden.states
+        for beside in (self.hidden, self.doubted):
+            if beside is not None:
+                yield from beside.states
+
+    @property
+    def captured(self) -> tuple[str, ...]:
+        """The names of the values that each attempt has: of `for each`, then of `let`."""
+        each = self.requirement.for_each
+        names = [capture.name for capture in self.requirement.captures]
+        return (*(() if each is None else (each.name,)), *names)
+
+    @property
+    def is_apart(self) -> bool:
+        """Whether its attempts or instances have values, and so propositions, of their own."""
+        return bool(self.captured)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,6 +106,8 @@ class Plan:
         signals: names of which something is kept; the place of a name is its number.
         events: the same.
         uses: by name, of those that are read, here or by what begins with what is remembered here.
+        units: of the requirements with captured values, one each.
+        asked: all rules, those of the units among them, in the order of the file.
     """
 
     spec: CheckedSpec
@@ -93,6 +117,8 @@ class Plan:
     signals: tuple[str, ...]
     events: tuple[str, ...]
     uses: Mapping[str, Uses]
+    units: tuple[Plan, ...] = ()
+    asked: tuple[PlannedRule, ...] = ()
 
     @property
     def judges(self) -> Sequence[tuple[int, PlannedRule]]:
@@ -101,7 +127,8 @@ class Plan:
         The rules themselves come first, then what judges their attempts in doubt.
         """
         rules = [*enumerate(self.rules)]
-        return rules + [(owner, one.hidden) for owner, one in rules if one.hidden is not None]
+        beside = [(owner, one) for owner, rule in rules for one in (rule.hidden, rule.doubted)]
+        return rules + [(owner, one) for owner, one in beside if one is not None]
 
     @property
     def judged(self) -> tuple[PlannedRule, ...]:

@@ -23,7 +23,21 @@ def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     """
     graph = graph_of(state for rule in rules for state in rule.states)
     names = (tuple(spec.signals), tuple(spec.events))
-    return Plan(spec, tuple(rules), graph, spec.gap, *names, uses_of([graph], ()))
+    captured = [one.value for rule in rules for one in rule.requirement.captures]
+    uses = uses_of([graph], captured)
+    return Plan(spec, tuple(rules), graph, spec.gap, *names, uses, (), tuple(rules))
+
+
+def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
+    """As `plan_of`, those with captured values apart: each attempt or instance is a run of its own.
+
+    Args:
+        spec: they belong to.
+        rules: in the order of the file.
+    """
+    shared = plan_of(spec, [rule for rule in rules if not rule.is_apart])
+    units = tuple(plan_of(spec, [rule]) for rule in rules if rule.is_apart)
+    return replace(shared, units=units, asked=tuple(rules))
 
 
 def plan_of_evaluator(

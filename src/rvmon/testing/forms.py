@@ -7,6 +7,7 @@ from types import ModuleType
 from typing import Any
 
 from rvmon.codegen.c_batch import BatchLibrary, BatchRun
+from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_online import OnlineLibrary, online_library
 from rvmon.codegen.python_file import python_file
 from rvmon.errors import RvmonError, TimeOrderError
@@ -106,7 +107,7 @@ class Maker:
                 return BatchLibrary(plan_alone(compiled), optimised=False)
             case "file":
                 plan = plan_alone(compiled)
-                whole = all(rule.automaton is not None for rule in plan.judged)
+                whole = not plan.units and all(rule.automaton for rule in plan.judged)
                 return _module_of(plan) if whole else None
             case _:
                 return compiled
@@ -208,18 +209,13 @@ class _Compiled:
         Raises:
             TimeOrderError: a sample was not taken.
         """
-        import numpy as np
+        from rvmon.codegen.c_columns import rows_of_samples
 
-        from rvmon.codegen.c_columns import columns_of_samples
-
-        rows = [a if isinstance(a, Sample) else Sample(a, {}) for a in self.actions]
+        rows = rows_of_samples(self.actions, self.library.names, self.library.limits)
         with BatchRun(self.library, _absent(self.case)) as run:
-            taken = run.feed(
-                np.array([row.t for row in rows], np.int64),
-                columns_of_samples(rows, self.library.names, self.library.limits),
-                np.array([isinstance(a, int) for a in self.actions], np.uint8),
-            )
-            if taken != len(rows):
+            taken = run.feed(rows.times, rows.columns, rows.kinds)
+            if taken != len(rows.times):
                 raise TimeOrderError(f"row {taken} was not taken")
             made = run.close(t_ns)
-        return report_of_records(tuple(self.case.spec.requirements), made, origin=0)
+        captured = CapturedValues(self.library.plan)
+        return report_of_records(tuple(self.case.spec.requirements), made, captured, origin=0)

@@ -48,6 +48,20 @@ requirement R5 "by a network"
 requirement R6 "by one that looks back"
   upon f
   then F[0 s, 2 s] once[0 s, 2 s] (q and within 1 s p)
+requirement R7 "with captured values"
+  whenever p
+  then within 2 s x > abs(v) + w
+  let v = delta(x)
+  let w = x
+requirement R8 "one instance for each value"
+  upon e
+  then within 2 s (e.k == i + 1)
+  for each i in e.k
+requirement R9 "both, looking at what was before"
+  upon e and once[0 s, 2 s] e.k == i - 1
+  then F[0 s, 2 s] once[0 s, 2 s] x > v
+  for each i in e.k
+  let v = x
 """
 
 
@@ -61,7 +75,7 @@ def strict(monkeypatch):
 def test_the_oracle_agrees(nodes, monkeypatch):
     """Compiled monitors judge as the law has it, however many nodes are worked out together."""
     monkeypatch.setattr("rvmon.codegen.c_nodes.GROUP", nodes)
-    profile = Profile(mixed=False, captures=False, for_each=False)
+    profile = Profile(mixed=False)
     seeds = [f"c/{number}" for number in range(8)]
     tally = campaign(Maker("c rows"), seeds, profile, TraceProfile(), each=5, online_every=0)
     assert tally.pairs >= 20
@@ -97,11 +111,12 @@ def test_all_operators_compile_strictly_and_run_clean(tmp_path):
         }
         """
     )
+    objects = [f"{name.removesuffix('.c')}.o" for name in ("everything.c", *made.units)]
     check = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
     for words in (
-        ["gcc", *STRICT, *check, "-O1", "-c", "everything.c"],
+        ["gcc", *STRICT, *check, "-O1", "-c", "everything.c", *made.units],
         ["gcc", *STRICT, "-O2", "-c", "everything_batch.c"],
-        ["g++", "-std=c++11", *STRICT[1:], *check, "main.cpp", "everything.o", "-o", "main"],
+        ["g++", "-std=c++11", *STRICT[1:], *check, "main.cpp", *objects, "-o", "main"],
         ["./main"],
     ):
         done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)  # noqa: S603
@@ -110,11 +125,13 @@ def test_all_operators_compile_strictly_and_run_clean(tmp_path):
 
 
 def test_the_source_allocates_nothing_and_needs_little():
-    """No heap, no recursion into libc: only the three freestanding headers and string.h."""
+    """No heap, no recursion into libc: only freestanding headers and string.h."""
     made = c_files(rvmon.loads(SPEC).plan())
     text = made.texts["everything.c"] + made.texts["everything.h"]
     included = {line.split()[1] for line in text.splitlines() if line.startswith("#include")}
-    assert included == {"<stdbool.h>", "<stdint.h>", "<string.h>", '"everything.h"'}
+    assert included == {
+        *("<stdbool.h>", "<stddef.h>", "<stdint.h>", "<string.h>", '"everything.h"')
+    }
     assert not any(word in text for word in ("malloc", "free(", "printf"))
 
 

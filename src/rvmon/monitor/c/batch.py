@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.codegen.c_batch import NO, YES, BatchLibrary, BatchRun, Column
-from rvmon.codegen.c_columns import columns_of_samples
+from rvmon.codegen.c_captured import CapturedValues
+from rvmon.codegen.c_columns import rows_of_samples
 from rvmon.errors import TimeOrderError
 from rvmon.monitor.c.recorded import report_of_records
 from rvmon.monitor.compiled.code_plan import plan_alone
@@ -78,13 +79,16 @@ def array_columns(spec: CheckedSpec, columns: Mapping[str, NDArray[Any]]) -> dic
     return made
 
 
-def evaluate_samples(checked: CheckedSpec, library: BatchLibrary, source: Source) -> Report:
+def evaluate_samples(
+    checked: CheckedSpec, library: BatchLibrary, source: Source, single: frozenset[str]
+) -> Report:
     """Judge a recording by its samples; so many at a time are in memory.
 
     Args:
         checked: the specification.
         library: judges its requirements.
         source: the recording.
+        single: events of which only one payload can be judged at one instant.
 
     Raises:
         TimeOrderError: an instant is not after the one before.
@@ -94,7 +98,7 @@ def evaluate_samples(checked: CheckedSpec, library: BatchLibrary, source: Source
     names = source.names
     if names is not None:
         names = names & {*checked.signals, *checked.events}
-    validator = Validator(checked, names, frozenset())
+    validator = Validator(checked, names, single)
 
     def valid(sample: Sample) -> Sample:
         return Sample(whole_ticks(sample.t), validator.check(sample.t, sample.values))
@@ -102,8 +106,8 @@ def evaluate_samples(checked: CheckedSpec, library: BatchLibrary, source: Source
     samples = map(valid, source.samples(ordered=True))
     with _Judging(checked, library, names) as judging:
         while some := list(islice(samples, PIECE)):
-            times = np.array([sample.t for sample in some], np.int64)
-            judging.take(times, columns_of_samples(some, library.names, library.limits))
+            rows = rows_of_samples(some, library.names, library.limits)
+            judging.take(rows.times, rows.columns, rows.kinds)
         return judging.report(source.end)
 
 
@@ -114,7 +118,8 @@ class _Judging:
         self, checked: CheckedSpec, library: BatchLibrary, names: frozenset[str] | None
     ) -> None:
         declared = frozenset((*checked.signals, *checked.events))
-        self._ids = [rule.requirement.id for rule in library.plan.rules]
+        self._ids = [rule.requirement.id for rule in library.plan.asked]
+        self._captured = CapturedValues(library.plan)
         self._run = BatchRun(library, declared - (declared if names is None else names))
         self._rows = 0
         self._origin: int | None = None
@@ -125,8 +130,13 @@ class _Judging:
     def __exit__(self, *what: object) -> None:
         self._run.__exit__(*what)
 
-    def take(self, times: NDArray[np.int64], columns: Mapping[str, Column]) -> None:
-        taken = self._run.feed(times, columns)
+    def take(
+        self,
+        times: NDArray[np.int64],
+        columns: Mapping[str, Column],
+        kinds: NDArray[np.uint8] | None = None,
+    ) -> None:
+        taken = self._run.feed(times, columns, kinds)
         if taken < len(times):
             raise TimeOrderError(
                 f"row {self._rows + taken} at {format_ticks(int(times[taken]))} is not after the "
@@ -137,4 +147,5 @@ class _Judging:
         self._rows += taken
 
     def report(self, until: int | None) -> Report:
-        return report_of_records(self._ids, self._run.close(until), origin=self._origin or 0)
+        made = self._run.close(until)
+        return report_of_records(self._ids, made, self._captured, origin=self._origin or 0)

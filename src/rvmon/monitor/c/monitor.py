@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rvmon.codegen.c_exact import several_payloads, too_large
+from rvmon.codegen.c_captured import CapturedValues
+from rvmon.codegen.c_exact import too_large
 from rvmon.codegen.c_online import NEVER, NOT_YET, OnlineLibrary, online_library
 from rvmon.codegen.c_tables import VERDICTS
 from rvmon.errors import SnapshotError
@@ -14,7 +15,7 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
-from rvmon.trace.sample import Value
+from rvmon.trace.sample import Payload, Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -102,18 +103,21 @@ class CompiledMonitor(Monitor):
         """A value as C takes it.
 
         Raises:
-            TraceError: there are several payloads, or a whole number is too large.
+            TraceError: a whole number is too large.
         """
         if isinstance(value, tuple):
             if len(value) > 1:
-                raise several_payloads(name, len(value), t)
+                return tuple(self._payload(name, payload, t) for payload in value)
             value = value[0] if value else False
         if isinstance(value, Mapping):
-            for field, scalar in value.items():
-                self._expect_exact(f"{name}.{field}", scalar, t)
-            return {str.__str__(field): scalar for field, scalar in value.items()}
+            return self._payload(name, value, t)
         self._expect_exact(name, value, t)
         return value
+
+    def _payload(self, name: str, payload: Payload, t: int) -> Payload:
+        for field, scalar in payload.items():
+            self._expect_exact(f"{name}.{field}", scalar, t)
+        return {str.__str__(field): scalar for field, scalar in payload.items()}
 
     def _expect_exact(self, name: str, value: object, t: int) -> None:
         limit = self._library.limits.get(name)
@@ -136,19 +140,21 @@ class CompiledMonitor(Monitor):
     def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
         import numpy as np
 
-        from rvmon.codegen.c_batch import RECORD, RunRecords
+        from rvmon.codegen.c_batch import RunRecords, record_type
         from rvmon.monitor.c.recorded import report_of_records
 
         end = self._core.close(t_ns)
         decided = self._core.flush()
         self._note_times()
         made = RunRecords(
-            np.frombuffer(self._core.records(), RECORD),
+            np.frombuffer(self._core.records(), record_type(self._library.plan)),
             ordered=False,
             counts=np.array(self._core.counts(), np.int64).reshape(-1, 4),
             end=None if end == NOT_YET else end,
         )
-        return report_of_records(self._ids, made, origin=self._health.began or 0), decided
+        captured = CapturedValues(self._library.plan)
+        origin = self._health.began or 0
+        return report_of_records(self._ids, made, captured, origin=origin), decided
 
     def snapshot(self) -> bytes:
         """Refused: what C holds cannot be checked when it comes back.

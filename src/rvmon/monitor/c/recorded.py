@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rvmon.codegen.c_batch import RunRecords
+from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.attempt_json import Pattern, numbers_texts
+from rvmon.verdict.attempt_json import Pattern, attempt_text, numbers_texts
 from rvmon.verdict.instants import seconds_of
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
@@ -27,12 +28,14 @@ class RecordedAttempts(LazyAttempts):
 
     Args:
         ids: of the requirements, by number.
-        records: array of `rvmon.codegen.c_batch.RECORD`, in the order of reports.
+        records: array of `rvmon.codegen.c_batch.record_type`, in the order of reports.
+        captured: reads the values in them.
     """
 
-    def __init__(self, ids: Sequence[str], records: NDArray[Any]) -> None:
+    def __init__(self, ids: Sequence[str], records: NDArray[Any], captured: CapturedValues) -> None:
         self._ids = tuple(ids)
         self._records = records
+        self._captured = captured
 
     def __len__(self) -> int:
         return len(self._records)
@@ -43,7 +46,7 @@ class RecordedAttempts(LazyAttempts):
     def __getitem__(self, index: slice) -> Sequence[Attempt]: ...
     def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
         if isinstance(index, slice):
-            return RecordedAttempts(self._ids, self._records[index])
+            return RecordedAttempts(self._ids, self._records[index], self._captured)
         return self._attempt(*self._records[index].tolist())
 
     def __iter__(self) -> Iterator[Attempt]:
@@ -58,6 +61,11 @@ class RecordedAttempts(LazyAttempts):
 
     def texts(self, origin: int) -> Iterator[tuple[str, str]]:
         """See `LazyAttempts`."""
+        if self._captured.count:
+            return ((one.requirement, attempt_text(one, origin)) for one in self)
+        return self._alike_texts(origin)
+
+    def _alike_texts(self, origin: int) -> Iterator[tuple[str, str]]:
         records = self._records
         alike = records["requirement"].astype(np.int64)
         for name in ("verdict", "decision", "in_doubt"):
@@ -82,6 +90,7 @@ class RecordedAttempts(LazyAttempts):
         verdict: int,
         decision: int,
         in_doubt: int,
+        captured: Sequence[float] = (),
     ) -> Attempt:
         return Attempt(
             self._ids[requirement],
@@ -90,16 +99,20 @@ class RecordedAttempts(LazyAttempts):
             None if decision == _OPEN else decided,
             VERDICTS[verdict],
             DECISIONS[decision],
+            captured=self._captured.of(requirement, captured),
             in_doubt=bool(in_doubt),
         )
 
 
-def report_of_records(ids: Sequence[str], made: RunRecords, *, origin: int) -> Report:
+def report_of_records(
+    ids: Sequence[str], made: RunRecords, captured: CapturedValues, *, origin: int
+) -> Report:
     """Sort and fold records, as `rvmon.verdict.report.report_of` does attempts.
 
     Args:
         ids: of all requirements that were judged, by number.
         made: by a compiled monitor.
+        captured: reads the values in its records.
         origin: the instant from which people count seconds, ticks.
 
     Source: SEMANTICS, section 3.
@@ -116,7 +129,9 @@ def report_of_records(ids: Sequence[str], made: RunRecords, *, origin: int) -> R
             )
             for (name, own), was_determined in zip(counts.items(), made.counts[:, 3], strict=True)
         },
-        attempts=RecordedAttempts(ids, made.records if made.ordered else _ordered(made.records)),
+        attempts=RecordedAttempts(
+            ids, made.records if made.ordered else _ordered(made.records), captured
+        ),
         counts=counts,
         origin=origin,
         end=made.end,

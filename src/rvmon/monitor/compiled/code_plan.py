@@ -6,39 +6,38 @@ from collections.abc import Iterable, Sequence
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.errors import UnknownNameError
-from rvmon.monitor.compiled.refusal import of_c, of_generated, refuse
+from rvmon.formula.state import State
+from rvmon.monitor.compiled.refusal import of_c, of_tables, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan, PlannedRule
-from rvmon.plan.planning import plan_of
+from rvmon.plan.planning import plan_in_units, plan_of
 from rvmon.spec.checked.selection import requirements_asked
 
 
-def plan_requirements(
-    compiled: CompiledSpec,
-    requirements: Sequence[CompiledRequirement],
-    *,
-    explained: bool = True,
-) -> Plan:
-    """The plan of some requirements of a specification; it is made once.
+def plan_requirements(compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]) -> Plan:
+    """The plan of some requirements of a specification, of which somebody will ask what is owed.
+
+    It is made once.
 
     Args:
         compiled: the specification.
         requirements: chosen from it.
-        explained: whether somebody will ask what is owed: the tables are smaller if not.
     """
-    key = "plan", tuple(one.requirement.id for one in requirements), explained
+    key = "plan", tuple(one.requirement.id for one in requirements)
     made = compiled.forms.get(key)
     if not isinstance(made, Plan):
-        made = plan_of(compiled.checked, [_rule(one, explained) for one in requirements])
+        made = plan_of(compiled.checked, [_rule(one, explained=True) for one in requirements])
         compiled.forms[key] = made
     return made
 
 
-def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) -> PlannedRule:
+def _rule(one: CompiledRequirement, *, explained: bool, hidden: bool = False) -> PlannedRule:
     # In this process what judges attempts in doubt is made when one comes up.
     automaton = None if hidden and explained else _planned(one, explained)
     obligation = one.obligation
+    doubted = one.doubted if one.requirement.for_each is not None else None
+    captures = bool(one.requirement.captures)
     return PlannedRule(
         one.requirement,
         obligation.trigger,
@@ -49,14 +48,25 @@ def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) ->
         again=obligation.again,
         unborn=obligation.unborn,
         determined=obligation.determined,
-        hidden=None if one.hidden is None else _rule(one.hidden, explained, hidden=True),
+        hidden=None if one.hidden is None else _rule(one.hidden, explained=explained, hidden=True),
         noted=tuple(leaf for leaf, _ in one.leaves) if explained else None,
+        doubted=None if doubted is None else _rule(doubted, explained=explained, hidden=True),
+        running=obligation.running if captures else None,
+        blurs=_blurs(one) if captures else None,
+        blurs_anywhere=obligation.doubt is not None,
     )
+
+
+def _blurs(one: CompiledRequirement) -> State | None:
+    """What is UNKNOWN where an attempt may have begun with other values than it captured."""
+    obligation = one.obligation
+    # What it owes by a trigger that is TRUE, it owes at one position.
+    return obligation.doubt or (obligation.trigger if one.is_beside else None)
 
 
 def _planned(requirement: CompiledRequirement, explained: bool) -> Automaton | None:
     """The automaton of a requirement that generated code is to step; `None`: a judge does."""
-    if of_generated(requirement) is not None:
+    if of_tables(requirement) is not None:
         return None
     return requirement.automaton if explained else requirement.slim
 
@@ -78,4 +88,4 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     chosen = compiled.chosen(ids)
     refuse(chosen, of_c, "generated code")
-    return plan_requirements(compiled, chosen, explained=False)
+    return plan_in_units(compiled.checked, [_rule(one, explained=False) for one in chosen])

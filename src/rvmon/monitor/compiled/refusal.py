@@ -124,9 +124,11 @@ def _of_captured(one: CompiledRequirement) -> Refusal | None:
 
 def of_generated(one: CompiledRequirement) -> Refusal | None:
     """What generated Python cannot judge."""
-    refusal = _of_captured(one)
-    if refusal is not None:
-        return refusal
+    return _of_captured(one) or of_tables(one)
+
+
+def of_tables(one: CompiledRequirement) -> Refusal | None:
+    """What generated code has no automaton for."""
     if one.automaton is None:
         return Refusal(f"has no automaton ({one.refusal})", _LEAVE_OUT, "network")
     if isinstance(one.automaton.class_of, LetterDiagram):
@@ -140,7 +142,7 @@ def of_c(one: CompiledRequirement) -> Refusal | None:
     if one.spec.max_delay is not None:
         mend = "leave out `max delay`, or use the engine `auto`"
         return Refusal("has samples that come late (`max delay`)", mend, "python")
-    return _of_captured(one)
+    return None
 
 
 def of_columns(one: CompiledRequirement) -> Refusal | None:

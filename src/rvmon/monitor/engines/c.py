@@ -61,7 +61,9 @@ class C:
             columns = columns_of(compiled, source, asked)
             report = evaluate_columns(checked, library, columns, source.end)
         except NotPlainError:
-            report = evaluate_samples(checked, library, source)
+            chosen = compiled.chosen(asked.only)
+            single = frozenset().union(*(one.single_payloads for one in chosen))
+            report = evaluate_samples(checked, library, source, single)
         return replace(report, engine=self.name)
 
 

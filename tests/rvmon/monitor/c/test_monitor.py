@@ -367,14 +367,19 @@ def test_a_monitor_is_freed(spec):
     assert gone() is None
 
 
-def test_beyond_compiled_monitors():
-    """What captures values is refused with what to do."""
-    text = (
-        "spec s\nsignal x : real\nsignal p : bool\nrequirement R1\n"
-        "  upon p\n  then within 1 s x > v\n  let v = x\n"
-    )
-    with pytest.raises(RvmonError, match=r"R1 uses `let`.*leave it out"):
-        rvmon.loads(text).monitor(engine="c")
+def test_captured_values_are_told():
+    """Attempts say what they captured, with the types that were declared."""
+    monitor = rvmon.loads(
+        "spec s\nsignal x : int\nsignal mode : {red, green}\nevent e(k: int)\nrequirement R1\n"
+        "  upon e\n  then within 1 s x > v\n  for each i in e.k\n  let v = x\n  let m = mode\n"
+        "  let h = x / 2\n"
+    ).monitor(engine="c")
+    monitor.step(0.0, {"x": 3, "e": ({"k": 2}, {"k": 1})})
+    assert [one.captured["i"] for one in monitor.open] == [2, 1]
+    passed = monitor.step(0.5, {"x": 4, "mode": "green"})
+    assert [(one.name, one.captured["i"]) for one in passed] == [("R1#1", 2), ("R1#2", 1)]
+    assert passed[0].captured == {"i": 2, "v": 3, "m": None, "h": 1.5}
+    assert isinstance(passed[0].captured["v"], int)
 
 
 def test_no_headers(spec, monkeypatch, tmp_path):

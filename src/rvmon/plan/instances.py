@@ -1,0 +1,117 @@
+"""What the instances of a `for each`, and attempts with captured values, depend on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from rvmon.formula.state import Lapsed, Leaf, State, StateOp
+from rvmon.plan.graph import Graph
+from rvmon.plan.leaves import captured_names
+from rvmon.plan.numbers import events_of
+from rvmon.spec.checked.formula import Captured, Compare, CompareOp, EventAtom, FieldValue
+from rvmon.spec.checked.specification import ForEach
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """What an instance depends on; worked out once for a requirement.
+
+    Attributes:
+        varying: the nodes whose value depends on the instance's, though its event does not occur.
+        own: these, and those that read its event.
+        fields: by event, the field that has to have the value; else it does not concern it.
+        others: the names that concern all instances.
+        is_fresh: whether one can be made from what an instance of no value remembers.
+        begins: whether nothing starts in it but where its event occurs.
+    """
+
+    varying: frozenset[int]
+    own: frozenset[int]
+    fields: Mapping[str, FieldValue]
+    others: frozenset[str]
+    is_fresh: bool
+    begins: bool
+
+
+def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: bool) -> Reach:
+    """What the instances of a requirement depend on.
+
+    Occurrences of its event that an instance of no value sees are unknown, and so are comparisons
+    of their fields, with whatever value.
+
+    Args:
+        graph: of its state formulas, but of those of attempts with captured values.
+        each: of the requirement.
+        trigger: the same.
+        looks_back: whether what it owes looks back at what lies ahead.
+    """
+    event = each.value.event
+    leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}
+    reads = {place for place, leaf in leaves.items() if each.name in captured_names(leaf)}
+    own = frozenset(graph.by_name.get(event, ()))
+    varying = above(graph, reads - own)
+    fields = {event: each.value}
+    for name, places in graph.by_name.items():
+        found = {_compared(leaves[place], name, each.name) for place in places}
+        field = found.pop()
+        if name != event and not found and field is not None:
+            fields[name] = field
+    return Reach(
+        varying,
+        above(graph, reads | own),
+        fields,
+        frozenset(graph.by_name.keys() - fields.keys()),
+        varying.isdisjoint(graph.stateful) and not looks_back,
+        trigger is not None and _occurs(trigger, event),
+    )
+
+
+def varying(graph: Graph) -> frozenset[int]:
+    """The nodes whose value depends on captured values, or on whether these are known."""
+    leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}
+    reads = [n for n, leaf in leaves.items() if isinstance(leaf, Lapsed) or captured_names(leaf)]
+    return above(graph, reads)
+
+
+def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
+    """Some nodes and all that depend on them."""
+    found = set(leaves)
+    for place, operands in enumerate(graph.operands):
+        if not found.isdisjoint(operands):
+            found.add(place)
+    return frozenset(found)
+
+
+def _compared(leaf: Leaf, event: str, name: str) -> FieldValue | None:
+    """The field of an event that a leaf compares with a captured value, if it asks no more."""
+    match leaf:
+        case Compare(CompareOp.EQ, FieldValue() as field, Captured(name=found)):
+            pass
+        case Compare(CompareOp.EQ, Captured(name=found), FieldValue() as field):
+            pass
+        case _:
+            return None
+    return field if found == name and field.event == event else None
+
+
+def _occurs(state: State, event: str) -> bool:
+    """Whether a state formula is FALSE wherever an event does not occur."""
+    match state.leaf:
+        case None:
+            pass
+        case EventAtom(name=name):
+            return name == event
+        case Compare(left=left, right=right):
+            return event in events_of(left, right)
+        case _:
+            return False
+    match state.op:
+        case StateOp.AND:
+            return any(_occurs(one, event) for one in state.args)
+        case StateOp.OR:
+            return all(_occurs(one, event) for one in state.args)
+        case StateOp.SURE | StateOp.DOUBT:
+            return _occurs(state.args[0], event)
+        case _:
+            return False
