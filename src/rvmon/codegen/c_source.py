@@ -147,7 +147,7 @@ class _Writer:
             "NAMES": len(plan.signals) + len(plan.events),
             "FIELDS": len(names.fields),
             "NODES": len(plan.graph.nodes),
-            "OWN_RULES": len(plan.rules),
+            "RULES_HERE": len(plan.rules),
             "RULES": len(plan.asked),
             "UNITS": len(plan.units),
             "JUDGES": len(plan.judges),
