@@ -146,7 +146,7 @@ def test_the_command_writes_a_folder(tmp_path, capsys):
 
 def named(name: str) -> rvmon.Spec:
     """The specification of everything, of another name."""
-    return rvmon.loads(SPEC.replace("spec everything", f"spec {name}"))
+    return rvmon.loads(SPEC.replace("spec everything", f"spec `{name}`"))
 
 
 @pytest.mark.parametrize("name", ["n", "print", "reach", "step", "string", "switch", "rule"])
