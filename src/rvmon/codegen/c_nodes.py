@@ -221,8 +221,10 @@ def _storing(place: int, heard: _Heard) -> str:
 
 
 def _stored(plan: Plan) -> set[int]:
-    """The nodes whose truth is read elsewhere than in their group."""
+    """The nodes whose truth is read elsewhere than in their group; all, if decisions are noted."""
     graph = plan.graph
+    if all(rule.noted is not None for rule in plan.rules):
+        return set(range(len(graph.nodes)))
     found = {graph.index[state] for rule in plan.rules for state in rule.states}
     found |= set(graph.reads)  # samples are compared with the leaves
     for place, parents in enumerate(graph.parents):

@@ -9,10 +9,22 @@ from typing import TYPE_CHECKING
 from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.errors import RvmonError
 from rvmon.formula.numeric import operands
-from rvmon.spec.checked.formula import Compare, Literal, Probe, ProbeAtom, SignalValue
+from rvmon.formula.state import Lapsed, Lost, StateOp
+from rvmon.plan.graph import graph_of
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import (
+    Arithmetic,
+    Compare,
+    Constant,
+    Literal,
+    Numeric,
+    Probe,
+    ProbeAtom,
+    SignalValue,
+)
 
 if TYPE_CHECKING:
-    from rvmon.formula.state import Leaf
+    from rvmon.formula.state import Leaf, State
     from rvmon.monitor.compiled.requirement import CompiledRequirement
 
 
@@ -63,6 +75,15 @@ def refuse(
 
 MOST_GENERATED = 2000
 """For more requirements no code is generated: it has a bit for each in numbers that it names."""
+
+_MOST_LEAVES = 39
+"""So many truth values fit into a number of 64 bits."""
+
+_MOST_STRETCHES = 64
+"""So many stretches of time a past operator of compiled code remembers."""
+
+_MODERATE = 1e50
+"""Sums and a few products of numbers up to this magnitude are finite."""
 
 _AUTO = "use the engine `auto`"
 _LEAVE_OUT = "leave it out (`only`, --only), or use the engine `auto`"
@@ -143,6 +164,88 @@ def of_c(one: CompiledRequirement) -> Refusal | None:
     return _of_captured(one)
 
 
+def of_prepared(one: CompiledRequirement) -> Refusal | None:
+    """What `auto` does not have compiled C judge, be that prepared: Python does all of it."""
+    generated = of_generated(one)
+    reason = _beyond_prepared(one) if generated is None else generated.reason
+    return Refusal(reason, _AUTO, "python") if reason else None
+
+
+def _beyond_prepared(one: CompiledRequirement) -> str:
+    stale = {name for name, signal in one.spec.signals.items() if signal.stale_after}
+    if one.spec.max_delay is not None:
+        return "has samples that come late (`max delay`)"
+    if one.gap not in (None, 1):
+        return "is clocked (`sampled every`)"
+    if found := sorted(stale & one.reads):
+        return f"reads `{found[0]}`, which becomes stale"
+    if len(one.leaves) > _MOST_LEAVES:
+        return f"reads more than {_MOST_LEAVES} propositions"
+    obligation = one.obligation
+    named = (obligation.trigger, obligation.again, obligation.unborn)
+    states = (state for state in named if state is not None)
+    known = graph_of([*states, *one.alphabet.propositions])
+    others = [state for state in one.shared_graph.nodes if state not in known.index]
+    if any(_may_be_unknown(state.leaf) for state in known.nodes):
+        return "compares what may be unknown though all signals are known"
+    if any(map(_keeps_many, known.nodes)):
+        return "remembers more than 60 stretches of time"
+    hidden = one.hidden
+    if (hidden is not None and hidden.network_plan.looks_back) or any(map(_remembers, others)):
+        return "remembers what it needs for attempts in doubt only"
+    return ""
+
+
+def _may_be_unknown(leaf: Leaf | None) -> bool:
+    """Whether a leaf may be unknown though all that it reads is known."""
+    match leaf:
+        case Lost() | Lapsed():
+            return True
+        case Compare(left=left, right=right):
+            return _is_wild(left) or _is_wild(right)
+        case _:
+            return False
+
+
+def _is_wild(expression: Numeric, products: int = 3) -> bool:
+    """Whether a number may be none, or infinite, though its operands are moderate."""
+    match expression:
+        case Literal(value=value):
+            return not isinstance(value, str) and abs(value) > _MODERATE
+        case Arithmetic(op=NumericOp.SQRT):
+            return True
+        case Arithmetic(op=NumericOp.DIV, args=(_, divisor)) if not _divides(divisor):
+            return True
+        case Arithmetic(op=op, args=args):
+            left = products - (op in (NumericOp.MUL, NumericOp.DIV))
+            return left < 0 or any(_is_wild(part, left) for part in args)
+        case _:
+            return False
+
+
+def _divides(expression: Numeric) -> bool:
+    """Whether a number is a divisor that is not too small."""
+    match expression:
+        case Literal(value=float() | int() as value):
+            return abs(value) * _MODERATE > 1
+        case _:
+            return False
+
+
+def _keeps_many(state: State) -> bool:
+    """Whether a past operator may remember more stretches of time than compiled code can."""
+    if state.op is not StateOp.SINCE or state.low == 0 or state.high is None:
+        return False
+    return state.high // (state.high - state.low + 1) > _MOST_STRETCHES - 4
+
+
+def _remembers(state: State) -> bool:
+    """Whether the value of a node that only attempts in doubt need is not seen from the present."""
+    if state.op is StateOp.SINCE:
+        return state.args[0].leaf != Constant(True) or state.low > 0 or state.high is not None
+    return state.op is StateOp.PREVIOUS or (state.op is StateOp.DOUBT and state.every)
+
+
 def of_columns(one: CompiledRequirement) -> Refusal | None:
     """What is not judged by arrays: it needs more than one clock, or more than present values."""
     generated = of_generated(one)
@@ -150,10 +253,6 @@ def of_columns(one: CompiledRequirement) -> Refusal | None:
         return Refusal(generated.reason, _AUTO, generated.engine)
     reason = _beyond_columns(one)
     return Refusal(reason, _AUTO, "python") if reason else None
-
-
-_MOST_LEAVES = 39
-"""So many truth values fit into a number of 64 bits."""
 
 
 def _beyond_columns(one: CompiledRequirement) -> str:
