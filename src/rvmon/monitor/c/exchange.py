@@ -332,7 +332,7 @@ def _take_rule(rule: Rule, words: Iterator[int], reached: int) -> int:
         if is_current:
             rule.current = triggered
         found.append((triggered, number, (location, anchors), seen))
-    rule.due, rule.restless = _instant(due), bool(restless)
+    rule.due, rule.restless = (_instant(due), bool(restless)) if found else (NEVER, False)
     if rule.gap is None:
         _see_when_due(rule, [token for _, _, token, _ in found], reached)
     _hold(rule, found)
