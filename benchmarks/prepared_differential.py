@@ -35,7 +35,7 @@ def main(argv: list[str]) -> int:
     while judged < options.pairs:
         number += 1
         seed = f"{options.seed}/{number}"
-        profile = Profile(time=MODELS[number % 2], captures=False, for_each=False, stale=False)
+        profile = Profile(time=MODELS[number % 2], captures=False, for_each=False)
         unknowns = number % 4 == 0
         traces = TraceProfile(samples=60, span=200, unknowns=unknowns, long=20)
         cases = [*cases_of(seed, profile, traces, options.traces)]

@@ -90,6 +90,9 @@ class Core(Protocol):
     def give_up(self) -> None:
         """Take no samples until the next `lend`."""
 
+    def is_fresh(self, t: int, /) -> bool:
+        """Whether all that can become stale is not so at `t`, if nothing comes."""
+
     def attend(self, attended: bool, /) -> None:
         """Say whether what hears of decisions is called; it says `free` when it has looked."""
 

@@ -198,12 +198,13 @@ class LendingMonitor(GeneratedMonitor):
         super()._judge(t, values)
 
     def _pass_to(self, t: int) -> None:
-        if self._is_lent and self._reached is not None:
-            if t > self._reached:
-                self._core.advance(t)
-                self._reached = t
-        else:
+        if self._is_lent and not self._core.is_fresh(t):
+            self._have_back()
+        if not self._is_lent:
             super()._pass_to(t)
+        elif self._reached is None or t > self._reached:
+            self._core.advance(t)
+            self._reached = t
 
     def _flush(self) -> Sequence[Attempt]:
         if not self._is_lent:

@@ -153,6 +153,7 @@ class Exchange:
             history = unit.h[signal] or History()
             yield self._bits(unit.s[signal])
             yield 2
+            yield _bounded(unit.stale_at[signal])
             yield from (history.updates, history.at, history.before_at)
             yield self._bits(history.last)
             yield self._bits(history.before)
@@ -234,7 +235,9 @@ class Exchange:
     def _take_values(self, unit: Unit, words: Iterator[int]) -> None:
         for signal, name in enumerate(self._plan.signals):
             value = self._value(name, next(words))
-            next(words)
+            _, stale_at = next(words), _instant(next(words))
+            if stale_at < NEVER:
+                unit.set_stale(signal, stale_at)
             updates, at, before_at = (next(words) for _ in range(3))
             last, before = (self._value(name, next(words)) for _ in range(2))
             if signal in self._read:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.errors import RvmonError
 from rvmon.formula.numeric import operands
-from rvmon.formula.state import Lapsed, Lost, StateOp
-from rvmon.plan.graph import graph_of
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Lapsed, Lost, StateOp, Unborn
+from rvmon.plan.graph import Graph, graph_of
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Arithmetic,
@@ -172,21 +172,18 @@ def of_prepared(one: CompiledRequirement) -> Refusal | None:
 
 
 def _beyond_prepared(one: CompiledRequirement) -> str:
-    stale = {name for name, signal in one.spec.signals.items() if signal.stale_after}
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
     if one.gap not in (None, 1):
         return "is clocked (`sampled every`)"
-    if found := sorted(stale & one.reads):
-        return f"reads `{found[0]}`, which becomes stale"
     if len(one.leaves) > _MOST_LEAVES:
         return f"reads more than {_MOST_LEAVES} propositions"
     obligation = one.obligation
     named = (obligation.trigger, obligation.again, obligation.unborn)
-    states = (state for state in named if state is not None)
-    known = graph_of([*states, *one.alphabet.propositions])
+    asked = {*named, *one.alphabet.propositions} - {None}
+    known = graph_of(state for state in asked if state is not None)
     others = [state for state in one.shared_graph.nodes if state not in known.index]
-    if any(_may_be_unknown(state.leaf) for state in known.nodes):
+    if _may_be_unknown(known, asked):
         return "compares what may be unknown though all signals are known"
     if any(map(_keeps_many, known.nodes)):
         return "remembers more than 60 stretches of time"
@@ -196,15 +193,41 @@ def _beyond_prepared(one: CompiledRequirement) -> str:
     return ""
 
 
-def _may_be_unknown(leaf: Leaf | None) -> bool:
-    """Whether a leaf may be unknown though all that it reads is known."""
+def _may_be_unknown(graph: Graph, asked: Container[State | None]) -> bool:
+    """Whether what is asked for, or remembered, may be unknown though all signals are known."""
+    found: list[int | None] = []  # a truth that stays; `None`: it is known, whatever it is
+    for state, operands_ in zip(graph.nodes, graph.operands, strict=True):
+        found.append(_lasting(state, [found[place] for place in operands_]))
+    return any(
+        truth == UNKNOWN and (state in asked or state.op in (StateOp.SINCE, StateOp.PREVIOUS))
+        for truth, state in zip(found, graph.nodes, strict=True)
+    )
+
+
+def _lasting(state: State, operands_: Sequence[int | None]) -> int | None:
+    """The truth that a state formula keeps, all signals being known; UNKNOWN if it may be that."""
+    if state.leaf is not None:
+        return _lasting_leaf(state.leaf)
+    decisive = {StateOp.AND: FALSE, StateOp.OR: TRUE}.get(state.op)
+    if decisive is not None and decisive in operands_:
+        return decisive
+    if UNKNOWN in operands_:
+        return UNKNOWN
+    return None
+
+
+def _lasting_leaf(leaf: Leaf) -> int | None:
     match leaf:
         case Lost() | Lapsed():
-            return True
+            return UNKNOWN
+        case Constant(value=value):
+            return TRUE if value else FALSE
+        case Unborn():
+            return FALSE
         case Compare(left=left, right=right):
-            return _is_wild(left) or _is_wild(right)
+            return UNKNOWN if _is_wild(left) or _is_wild(right) else None
         case _:
-            return False
+            return None
 
 
 def _is_wild(expression: Numeric, products: int = 3) -> bool:
