@@ -336,14 +336,16 @@ def _take_rule(rule: Rule, words: Iterator[int], reached: int) -> int:
             rule.current = triggered
         found.append((triggered, number, (location, anchors), seen))
     rule.due, rule.restless = (_instant(due), bool(restless)) if found else (NEVER, False)
-    if rule.gap is None:
-        _see_when_due(rule, [token for _, _, token, _ in found], reached)
+    # The compiled monitor asks some attempts sooner than has to be.
+    if rule.gap is None or isinstance(rule, BulkRule):
+        stepped_to = reached if rule.gap is None else position
+        _see_when_due(rule, [token for _, _, token, _ in found], stepped_to)
     _hold(rule, found)
     return count
 
 
 def _see_when_due(rule: Rule, tokens: Sequence[Any], reached: int) -> None:
-    """Where only samples are positions, the compiled monitor asks each attempt at each."""
+    """Work out when the attempts of a rule are due, all of which are as they were at `reached`."""
     machine, t = rule.machine, rule.position
     leads_on = any(not machine.stays(token, t, rule.letter) for token in tokens)
     ages = any(machine.row(token, t) != machine.row(token, reached) for token in tokens)
