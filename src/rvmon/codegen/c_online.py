@@ -32,7 +32,7 @@ from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 
 _PARTS = ("online.c.in", "online_calls.c.in", "online_type.c.in")
-_PARTS_BESIDE = (*_PARTS[:2], "beside.c.in", _PARTS[2])
+_PARTS_BESIDE = (*_PARTS[:2], "beside.c.in", "beside_state.c.in", _PARTS[2])
 
 _MODULE = "rvmon_online"
 

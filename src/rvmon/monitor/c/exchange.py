@@ -17,15 +17,11 @@ from rvmon.codegen.c_nodes import group_count, group_of
 from rvmon.codegen.c_online import NEVER as C_NEVER
 from rvmon.codegen.c_online import NOT_YET, OnlineLibrary, largest_taken
 from rvmon.formula.state import COMBINING, FALSE, TRUE, UNKNOWN, State, StateOp
-from rvmon.monitor.attempts.attempt_judge import Open
+from rvmon.monitor.c.exchange_rules import bounded, instant, is_plain, rule_words, take_rule
 from rvmon.monitor.online.generated import Forms, GeneratedEvaluators
-from rvmon.runtime.bulk import BulkRule, Run, packed, unpacked
 from rvmon.runtime.past import History
-from rvmon.runtime.rule import Rule
-from rvmon.runtime.solo import SoloRule
-from rvmon.runtime.table import next_cut
 from rvmon.runtime.unit import Unit
-from rvmon.runtime.values import NEVER, PASSED
+from rvmon.runtime.values import NEVER
 from rvmon.trace.schema import Kind
 
 MOST_STRETCHES = 64
@@ -84,7 +80,7 @@ class Exchange:
         unit = evaluators.unit
         if not self._names_read.isdisjoint(evaluators.outages.now):
             return None
-        if not self._is_known(unit) or not all(map(_is_plain, unit.rules)):
+        if not self._is_known(unit) or not all(map(is_plain, unit.rules)):
             return None
         if unit.gathered:
             unit.leave()  # what nobody reads has occurred
@@ -148,12 +144,12 @@ class Exchange:
             yield from (_or_not_yet(one) for one in unit.until[3 * place : 3 * place + 3])
         fading = {group_of(n) for n, p in enumerate(self._places) if unit.fading >> p & 1}
         yield from (int(group in fading) for group in range(group_count(self._plan)))
-        yield from (_bounded(unit.wakes[place]) for place in self._timed)
+        yield from (bounded(unit.wakes[place]) for place in self._timed)
         for signal in range(len(self._plan.signals)):
             history = unit.h[signal] or History()
             yield self._bits(unit.s[signal])
             yield 2
-            yield _bounded(unit.stale_at[signal])
+            yield bounded(unit.stale_at[signal])
             yield from (history.updates, history.at, history.before_at)
             yield self._bits(history.last)
             yield self._bits(history.before)
@@ -164,9 +160,9 @@ class Exchange:
         for place, _ in self._remembering(Memory.PAST):
             one = unit.marked[place]
             yield from (int(one.left), int(one.right), int(one.growing), len(one.runs))
-            yield from (_bounded(bound) for stretch in one.runs for bound in stretch)
+            yield from (bounded(bound) for stretch in one.runs for bound in stretch)
         for rule, count in zip(unit.rules, counts, strict=False):
-            yield from _rule_words(rule, count)
+            yield from rule_words(rule, count)
 
     def _remembering(self, kind: Memory) -> Iterator[tuple[int, State]]:
         """The nodes that remember something of a kind; their places in Python's plan."""
@@ -211,7 +207,7 @@ class Exchange:
             until[3 * place : 3 * place + 3] = [_unless_not_yet(next(words)) for _ in range(3)]
         for _ in range(group_count(self._plan)):
             next(words)
-        self._set_timers(unit, [_instant(next(words)) for _ in self._timed])
+        self._set_timers(unit, [instant(next(words)) for _ in self._timed])
         self._take_values(unit, words)
         self._take_memories(unit, words)
         for place, state_ in self._rest:
@@ -220,7 +216,7 @@ class Exchange:
             1 << place for place in self._places if v[place] and unit.momentary >> place & 1
         )
         for index, rule in enumerate(unit.rules[: len(self._plan.rules)]):
-            evaluators.counts[index] = _take_rule(rule, words, reached)
+            evaluators.counts[index] = take_rule(rule, words, reached)
         unit.resume()
         return taken
 
@@ -235,7 +231,7 @@ class Exchange:
     def _take_values(self, unit: Unit, words: Iterator[int]) -> None:
         for signal, name in enumerate(self._plan.signals):
             value = self._value(name, next(words))
-            _, stale_at = next(words), _instant(next(words))
+            _, stale_at = next(words), instant(next(words))
             if stale_at < NEVER:
                 unit.set_stale(signal, stale_at)
             updates, at, before_at = (next(words) for _ in range(3))
@@ -276,7 +272,7 @@ class Exchange:
             one.left, one.right, one.growing = (bool(next(words)) for _ in range(3))
             one.runs.clear()
             for _ in range(next(words)):
-                one.runs.append([_instant(next(words)), _instant(next(words))])
+                one.runs.append([instant(next(words)), instant(next(words))])
 
     def _see(self, unit: Unit, place: int, state: State) -> None:
         """Give a node that says what is not known its value: all was."""
@@ -286,87 +282,6 @@ class Exchange:
         elif state.leaf is not None or state.op in COMBINING:
             function: Any = unit.EVALUATE[place]
             unit.v[place] = function(unit, unit.position)
-
-
-def _is_plain(rule: Rule) -> bool:
-    """Whether no attempt of a rule is in doubt, or will be."""
-    if rule.hidden:
-        return not (rule.attempts or rule.running or rule.watches or rule.before == UNKNOWN)
-    if rule.clouded or rule.looking or rule.before == UNKNOWN:
-        return False
-    cuts = rule.machine.cuts_of
-    return 0 <= rule.letter < len(rule.machine.class_of) and all(
-        one.sure
-        and not one.clouded
-        and not one.void
-        and one.better is None
-        and one.doubt is None
-        and PASSED < one.token[0] < len(cuts)
-        and len(one.token[1]) == len(cuts[one.token[0]])
-        for one in rule.attempts
-    )
-
-
-def _rule_words(rule: Rule, count: int) -> Iterator[int]:
-    attempts: list[Open] = rule.undecided()
-    failed_at = NEVER if rule.failed_at is None else rule.failed_at
-    yield from (rule.before, int(rule.running), count, _bounded(rule.due), int(rule.restless))
-    yield from (int(rule.slides), rule.position, rule.letter, _bounded(failed_at), len(attempts))
-    for one in attempts:
-        location, anchors = one.token
-        yield from (one.triggered, one.number, location, packed(one.seen))
-        yield int(one.triggered == rule.current)
-        yield from anchors
-
-
-def _take_rule(rule: Rule, words: Iterator[int], reached: int) -> int:
-    """Have a rule go on; returns the number of its last attempt."""
-    before, running, count, due, restless = (next(words) for _ in range(5))
-    slides, position, letter, failed_at, size = (next(words) for _ in range(5))
-    rule.before, rule.running = before, bool(running)
-    rule.position, rule.letter, rule.other = position, letter, letter
-    rule.slides = bool(slides)
-    rule.failed_at = None if failed_at == C_NEVER else failed_at
-    rule.current = None
-    found = []
-    for _ in range(size):
-        triggered, number, location, seen, is_current = (next(words) for _ in range(5))
-        anchors = tuple([next(words) for _ in rule.machine.cuts_of[location]])
-        if is_current:
-            rule.current = triggered
-        found.append((triggered, number, (location, anchors), seen))
-    rule.due, rule.restless = (_instant(due), bool(restless)) if found else (NEVER, False)
-    # The compiled monitor asks some attempts sooner than has to be.
-    if rule.gap is None or isinstance(rule, BulkRule):
-        stepped_to = reached if rule.gap is None else position
-        _see_when_due(rule, [token for _, _, token, _ in found], stepped_to)
-    _hold(rule, found)
-    return count
-
-
-def _see_when_due(rule: Rule, tokens: Sequence[Any], reached: int) -> None:
-    """Work out when the attempts of a rule are due, all of which are as they were at `reached`."""
-    machine, t = rule.machine, rule.position
-    leads_on = any(not machine.stays(token, t, rule.letter) for token in tokens)
-    ages = any(machine.row(token, t) != machine.row(token, reached) for token in tokens)
-    rule.restless = leads_on or ages
-    cuts = [next_cut(machine, token, reached) for token in tokens]
-    rule.due = t + 1 if leads_on and t == reached else min(cuts, default=NEVER)
-
-
-def _hold(rule: Rule, found: Sequence[tuple[int, int, Any, int]]) -> None:
-    """Give a rule its open attempts, in runs where it has such."""
-    rule.runs, rule.attempts = {}, []
-    leaves = len(rule.clerk.leaves)
-    is_solo = isinstance(rule, SoloRule) and len(found) == 1 and found[0][2][0] == rule.place
-    for triggered, number, token, seen in found:
-        location = token[0]
-        if isinstance(rule, BulkRule):
-            rule.runs.setdefault(location, Run()).append(triggered, number, seen)
-        elif is_solo:
-            rule.runs[location] = (triggered, number, unpacked(seen, leaves))
-        else:
-            rule.attempts.append(rule.clerk.reopened(rule, number, triggered, token, seen))
 
 
 def _edge(memory: Any, *, ends: bool) -> tuple[int, int, int]:
@@ -396,14 +311,6 @@ def _combined(op: StateOp, truths: Sequence[int]) -> int:
             return min(truths)
         case _:
             return max(truths)
-
-
-def _bounded(word: int) -> int:
-    return C_NEVER if word > C_NEVER else word
-
-
-def _instant(word: int) -> int:
-    return NEVER if word == C_NEVER else word
 
 
 def _or_not_yet(instant: int | None) -> int:
