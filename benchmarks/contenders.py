@@ -103,6 +103,7 @@ _STEPS = (
     ("rvmon table", "step", "automaton"),
     ("rvmon step", "step", "python"),
     ("rvmon step, changes", "changes", "python"),
+    ("rvmon step, prepared", "step", "prepared"),
     ("rvmon step, C", "step", "c"),
 )
 _COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evaluate", "c"))

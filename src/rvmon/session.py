@@ -124,10 +124,13 @@ class Spec:
     def prepare(
         self, *, only: Iterable[str] | None = None, ready: Callable[[Prepared], object] = id
     ) -> tuple[Prepared, ...]:
-        """Compile ahead, into the cache, what the engine `c` would compile at its first use.
+        """Compile ahead, into the cache, what makes streams faster and nothing else different.
+
+        `monitor()` then has compiled code beside it, where `engines` says of no requirement that
+        it is refused as `prepared`. Compiled as well is what the engine `c` would at its first use.
 
         Args:
-            only: ids of the requirements, as the engine will be asked for them; default all.
+            only: ids of the requirements, as the engines will be asked for them; default all.
             ready: told each file when it is there.
 
         Raises:

@@ -241,9 +241,11 @@ def _storing(place: int, heard: _Heard) -> str:
 
 
 def _stored(plan: Plan) -> set[int]:
-    """The nodes whose truth is read elsewhere than in their group."""
+    """The nodes whose truth is read elsewhere than in their group; all, if decisions are noted."""
     graph = plan.graph
-    if any(rule.is_apart for rule in plan.rules):
+    if any(rule.is_apart for rule in plan.rules) or all(
+        rule.noted is not None for rule in plan.rules
+    ):
         return set(range(len(graph.nodes)))  # also by `varying_source`
     found = {graph.index[state] for rule in plan.rules for state in rule.states}
     found |= set(graph.reads)  # samples are compared with the leaves

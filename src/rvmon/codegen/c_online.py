@@ -22,16 +22,19 @@ from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
-from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array
+from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array, lists
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
 from rvmon.errors import RvmonError
+from rvmon.formula.numeric import operands
 from rvmon.plan.plan import Plan
+from rvmon.spec.checked.formula import Arithmetic, Compare, FieldValue, UpdateValue
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 
 _PARTS = ("online.c.in", "online_calls.c.in", "online_type.c.in")
+_PARTS_BESIDE = (*_PARTS[:2], "beside.c.in", "beside_state.c.in", _PARTS[2])
 
 _MODULE = "rvmon_online"
 
@@ -92,6 +95,24 @@ class Core(Protocol):
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 
+    def lend(self, state: bytes, ledger: list[Attempt], /) -> None:
+        """Take a state over, beside a monitor in Python; what is decided comes into its ledger."""
+
+    def take_back(self) -> bytes:
+        """The state, as `lend` takes it; Python goes on from there once it says `give_up`."""
+
+    def give_up(self) -> None:
+        """Take no samples until the next `lend`."""
+
+    def is_fresh(self, t: int, /) -> bool:
+        """Whether all that can become stale is not so at `t`, if nothing comes."""
+
+    def attend(self, attended: bool, /) -> None:
+        """Say whether what hears of decisions is called; it says `free` when it has looked."""
+
+    def free(self) -> None:
+        """Have samples be taken, as before a decision was heard of."""
+
     def close(self, until: int | None, /) -> int:
         """End the run; gives the last instant, or `NOT_YET`."""
 
@@ -110,8 +131,11 @@ class Core(Protocol):
     def times(self) -> tuple[bool, int, int, int]:
         """Whether there was a sample; when the first one was, the last, and the present."""
 
-    def hold(self, held: bool, /) -> None:
-        """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly."""
+    def hold(self, held: bool, /) -> bool:
+        """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly.
+
+        False, and nothing is done, while a decision is heard of.
+        """
 
     def next_due(self) -> int:
         """The next instant at which time alone can decide something, or `NEVER`."""
@@ -142,6 +166,8 @@ class OnlineLibrary:
         *,
         look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]],
         look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
+        heard: Callable[[Sequence[Attempt]], object] | None = None,
+        details: Any = None,
     ) -> Core:
         """Begin a run.
 
@@ -149,6 +175,8 @@ class OnlineLibrary:
             absent: the names without a source.
             look_closer: judges the samples that are not plain values in a `dict`, at seconds.
             look_closer_ns: the same at ticks.
+            heard: beside Python, hears of decisions if they are attended.
+            details: beside Python what gives attempts their other fields, one per rule.
         """
         plan, names = self.plan, self.names
         called = (*plan.signals, *plan.events)
@@ -165,24 +193,25 @@ class OnlineLibrary:
             {name: names.number(name) for name in called if name not in absent},
             bytes(name in absent for name in called),
             (look_closer, look_closer_ns),
-            RvmonError,
+            (RvmonError, heard),
             (
                 Attempt,
                 tuple(getattr(Attempt, name) for name in _SLOTS),
                 tuple(rule.requirement.id for rule in plan.asked),
                 VERDICTS,
                 DECISIONS,
-                _Details(plan),
+                _Details(plan) if details is None else details,
             ),
         )
 
 
-def online_build(plan: Plan, *, optimised: bool = True) -> Build:
+def online_build(plan: Plan, *, optimised: bool = True, beside: bool = False) -> Build:
     """The module of a plan.
 
     Args:
         plan: of requirements that all have automata.
         optimised: whether it is to be fast; otherwise it is compiled sooner.
+        beside: whether it stands beside a monitor in Python, which lends its state.
 
     Raises:
         RvmonError: a number of the specification is no double.
@@ -191,29 +220,40 @@ def online_build(plan: Plan, *, optimised: bool = True) -> Build:
     named = replace(plan, spec=replace(plan.spec, name="rvmon"))
     made = c_files(named)
     name = f"{made.prefix}_online.c"
-    texts = {**made.texts, name: online_source(named), "python.txt": sys.version}
+    texts = {**made.texts, name: online_source(named, beside=beside), "python.txt": sys.version}
     flags = [*(FAST if optimised else ("-O0",)), *_SHARED]
     return Build(
         texts, [name, *made.units], EXTENSION_SUFFIXES[0], flags, sysconfig.get_path("include")
     )
 
 
-def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
+def online_library(plan: Plan, *, optimised: bool = True, beside: bool = False) -> OnlineLibrary:
     """Compile a plan, once for each content.
 
     Args:
-        plan: as for `online_build`; so is the next.
+        plan: as for `online_build`; so are the others.
         optimised: whether it is to be fast.
+        beside: see there.
 
     Raises:
         RvmonError: there is no C compiler, or no header of Python; a requirement has no automaton,
             or a number of the specification is no double.
     """
-    type_ = loaded(online_build(plan, optimised=optimised), _type_in)
+    return library_of(plan, loaded(online_build(plan, optimised=optimised, beside=beside), type_in))
+
+
+def library_of(plan: Plan, type_: Callable[..., Core]) -> OnlineLibrary:
+    """A plan with the type that it was compiled to."""
     return OnlineLibrary(plan, Names(plan), whole_limits(plan), type_)
 
 
-def _type_in(path: Path) -> Callable[..., Core]:
+def type_in(path: Path) -> Callable[..., Core]:
+    """The type that a compiled module has.
+
+    Raises:
+        OSError: it cannot be loaded; so says the next.
+        ImportError: see there.
+    """
     loader = ExtensionFileLoader(_MODULE, str(path))
     spec = spec_from_loader(_MODULE, loader)
     if spec is None:
@@ -224,17 +264,52 @@ def _type_in(path: Path) -> Callable[..., Core]:
     return made
 
 
-def online_source(plan: Plan) -> str:
-    """The source of the module; it includes that of `rvmon.codegen.c_source.c_files`."""
+def online_source(plan: Plan, *, beside: bool = False) -> str:
+    """The source of the module; it includes that of `rvmon.codegen.c_source.c_files`.
+
+    Args:
+        plan: see `online_build`; so is the other.
+        beside: see there.
+    """
     names = Names(plan)
     places = {  # the first ones hold others
+        "BESIDE_HEAD": template("beside_head.c.in") if beside else "",
+        "BESIDE": str(int(beside)),
         "HEAP": template("heap.c.in"),
-        "KINDS": "\n".join(_kinds(plan, names)),
+        "KINDS": "\n".join((*_kinds(plan, names), *(_noted(plan, names) if beside else ()))),
         "SPEC": comment(plan.spec.name),
         "PREFIX": names.prefix.upper(),
         "prefix": names.prefix,
     }
-    return filled("".join(template(part) for part in _PARTS), places)
+    parts = _PARTS_BESIDE if beside else _PARTS
+    return filled("".join(template(part) for part in parts), places)
+
+
+def _noted(plan: Plan, names: Names) -> Iterator[str]:
+    """What a module beside Python notes, and what it may take."""
+    index = plan.graph.index
+    leaves = [[index[leaf] for leaf in rule.noted or ()] for rule in plan.rules]
+    yield from lists("read_first", "read_leaves", leaves)
+    compared = [state.leaf for state in plan.graph.nodes if isinstance(state.leaf, Compare)]
+    sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
+    parts = [part for side in sides for part in operands(side)]
+    read = {(part.event, part.field) for part in parts if isinstance(part, FieldValue)}
+    yield array("uint8_t", "fields_read", [int(one in read) for one in names.fields])
+    largest = largest_taken(plan)
+    test = "(x) == (x)" if largest is None else f"((x) <= {largest!r}) && ((x) >= -{largest!r})"
+    yield f"#define IS_WELCOME(x) ({test})"
+
+
+_MODERATE = 1e50
+"""Up to this magnitude sums and a few products of numbers are finite."""
+
+
+def largest_taken(plan: Plan) -> float | None:
+    """The greatest magnitude of a number that a module beside Python takes; `None`: any."""
+    compared = [state.leaf for state in plan.graph.nodes if isinstance(state.leaf, Compare)]
+    sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
+    calculates = any(isinstance(side, Arithmetic | UpdateValue) for side in sides)
+    return _MODERATE if calculates else None
 
 
 def _kinds(plan: Plan, names: Names) -> Iterator[str]:

@@ -12,13 +12,17 @@ from rvmon.report.plain_table import plain_table
 
 _HEAD = ("", "online", "recording", "why not another")
 
-_OF_C = "the engine c is taken by name only (rvmon prepare compiles it ahead): it gives no reasons"
+_OF_PREPARED = (
+    "in streams auto has what rvmon prepare compiled beside it, if it takes all requirements"
+)
+_OF_C = "the engine c is taken by name only: it gives no reasons"
 
 
 def engines_text(choices: Mapping[str, EngineChoice]) -> str:
     """A line per requirement: what `auto` takes, and what faster engines and `c` refuse.
 
-    Below them, if `c` refuses not all, why it is not taken all the same.
+    Below them, if something compiled ahead would be taken, when; and if `c` refuses not all, why it
+    is not taken all the same.
 
     Args:
         choices: by id, see `rvmon.monitor.engines.choice.choices`.
@@ -27,8 +31,12 @@ def engines_text(choices: Mapping[str, EngineChoice]) -> str:
         (shown_line(name), choice.online, choice.recording, _why(choice))
         for name, choice in choices.items()
     ]
-    table = plain_table([_HEAD, *rows])
-    return table if all("c" in choice.refused for choice in choices.values()) else table + _OF_C
+    told = []
+    if not any("prepared" in choice.refused for choice in choices.values()):
+        told.append(_OF_PREPARED)
+    if not all("c" in choice.refused for choice in choices.values()):
+        told.append(_OF_C)
+    return plain_table([_HEAD, *rows]) + "\n".join(told)
 
 
 def _why(choice: EngineChoice) -> str:

@@ -301,7 +301,7 @@ class BulkRule(Rule):
         if self.runs:
             self.settle_runs(self.position, t)
             self.due = min(self.due, self.next_cut(t))
-            if self.gap is not None and self.due > t:
+            if self.gap is not None and self.runs and self.due > t:
                 self.due = t
 
     def loosen(self) -> None:

@@ -272,7 +272,7 @@ class Rule(Starts):
         position = self.position
         self.restless = self.restless or self.due <= t
         self._drive_all(lambda token, _: settle(self.machine, token, position, t))
-        if self.gap is not None and self.due > t:
+        if self.gap is not None and self.attempts and self.due > t:
             self.due = t
 
     def _drive_all(self, drive: Drive) -> None:

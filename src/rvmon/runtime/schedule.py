@@ -186,6 +186,17 @@ class Schedule:
             following = self.position + ((t - self.position) // gap + 1) * gap
         self.resume_at = min(self.resume_at, following)
 
+    def _see_who_resumes(self) -> None:
+        """Forget those whose episode is over since their failure."""
+        self.resume_at = NEVER
+        failing = self.failing
+        while failing:
+            bit = failing & -failing
+            failing ^= bit
+            rule = self.rules[bit.bit_length() - 1]
+            if rule.failed_at is not None and rule.goes_on:
+                self.await_next(rule.failed_at)
+
     def note(self, rule: Rule) -> None:
         """Note when a requirement is due, and whether it has to be asked at the next position."""
         bit = 1 << rule.index
@@ -219,7 +230,9 @@ class Schedule:
         """The next position at which something can change without a further sample."""
         found = min(self.awaited, self.next_change())
         if self.GAP is not None:
-            found = min(found, self.resume_at)
+            if self.resume_at < NEVER:
+                self._see_who_resumes()
+                found = min(found, self.resume_at)
             if self.repeating:
                 found = min(found, self.position + self.GAP)
         return found

@@ -108,11 +108,12 @@ class NetworkJudge(AttemptJudge):
 
     def begin(self, t: int, triggered: int) -> None:
         """See `Rule`."""
+        is_behind, self.position = self.position < t, t
         attempt = self.clerk.opened(self, triggered, (WAITING, (t,)), self.is_sure)
         self.enter(triggered, plain=self.is_plain)
         self.attempts.append(attempt)
         self._begin_network()
-        if self._letters is None or self.position < t:
+        if self._letters is None or is_behind:
             self.visit(t)
         self._look(2 * t + 1)
         self._note_doubt()

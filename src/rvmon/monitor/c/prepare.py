@@ -12,6 +12,7 @@ from rvmon.codegen.c_batch import batch_build
 from rvmon.codegen.c_build import built
 from rvmon.codegen.c_online import online_build
 from rvmon.errors import RvmonError
+from rvmon.monitor.c.prepared import prepare_beside
 from rvmon.monitor.c.program import program_of
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.readers.blocks import NotPlainError
@@ -25,7 +26,8 @@ class Prepared:
     """One file that lies ready in the cache.
 
     Attributes:
-        use: `streams`, `columns`, or `short files`: what the engine `c` judges by it.
+        use: `auto`: the engine that takes it in streams; `streams`, `columns`, or `short files`:
+            what the engine `c` judges by it.
         path: of the file.
         size: bytes.
         seconds: that it took, few if it was there.
@@ -37,7 +39,7 @@ class Prepared:
     seconds: float
 
 
-USES = ("streams", "columns", "short files")
+USES = ("auto", "streams", "columns", "short files")
 
 
 def prepare(
@@ -54,7 +56,8 @@ def prepare(
         RvmonError: there is no compiler or no cache, or a requirement is beyond generated code.
     """
     plan = plan_alone(compiled, only)
-    makers: tuple[Callable[[], Path], ...] = (
+    makers: tuple[Callable[[], Path | None], ...] = (
+        lambda: prepare_beside(compiled, compiled.chosen(only)),
         lambda: built(online_build(plan)),
         lambda: built(batch_build(plan)),
         lambda: program_of(compiled, only),
@@ -67,6 +70,8 @@ def prepare(
         except NotPlainError as error:
             told = f"{error}: leave out RVMON_CACHE=off, and let no others write to its folder"
             raise RvmonError(told) from None
+        if path is None:
+            continue
         seconds = time.perf_counter() - started
         found.append(Prepared(use, path, path.stat().st_size, seconds))
         ready(found[-1])

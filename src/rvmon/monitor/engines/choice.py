@@ -17,7 +17,8 @@ class EngineChoice:
     Attributes:
         online: the engine that judges it in a stream, and in recordings sample by sample.
         recording: the engine that judges it in a recording of plain columns.
-        refused: by name of a faster engine, or of `c`, why not that.
+        refused: by name of a faster engine, or of `c`, why not that; as `prepared` why not what
+            `rvmon prepare` compiles to stand beside `python`.
     """
 
     online: str
@@ -28,8 +29,7 @@ class EngineChoice:
 def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineChoice]:
     """What `auto` takes, by id.
 
-    Never `c`, which needs a compiler and gives no reasons: what refuses it is told for those who
-    may ask for it.
+    Never `c`, which gives no reasons: what refuses it is told for those who may ask for it.
 
     Args:
         requirements: that are judged together.
@@ -40,7 +40,8 @@ def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineC
 def _choice(one: CompiledRequirement, count: int) -> EngineChoice:
     online, refused = _online(one, count)
     of_columns, of_c = refusal.of_columns(one), refusal.of_c(one)
-    refusals = {"columns": of_columns, **refused, "c": of_c}
+    prepared = refusal.of_prepared(one)
+    refusals = {"columns": of_columns, **refused, "c": of_c, "prepared": prepared}
     return EngineChoice(
         online,
         "columns" if of_columns is None else online,

@@ -57,6 +57,14 @@ def generated_or_tables(
         forms = compiled.forms.get(key)
         if not isinstance(forms, Forms):
             forms = compiled.forms[key] = forms_of(compiled, chosen, asked.sources)
+        lending = None
+        if engine == "auto" and asked.settle == "now" and compiled.checked.max_delay is None:
+            from rvmon.monitor.c.prepared import lending_monitor  # few have prepared anything
+
+            lending = lending_monitor(compiled, forms, asked.sources, asked.keep)
+        if lending is not None:
+            lending.judged_by = "c"
+            return lending
         monitor = GeneratedMonitor(forms, compiled, chosen, engine, *how)
     monitor.judged_by = judged_by(chosen)
     return monitor

@@ -93,7 +93,7 @@ class GeneratedEvaluators(Evaluators):
         other: takes the samples that need a closer look.
     """
 
-    STATE = ("outages", "unit", "_counts", *Evaluators.STATE)
+    STATE = ("outages", "unit", "counts", *Evaluators.STATE)
 
     def __init__(
         self,
@@ -111,12 +111,12 @@ class GeneratedEvaluators(Evaluators):
         super().__init__(spec, forms.others, engine, sources, ledger)
         self.unit = unit
         self.outages = Outages(spec, sources)
-        self._counts = [0] * len(forms.requirements)
+        self.counts = [0] * len(forms.requirements)
         clerks: list[Any] = [None] * (len(forms.requirements) + len(forms.plan.hidden_of))
         unit.restart(self, clerks)
         standing = UnitStanding(forms.plan, unit)
         self._clerks = [
-            UnitClerk(one, forms.plan, unit, standing, ledger, self._counts, noted)
+            UnitClerk(one, forms.plan, unit, standing, ledger, self.counts, noted)
             for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
         judged: list[CompiledRequirement | None] = [*forms.requirements]

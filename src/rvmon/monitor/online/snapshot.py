@@ -44,7 +44,7 @@ def snapshot(options: Options, evaluators: Evaluators, run: object) -> bytes:
     """
     document = {
         "rvmon": _version(),
-        "spec": _digest_of(options.compiled),
+        "spec": digest_of(options.compiled),
         "only": [one.requirement.id for one in options.requirements],
         "engine": options.engine,
         "settle": options.settle,
@@ -78,7 +78,7 @@ def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
             f"the snapshot was made by rvmon {document.get('rvmon')}, this is {_version()}: "
             "restore it with the version that made it"
         )
-    if document.get("spec") != _digest_of(compiled):
+    if document.get("spec") != digest_of(compiled):
         raise SnapshotError(
             f"the snapshot was made with another specification than `{compiled.checked.name}`: "
             "load the one it was made with, with the same constants"
@@ -141,7 +141,7 @@ def _version() -> str:
     return f"{version('rvmon')}, law {LAW}"
 
 
-def _digest_of(compiled: CompiledSpec) -> str:
+def digest_of(compiled: CompiledSpec) -> str:
     """See `digest`; worked out once for a compiled specification."""
     found = compiled.forms.get("digest")
     if not isinstance(found, str):

@@ -10,6 +10,7 @@ from rvmon.cli import main
 pytestmark = pytest.mark.compiler
 
 SPEC = "spec s\nsignal p : bool\nrequirement R1\n  always p\nrequirement R2\n  upon p then p\n"
+USES = ["auto", "streams", "columns", "short files"]
 TRACE = {"t": [0.0, 1.0], "p": [True, False]}
 
 
@@ -22,7 +23,7 @@ def home(tmp_path_factory):
         patch.delenv("RVMON_CACHE", raising=False)
         told = []
         found = rvmon.loads(SPEC).prepare(ready=told.append)
-        assert [one.use for one in found] == ["streams", "columns", "short files"]
+        assert [one.use for one in found] == USES
         assert tuple(told) == found
         assert all(one.size == one.path.stat().st_size for one in found)
     return folder
@@ -67,12 +68,12 @@ def test_the_command_says_what_is_ready(form, tmp_path, capsys):
     assert main(["prepare", str(tmp_path / "s.rv"), "--format", form]) == 0
     told = capsys.readouterr().out
     if form == "json":
-        assert [one["use"] for one in json.loads(told)] == ["streams", "columns", "short files"]
+        assert [one["use"] for one in json.loads(told)] == USES
         assert all(one["path"].startswith(str(tmp_path.parent)) for one in json.loads(told))
     else:
         head, *lines = told.splitlines()
         assert head.split() == ["for", "took", "size", "file"]
-        assert [line.split("  ")[0] for line in lines] == ["streams", "columns", "short files"]
+        assert [line.split("  ")[0] for line in lines] == USES
 
 
 def test_a_requirement_that_c_refuses_is_named(tmp_path, capsys):
@@ -89,8 +90,20 @@ def test_without_a_cache_nothing_can_be_prepared(monkeypatch):
         rvmon.loads(SPEC).prepare()
 
 
-def test_auto_takes_nothing_that_is_compiled():
-    """Its records have reasons, whatever lies ready."""
-    report = rvmon.loads(SPEC).evaluate(TRACE)
-    assert report.engine != "c"
+def test_auto_takes_what_is_compiled_and_gives_reasons():
+    """In streams; which engine it was is said, and nothing else tells them apart."""
+    spec = rvmon.loads(SPEC)
+    monitor = spec.monitor()
+    for t in range(6):
+        monitor.step(float(t), {"p": t % 3 > 0})
+    report = monitor.finish()
+    assert report.engine == monitor.judged_by == "c"
     assert all(attempt.reason for attempt in report.attempts)
+
+
+def test_what_auto_cannot_take_is_left_to_python():
+    """As with sources that are absent, or samples that come in portions."""
+    spec = rvmon.loads(SPEC)
+    assert spec.monitor(settle="next").judged_by == "python"
+    assert spec.monitor(sources=[]).judged_by == "python"
+    assert spec.monitor(only=["R1"]).judged_by == "python"

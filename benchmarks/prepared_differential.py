@@ -1,0 +1,62 @@
+r"""The engine `auto` with and without what was compiled ahead, compared in everything they say.
+
+    python -m benchmarks.prepared_differential --pairs 3000 --traces 10 --seed 1
+
+Returned records with their reasons, open attempts, next instants, verdicts, errors, snapshots taken
+up by the other, health, reports. Prints every difference; exits 1 if there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+from tests.tools.differential import cases_of
+from tests.tools.prepared import compiled_beside, differences
+
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+
+MODELS = (TimeModel.HELD, TimeModel.SAMPLED)
+
+
+def main(argv: list[str]) -> int:
+    """Compare so many pairs of a specification and a trace."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--pairs", type=int, default=1_000)
+    parser.add_argument("--traces", type=int, default=10, help="of the pairs with one spec")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--show", type=int, default=3, help="differences printed at most")
+    options = parser.parse_args(argv)
+    began = time.perf_counter()
+    judged = refused = samples = by_c = found = number = 0
+    while judged < options.pairs:
+        number += 1
+        seed = f"{options.seed}/{number}"
+        profile = Profile(time=MODELS[number % 2], captures=False, for_each=False)
+        unknowns = number % 4 == 0
+        traces = TraceProfile(samples=60, span=200, unknowns=unknowns, long=20)
+        cases = [*cases_of(seed, profile, traces, options.traces)]
+        pair = compiled_beside(cases[0].spec)
+        if pair is None:
+            refused += 1
+            continue
+        for index, case in enumerate(cases):
+            told, taken = differences(pair, case, f"{seed}/{index}")
+            judged += 1
+            samples += len(case.samples)
+            by_c += taken
+            if told:
+                found += 1
+                if found <= options.show:
+                    print(f"\n{'=' * 72}\nseed {seed}, trace {index}\n" + "\n".join(told[:8]))
+    seconds = time.perf_counter() - began
+    print(f"pairs {judged}, specifications refused {refused}, in {seconds:.0f} s")
+    print(f"samples {samples}, of them by C {by_c}; pairs that differ {found}")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

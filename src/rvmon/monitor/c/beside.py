@@ -1,0 +1,238 @@
+"""Monitors of generated Python that lend their state to compiled C wherever nothing is unknown.
+
+C takes the samples that say nothing but plain values, and notes with each decision what its reason
+is worked out from. For all else (unknown values, what is wrong, questions, the end) Python takes
+the state back: so nobody can tell the two apart but by the time they take.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rvmon.codegen.c_online import NOT_YET, OnlineLibrary
+from rvmon.errors import OverlapError
+from rvmon.monitor.c.exchange import Exchange
+from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.online.generated import Forms, GeneratedMonitor
+from rvmon.monitor.online.one_call import overlap
+from rvmon.monitor.records.deferred_reasons import DeferredReasons
+from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.plan import Plan
+from rvmon.plan.planning import plan_of
+from rvmon.runtime.nodes import LIMIT
+from rvmon.trace.sample import Value
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+if TYPE_CHECKING:
+    from rvmon.monitor.online.evaluators import Evaluators
+
+_FEW, _MANY = 4, 4096
+"""So many samples at least and at most Python takes before it lends its state again: doubled each
+time that it had it back soon."""
+
+
+def plan_beside(plan: Plan) -> Plan:
+    """What is compiled to stand beside generated Python: all but what tells of the unknown.
+
+    Args:
+        plan: of the generated Python.
+    """
+    known = [replace(rule, hidden=None, determined=None) for rule in plan.rules]
+    return plan_of(plan.spec, known)
+
+
+class _NotedReasons(DeferredReasons):
+    """Tells of decisions of compiled C, from the numbers that it noted."""
+
+    def of_words(self, attempt: Attempt, words: bytes) -> Mapping[str, Any]:
+        """See `DeferredReasons.details`; `note_decision` of `beside.c.in` has the order."""
+        seen, t, letter, position, location, clocks, *rest = array("q", words)
+        split = clocks + len(self.leaves) + 2 * len(self.places)
+        until = (None if one == NOT_YET else one for one in rest[split:])
+        before = (location, tuple(rest[:clocks]))
+        noted = (seen, t, before, letter, letter, position, *rest[clocks:split], *until)
+        return self._details(attempt, noted)
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """What monitors of one choice of requirements need of compiled C.
+
+    Attributes:
+        library: compiled.
+        exchange: of states.
+        details: per requirement, gives records their reasons.
+    """
+
+    library: OnlineLibrary
+    exchange: Exchange
+    details: tuple[Any, ...]
+
+
+def beside(forms: Forms, library: OnlineLibrary) -> Beside:
+    """What stands beside generated Python.
+
+    Args:
+        forms: what was generated.
+        library: compiled of its `plan_beside`.
+    """
+    reasons = [_NotedReasons(one, forms.plan, Ledger()) for one in forms.requirements]
+    return Beside(library, Exchange(forms, library), tuple(one.of_words for one in reasons))
+
+
+class LendingMonitor(GeneratedMonitor):
+    """A monitor of generated code that has compiled code beside it.
+
+    Args:
+        own: the compiled code.
+        forms: what was generated; of all requirements.
+        compiled: the specification.
+        requirements: to be judged.
+        engine: that was asked for.
+        sources: the names that can arrive; `None`: all.
+        keep: see `build_monitor`.
+    """
+
+    def __init__(
+        self,
+        own: Beside,
+        forms: Forms,
+        compiled: CompiledSpec,
+        requirements: Sequence[CompiledRequirement],
+        engine: str,
+        sources: frozenset[str] | None,
+        keep: int | None,
+    ) -> None:
+        names = {*compiled.checked.signals, *compiled.checked.events}
+        self._exchange = own.exchange
+        self._core = own.library.core(
+            frozenset() if sources is None else frozenset(names - sources),
+            look_closer=self._take_at,
+            look_closer_ns=self._by_python,
+            heard=self._heard,
+            details=own.details,
+        )
+        super().__init__(forms, compiled, requirements, engine, "now", sources, keep)
+        self.step, self.step_ns = self._core.step, self._core.step_ns
+
+    def _begin(self) -> None:
+        self._core.reset()
+        self._is_lent = False
+        self._wait, self._patience = 1, _FEW
+        super()._begin()
+
+    def _attend(self) -> None:
+        super()._attend()
+        self._core.attend(bool(self._listeners) or self.options.keep is not None)
+
+    def _enter(self) -> None:
+        """Have C take no samples, and note how far it has come."""
+        if not self._core.hold(True):
+            raise overlap()
+        if self._is_lent:
+            _, _, self._last, self._reached = self._core.times()
+        super()._enter()
+
+    def _leave(self) -> None:
+        super()._leave()
+        self._core.hold(False)
+
+    def _by_python(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample that C does not take."""
+        if self._is_lent:
+            return self._take(t_ns, values)
+        decided: Sequence[Attempt] = self._unit.step(t_ns, values)
+        self._wait -= 1
+        if self._wait <= 0:
+            with suppress(OverlapError):  # another call has come meanwhile
+                self.one_call(self._lend)
+        return decided
+
+    def _lend(self) -> None:
+        """Have C go on, if it can by now."""
+        state = None
+        if self._last is not None and self._reached is not None and self._report is None:
+            state = self._exchange.lent(self._unit_evaluators, self._last, self._reached)
+        self._wait = self._patience
+        self._patience = min(2 * self._patience, _MANY)
+        if state is not None:
+            self._core.lend(state, self._ledger.attempts)
+            self._is_lent = True
+            self._unit.wake = -LIMIT
+
+    def _have_back(self) -> None:
+        """Have Python go on."""
+        if self._is_lent:
+            taken = self._exchange.take_back(self._unit_evaluators, self._core.take_back())
+            self._is_lent = False
+            self._core.give_up()
+            if self._last is not None and self._reached is not None:
+                self._floor = max(self._last, self._reached - 1)
+            if taken > _MANY:
+                self._patience = _FEW
+            self._wait = self._patience
+
+    def _heard(self, decided: Sequence[Attempt]) -> None:
+        """Hear of what C has decided; it takes no sample until the records are bounded."""
+        try:
+            self._kept.bound(self._unit_evaluators)
+        finally:
+            self._core.free()
+        self._listeners.tell(decided)
+
+    def _judge(self, t: int, values: Mapping[str, Value]) -> None:
+        if self._is_lent:
+            try:
+                self._core.take(t, dict(values))
+            except ValueError:
+                self._have_back()
+            else:
+                self._last = self._reached = t
+                return
+        super()._judge(t, values)
+
+    def _pass_to(self, t: int) -> None:
+        if self._is_lent and not self._core.is_fresh(t):
+            self._have_back()
+        if not self._is_lent:
+            super()._pass_to(t)
+        elif self._reached is None or t > self._reached:
+            self._core.advance(t)
+            self._reached = t
+
+    def _flush(self) -> Sequence[Attempt]:
+        if not self._is_lent:
+            return super()._flush()
+        decided = self._core.flush()
+        self._kept.bound(self._unit_evaluators)
+        return decided
+
+    # What C does not know.
+
+    @property
+    def evaluators(self) -> Evaluators:
+        """See `Monitor`."""
+        self.one_call(self._have_back)
+        return super().evaluators
+
+    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        self._have_back()
+        return super()._conclude(t_ns)
+
+    def _put_away(self) -> bytes:
+        self._have_back()
+        return super()._put_away()
+
+    def _open(self) -> Sequence[Attempt]:
+        self._have_back()
+        return super()._open()
+
+    def _next_due(self) -> int | None:
+        self._have_back()
+        return super()._next_due()

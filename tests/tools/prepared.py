@@ -1,0 +1,194 @@
+"""The engine `auto` with and without what was compiled ahead: do they say the same of a case?"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from typing import Any
+
+from rvmon.codegen.c_online import online_library
+from rvmon.errors import RvmonError
+from rvmon.monitor.c import beside as beside_module
+from rvmon.monitor.c.beside import Beside, LendingMonitor, beside, plan_beside
+from rvmon.monitor.c.prepared import is_taken
+from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
+from rvmon.monitor.online.generated import Forms, GeneratedMonitor, forms_of
+from rvmon.monitor.online.monitor import Monitor
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.testing.case import Case
+from rvmon.testing.show import show_case
+from rvmon.trace.sample import Sample
+from rvmon.verdict.attempt import Attempt
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A specification in generated Python, and what is compiled to stand beside it."""
+
+    compiled: CompiledSpec
+    forms: Forms
+    own: Beside
+
+
+def compiled_beside(spec: CheckedSpec) -> Pair | None:
+    """Compile a specification; `None` if `auto` takes nothing that is compiled for it."""
+    compiled = compile_spec(replace(spec, max_delay=None))
+    chosen = compiled.chosen(None)
+    if not is_taken(chosen):
+        return None
+    forms = forms_of(compiled, chosen, None)
+    try:
+        library = online_library(plan_beside(forms.plan), optimised=False, beside=True)
+    except RvmonError:
+        return None
+    return Pair(compiled, forms, beside(forms, library))
+
+
+class _Counted(LendingMonitor):
+    """Lends whenever it can, and counts what C has taken."""
+
+    taken = 0
+
+    def _have_back(self) -> None:
+        if self._is_lent:
+            self.taken += int.from_bytes(self._core.take_back()[:8], "little")
+        super()._have_back()
+
+
+def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
+    """Lead both through a case and ask them at random; what they say otherwise, a line each.
+
+    Args:
+        pair: of the specification of the case.
+        case: what to tell them.
+        seed: of what is asked, and of wrong samples.
+
+    Returns:
+        The differences, and how many samples C took.
+    """
+    rng = random.Random(seed)
+    keep = rng.choice((None, None, None, 0, 2))
+    lends = rng.choice((1, 1, 3))
+    waits = (beside_module._FEW, beside_module._MANY)
+    beside_module._FEW = beside_module._MANY = lends
+    try:
+        run = _Run(pair, keep, rng.random() < 0.3)
+        for action in case.actions:
+            run.both(partial(_told, action=action))
+            for ask in _asked(rng, pair, action):
+                run.both(ask)
+            if rng.random() < 0.05:
+                run.put_away(across=rng.random() < 0.5)
+            if run.found:
+                break
+        run.both(lambda m: _report(m, case.end))
+    finally:
+        beside_module._FEW, beside_module._MANY = waits
+    taken = run.lending.taken if isinstance(run.lending, _Counted) else 0
+    return ([*run.found, show_case(case)] if run.found else []), taken
+
+
+class _Run:
+    def __init__(self, pair: Pair, keep: int | None, listens: bool) -> None:
+        compiled, forms = pair.compiled, pair.forms
+        chosen = compiled.chosen(None)
+        self.pair, self.keep = pair, keep
+        self.plain: Monitor = GeneratedMonitor(forms, compiled, chosen, "auto", "now", None, keep)
+        self.lending: Monitor = _Counted(pair.own, forms, compiled, chosen, "auto", None, keep)
+        self.found: list[str] = []
+        self.heard: tuple[list[str], list[str]] = ([], [])
+        if listens:
+            self.plain.on_decided(lambda one: self.heard[0].append(_shown(one)))
+            self.lending.on_decided(lambda one: self.heard[1].append(_shown(one)))
+            self.lending.on_failure(lambda _: self.lending.next_due)
+
+    def both(self, ask: Callable[[Monitor], Any]) -> None:
+        """Ask both the same."""
+        wanted, got = _answer(self.plain, ask), _answer(self.lending, ask)
+        if self.heard[0] != self.heard[1]:
+            self.found.append(_apart(self.heard[0], self.heard[1]))
+        if repr(wanted) != repr(got):
+            self.found.append(_apart(wanted, got))
+
+    def put_away(self, *, across: bool) -> None:
+        """Put both away, and take them up again, perhaps each as the other was."""
+        kept = (self.plain.snapshot(), self.lending.snapshot())
+        own, other = reversed(kept) if across else kept
+        before = self.lending
+        taken = before.taken if isinstance(before, _Counted) else 0
+        run = _Run(self.pair, self.keep, False)
+        for monitor, data in ((run.plain, own), (run.lending, other)):
+            _put_back(self.pair.compiled, monitor, data)
+        self.plain, self.lending = run.plain, run.lending
+        if isinstance(self.lending, _Counted):
+            self.lending.taken = taken
+
+
+def _apart(wanted: object, got: object) -> str:
+    """Where two texts of the same are no longer alike."""
+    texts = repr(wanted), repr(got)
+    size = next((n for n, (a, b) in enumerate(zip(*texts, strict=False)) if a != b), 0)
+    start = max(size - 150, 0)
+    return f"wanted …{texts[0][start : size + 150]}\n   got …{texts[1][start : size + 150]}"
+
+
+def _put_back(compiled: CompiledSpec, monitor: Monitor, data: bytes) -> None:
+    from rvmon.monitor.online.snapshot import document_of, put_back
+
+    put_back(document_of(compiled, data), monitor.options, monitor.evaluators, monitor)
+
+
+def _told(monitor: Monitor, action: Sample | int) -> list[str]:
+    if isinstance(action, Sample):
+        return [*map(_shown, monitor.step_ns(action.t, action.values))]
+    return [*map(_shown, monitor.advance_ns(action))]
+
+
+def _asked(
+    rng: random.Random, pair: Pair, action: Sample | int
+) -> Iterator[Callable[[Monitor], Any]]:
+    """What is asked behind an action."""
+    t = action.t if isinstance(action, Sample) else action
+    if rng.random() < 0.2:
+        yield lambda m: m.next_due
+    if rng.random() < 0.1:
+        yield lambda m: [*map(_shown, m.open)]
+    if rng.random() < 0.2:
+        yield lambda m: m.verdicts
+    if rng.random() < 0.1:
+        later = t + rng.choice((0, 1, 2))
+        yield lambda m: _told(m, later)
+    if rng.random() < 0.1:
+        name = rng.choice([*pair.compiled.checked.signals, "nothing"])
+        value: Any = rng.choice(["no such", None, [1], float("nan"), 1 << 70])
+        at = rng.choice([t, t + 1, t - 1])
+        yield lambda m: [*map(_shown, m.step_ns(at, {name: value}))]
+    if rng.random() < 0.05:
+        yield lambda m: [*map(_shown, m.step_ns(str(t), {}))]  # type: ignore[arg-type]
+
+
+def _report(monitor: Monitor, end: int | None) -> Any:
+    report = monitor.finish_ns(end)
+    attempts = [_shown(one) for one in report.attempts]
+    others = {
+        one.name: getattr(report, one.name)
+        for one in fields(report)
+        if one.name not in ("attempts", "engine")
+    }
+    return attempts, others
+
+
+def _answer(monitor: Monitor, ask: Callable[[Monitor], Any]) -> Any:
+    try:
+        return ask(monitor)
+    except RvmonError as error:
+        return type(error), str(error)
+
+
+def _shown(attempt: Attempt) -> str:
+    with suppress(AttributeError):
+        return repr(attempt)
+    return "an attempt that cannot be read"
