@@ -56,10 +56,10 @@ class RobustnessMonitor:
     def __init__(
         self,
         compiled: CompiledSpec,
-        *,
         only: Sequence[str] | None = None,
         settle: str = "now",
         sources: frozenset[str] | None = None,
+        *,
         streams: bool = False,
     ) -> None:
         if settle not in WAYS_TO_SETTLE:
