@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from rvmon.dataflow.margin_nodes import Rest
+from rvmon.codegen.python_margins import gauge_class
+from rvmon.dataflow.margin_end import End, Rest
 from rvmon.dataflow.margins import INFINITE, OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import FAR
@@ -83,6 +84,7 @@ class MarginJudge(AttemptJudge):
         self._readers = [self._reader(core, spec) for _, core in plan.leaves]
         self._passing = flow.gap is not None and any(then for _, then in self._readers)
         """Whether some leaf is another behind a position at which it is read."""
+        self._gauge = gauge_class(plan, flow.gap)
         self._least: Gauge | None = None
         self._greatest: Gauge | None = None
         self._waiting: list[tuple[Letter, Letter]] = []
@@ -147,14 +149,12 @@ class MarginJudge(AttemptJudge):
             later = [read() if then is None else then for read, then in self._readers]
             self._waiting.append(_letters(position + 1, later))
         if self._least is None:
-            self._least = Gauge(self._plan, self.flow.gap, position)
+            self._least = self._gauge(position)
             self._known = -FAR - 1
         if self._greatest is None:
             low, high = self._waiting[0]
             if low[1] != high[1]:
                 self._greatest = self._least.copy()
-        for gauge in self._gauges:
-            gauge.visit(position)
 
     @property
     def _gauges(self) -> list[Gauge]:
@@ -216,12 +216,18 @@ class MarginJudge(AttemptJudge):
         if self._least is None:
             return {}
         letters = self._letters(end // self._gap)
+        last = FAR if self.flow.gap is None else end // self._gap
         found: dict[Rest, dict[int, float]] = {}
         for rest, side in _SIDES.items():
             gauge = self._least if self._greatest is None or not side else self._greatest
             bounds = self._highs if side else self._lows
-            values = gauge.copy().finish(letters[side], end, reached, rest)
-            found[rest] = {**bounds, **dict(values)}
+            copied = gauge.copy()
+            values = copied.take(letters[side], last, reached)
+            found[rest] = {
+                **bounds,
+                **dict(values),
+                **dict(copied.end(End(end, last, rest), reached)),
+            }
         return {
             position * self._gap: self._figure(low, found[Rest.GREATEST][position], kept)
             for (position, low), kept in zip(
