@@ -33,6 +33,7 @@ class PlannedRule:
             is FALSE.
         noted: the formulas of which a record of a decision notes the values; `None`: no records
             are kept.
+        asked: further state formulas that are asked for their values.
     """
 
     requirement: Requirement
@@ -46,6 +47,7 @@ class PlannedRule:
     determined: State | None = None
     hidden: PlannedRule | None = None
     noted: tuple[State, ...] | None = None
+    asked: tuple[State, ...] = ()
 
     @property
     def states(self) -> Iterator[State]:
@@ -53,6 +55,7 @@ class PlannedRule:
         named = (self.trigger, self.again, self.unborn, self.determined)
         yield from (state for state in named if state is not None)
         yield from self.alphabet.propositions
+        yield from self.asked
         if self.hidden is not None:
             yield from self.hidden.states
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.errors import UnknownNameError
+from rvmon.formula.core import Literal
 from rvmon.monitor.compiled.refusal import of_c, of_generated, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -19,6 +20,7 @@ def plan_requirements(
     requirements: Sequence[CompiledRequirement],
     *,
     explained: bool = True,
+    measured: bool = False,
 ) -> Plan:
     """The plan of some requirements of a specification.
 
@@ -26,14 +28,20 @@ def plan_requirements(
         compiled: the specification.
         requirements: chosen from it.
         explained: whether somebody will ask what is owed: the tables are smaller if not.
+        measured: whether somebody will ask for the values of all that robustness is made of.
     """
-    return plan_of(compiled.checked, [_rule(one, explained) for one in requirements])
+    rules = [_rule(one, explained, measured=measured) for one in requirements]
+    return plan_of(compiled.checked, rules)
 
 
-def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) -> PlannedRule:
+def _rule(
+    one: CompiledRequirement, explained: bool, *, hidden: bool = False, measured: bool = False
+) -> PlannedRule:
     # In this process what judges attempts in doubt is made when one comes up.
     automaton = None if hidden and explained else _planned(one, explained)
     obligation = one.obligation
+    beside = one.hidden
+    read = [core for _, core in one.measured_plan.leaves] if measured else []
     return PlannedRule(
         one.requirement,
         obligation.trigger,
@@ -44,8 +52,9 @@ def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) ->
         again=obligation.again,
         unborn=obligation.unborn,
         determined=obligation.determined,
-        hidden=None if one.hidden is None else _rule(one.hidden, explained, hidden=True),
+        hidden=None if beside is None else _rule(beside, explained, hidden=True, measured=measured),
         noted=tuple(leaf for leaf, _ in one.leaves) if explained else None,
+        asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
     )
 
 

@@ -14,14 +14,27 @@ from rvmon.dataflow.robust import Gauge, Letter
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
-from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.robustness.values import Robustness
+from rvmon.plan.inputs import Input
 from rvmon.plan.leaves import reads
+from rvmon.plan.standing import Standing
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar
 
 _SIDES = {Rest.LEAST: 0, Rest.GREATEST: 1, Rest.END: 0}
+
+
+ODD = (LookupError, TypeError, OverflowError)
+"""What reading a leaf raises that is no plain number."""
+
+
+class Flow(Standing, Input, Protocol):
+    """What leaves are read of."""
+
+    @property
+    def absent(self) -> frozenset[str]:
+        """The names without a source."""
 
 
 class Gauger(Clerk, Protocol):
@@ -53,6 +66,8 @@ class MarginJudge(AttemptJudge):
         captured: values of `let` and `for each`.
         spec: gives the units.
         every: whether each position of a sample is measured, and not those of attempts alone.
+        known: gives the robustness of the leaves, or raises one of `ODD` where one is no plain
+            number; `None`: there is no such function.
 
     Attributes:
         positions: of its attempts, where each of them begins.
@@ -64,17 +79,18 @@ class MarginJudge(AttemptJudge):
         self,
         compiled: CompiledRequirement,
         plan: NetworkPlan,
-        flow: Evaluator,
+        flow: Flow,
         clerk: Gauger,
         captured: Mapping[str, Scalar],
         spec: CheckedSpec,
         *,
         every: bool,
+        known: Callable[[], Sequence[float]] | None = None,
     ) -> None:
         super().__init__(compiled, None, flow, clerk, captured)
         self.trigger = self.again = -1  # the other judge starts them
         self.watches = True
-        self._evaluator = flow
+        self._inputs = flow
         self.restless = True
         self.gauger = clerk
         self.every = every
@@ -85,6 +101,9 @@ class MarginJudge(AttemptJudge):
         self._passing = flow.gap is not None and any(then for _, then in self._readers)
         """Whether some leaf is another behind a position at which it is read."""
         self._gauge = gauge_class(plan, flow.gap)
+        # Elsewhere a sample is not all that there is to be known up to its instant.
+        goes_straight = not self._passing and compiled.obligation.trigger is not None
+        self._plain = known if goes_straight else None
         self._least: Gauge | None = None
         self._greatest: Gauge | None = None
         self._waiting: list[tuple[Letter, Letter]] = []
@@ -102,22 +121,24 @@ class MarginJudge(AttemptJudge):
         if isinstance(core, Constant):
             fixed = OF_TRUTH[TRUE if core.value else FALSE]
             return (lambda: fixed), None
-        evaluator, state = self._evaluator, core.proposition
-        place = evaluator.graph.index[state]
+        inputs, state = self._inputs, core.proposition
+        place, values = inputs.graph.index[state], inputs.values
 
         def truth() -> int:
-            return evaluator.v[place]
+            found: int = values[place]
+            return found
 
-        if core.sense is Sense.KNOWN_FALSE:
-            return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
-        later = None
-        if state.leaf is None:
-            read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
-        else:
-            read = margin_reader(state.leaf, truth, evaluator, self.captured, spec)
-            about = reads(state.leaf)
-            if about.momentary and not about.names & evaluator.absent:
+        leaf, later = state.leaf, None
+        if leaf is not None:
+            about = reads(leaf)
+            if about.momentary and not about.names & inputs.absent:
                 later = OF_TRUTH[FALSE]
+        if core.sense is Sense.KNOWN_FALSE:
+            known = None if later is None else OF_TRUTH[TRUE]
+            return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), known
+        read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
+        if leaf is not None:
+            read = margin_reader(leaf, truth, inputs, self.captured, spec)
         if core.sense is Sense.TRUE:
             return read, later
         return (lambda: _negated(read())), None if later is None else _negated(later)
@@ -139,6 +160,38 @@ class MarginJudge(AttemptJudge):
             self._enter(position)
         if self.every and t - self._gap < self.gauger.heard:
             self._ask(position)
+
+    def follow(self, t: int) -> None:
+        """Note what all leaves are at a sample, the flow being at `t`, and tell what is settled."""
+        if self.position < t:
+            if self._least is None and not (self.every or self._plan.looks_back):
+                self.position = t
+                return
+            if self._measured_plainly(t):
+                return
+            self.visit(t)
+        if self.every:
+            self._ask(t)
+        self.settle(t)
+
+    def _measured_plainly(self, t: int) -> bool:
+        """Measure the position `t` if all leaves are plain numbers and all before it is known."""
+        gauge, read = self._least, self._plain
+        if gauge is None or read is None or self._greatest or self._waiting or self._lows:
+            return False
+        try:
+            values = read()
+        except ODD:
+            return False
+        self.position = self._known = t
+        if self.every:
+            gauge.ask(t)
+        found = gauge.step(t, values, t, t)
+        if found:
+            for position, value in found:
+                self._tell(position, self._figure(value, value, value))
+            self._rest()
+        return True
 
     def _enter(self, position: int) -> None:
         """Read the leaves at a position; up to the one before it, they are known."""
@@ -190,6 +243,10 @@ class MarginJudge(AttemptJudge):
             for position in sorted(self._lows.keys() & self._highs.keys()):
                 low, high = self._lows.pop(position), self._highs.pop(position)
                 self._tell(position * self._gap, self._figure(low, high, low))
+        self._rest()
+
+    def _rest(self) -> None:
+        """Let go of what nobody asks for."""
         if not (self.attempts or self.every or self._plan.looks_back):
             self._least = self._greatest = None
 
