@@ -25,12 +25,12 @@ class WindowWriter(GaugeWriter):
         nothing = "INF" if node.every else "-INF"
         low, high = node.low, node.high
         yield f"wedge, exits, late = self.wedge{place}, self.exits{place}, self.late{place}"
+        yield f"until = limit = {self._limit(node)}"
         if low <= high:  # else no window holds anything
             yield from self.given(node.operand, "late")
-        yield f"until = {self.known(node.operand)} - {high}"
-        yield f"limit = {self._limit(node)}"
-        yield "if limit < until:"
-        yield "    until = limit"
+            yield f"known = {self.known(node.operand)} - {high}"
+            yield "if known < until:"
+            yield "    until = known"
         yield f"next_, nothing = self.next{place}, {nothing}"
         if self.sparse:
             state[f"at{place}"] = "deque()"

@@ -102,8 +102,8 @@ class MarginJudge(AttemptJudge):
         """Whether some leaf is another behind a position at which it is read."""
         self._gauge = gauge_class(plan, flow.gap)
         # Elsewhere a sample is not all that there is to be known up to its instant.
-        goes_straight = not self._passing and compiled.obligation.trigger is not None
-        self._plain = known if goes_straight else None
+        self._goes_straight = not self._passing and compiled.obligation.trigger is not None
+        self._plain = known
         self._least: Gauge | None = None
         self._greatest: Gauge | None = None
         self._waiting: list[tuple[Letter, Letter]] = []
@@ -176,12 +176,11 @@ class MarginJudge(AttemptJudge):
 
     def _measured_plainly(self, t: int) -> bool:
         """Measure the position `t` if all leaves are plain numbers and all before it is known."""
-        gauge, read = self._least, self._plain
-        if gauge is None or read is None or self._greatest or self._waiting or self._lows:
+        gauge = self._least
+        if gauge is None or self._greatest or self._waiting or self._lows:
             return False
-        try:
-            values = read()
-        except ODD:
+        values = self._plain_values() if self._goes_straight else None
+        if values is None:
             return False
         self.position = self._known = t
         if self.every:
@@ -193,11 +192,27 @@ class MarginJudge(AttemptJudge):
             self._rest()
         return True
 
+    def _plain_values(self) -> Sequence[float] | None:
+        """What the leaves are now; `None` if one of them is no plain number."""
+        if self._plain is None:
+            return None
+        try:
+            return self._plain()
+        except ODD:
+            return None
+
+    def _read(self, position: int) -> tuple[Letter, Letter]:
+        """What the leaves are from a position on, at least and at most."""
+        values = self._plain_values()
+        if values is None:
+            return _letters(position, [read() for read, _ in self._readers])
+        return (position, values), (position, values)
+
     def _enter(self, position: int) -> None:
         """Read the leaves at a position; up to the one before it, they are known."""
         if self._waiting and self._waiting[0][0][0] < position:
             self._pass(position - 1, position * self._gap)
-        self._waiting = [_letters(position, [read() for read, _ in self._readers])]
+        self._waiting = [self._read(position)]
         if self._passing:
             later = [read() if then is None else then for read, then in self._readers]
             self._waiting.append(_letters(position + 1, later))
