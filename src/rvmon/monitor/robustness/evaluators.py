@@ -15,6 +15,7 @@ from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.instance import Instance
 from rvmon.monitor.attempts.keyed import Keyed
+from rvmon.monitor.compiled.refusal import MOST_GENERATED
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.evaluator_maker import Captured
@@ -49,8 +50,10 @@ def measuring_forms(
     key = (MarginJudge, tuple(one.requirement.id for one in requirements), sources)
     if key not in compiled.forms:
         by_unit = [one for one in requirements if _is_for_unit(one)]
-        if any(one.obligation.trigger is None for one in requirements):
-            by_unit = []  # what it owes is told of whenever one of the others is asked
+        # What is owed at the end is told of whenever one of the others is asked.
+        waits = any(one.obligation.trigger is None for one in requirements)
+        if waits or len(requirements) > MOST_GENERATED:
+            by_unit = []
         forms = forms_of(compiled, by_unit, sources, measured=True)
         others = [one for one in requirements if one not in by_unit]
         compiled.forms[key] = replace(forms, others=others, unit=_watched(forms.unit))
