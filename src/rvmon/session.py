@@ -245,19 +245,26 @@ class Spec:
         engine: str = "auto",
         only: Iterable[str] | None = None,
         decided: Callable[[Sequence[Attempt]], object] = len,
+        robustness: bool = False,
     ) -> Report:
         """Judge a recording that is open; `evaluate` opens it as well.
 
         Args:
             source: the recording.
-            engine: as for `evaluate`; so is the next, and so are the errors.
-            only: ids of the requirements.
+            engine: as for `evaluate`; so is `only`, and so are the errors.
+            only: see there.
             decided: told the attempts as they are decided, where samples are judged one by one.
+            robustness: whether each attempt is to have its robustness.
         """
         from rvmon.monitor.engines.registry import Asked, engine_named
 
         asked = Asked(requirements_asked(self.checked, only), decided=decided)
-        return engine_named(engine).judge(self._compiled, source, asked)
+        judge = engine_named(engine).judge
+        if robustness:
+            from rvmon.monitor.measure import measuring
+
+            judge = measuring(judge)
+        return judge(self._compiled, source, asked)
 
     def _reading(
         self,
@@ -337,9 +344,6 @@ class Spec:
         Returns:
             The figures of the attempts by requirement and number, and as streams.
 
-        Raises:
-            TraceError, UnknownNameError: as of `evaluate`.
-
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
         from rvmon.monitor.measure import margins_of
@@ -375,8 +379,7 @@ class Spec:
         from rvmon.monitor.robustness.monitor import RobustnessMonitor
 
         only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
-        compiled = self._compiled
-        return RobustnessMonitor(compiled, only=only, settle=settle, sources=names, streams=streams)
+        return RobustnessMonitor(self._compiled, only, settle, names, streams=streams)
 
     @cached_property
     def coverage_model(self) -> SpecCoverage:

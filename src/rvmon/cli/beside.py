@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -14,8 +14,6 @@ from rvmon.verdict.illegal import IllegalHit
 if TYPE_CHECKING:
     from rvmon.coverage.hits import Hits
     from rvmon.coverage.monitor import CoverageMonitor
-    from rvmon.monitor.robustness.monitor import RobustnessMonitor
-    from rvmon.monitor.robustness.values import Measured
     from rvmon.verdict.report import Report
 
 Read = Callable[[FileRecording], Iterable[Sample]]
@@ -46,10 +44,10 @@ class Options:
 
 
 class Beside:
-    """Finds robustness and coverage on one recording.
+    """Finds coverage on one recording.
 
     Args:
-        spec: has coverpoints, or is asked for more than verdicts.
+        spec: may have coverpoints.
         options: say what is asked for.
         names: that have a source; `None`: all.
         end: the instant to which the recording is judged, ticks; default its last sample.
@@ -65,11 +63,7 @@ class Beside:
         self._spec = spec
         self._options = options
         self._end = end
-        self._margins: RobustnessMonitor | None = None
-        self._found: list[Measured] = []
         self._coverage: CoverageMonitor | None = None
-        if options.robustness:
-            self._margins = spec.robustness_monitor(only=options.only, sources=names)
         if options.coverage or spec.checked.coverpoints:
             self._coverage = spec.coverage_model.monitor(
                 sources=names, requirements=options.coverage
@@ -78,7 +72,7 @@ class Beside:
     @property
     def is_idle(self) -> bool:
         """Whether there is nothing to find."""
-        return self._margins is None and self._coverage is None
+        return self._coverage is None
 
     def reading(self, read: Read) -> Callable[[FileRecording], Iterator[Sample]]:
         """How to read a recording: each sample is seen here once it was judged."""
@@ -86,26 +80,13 @@ class Beside:
         def samples(recording: FileRecording) -> Iterator[Sample]:
             for sample in read(recording):
                 yield sample
-                if self._end is None or sample.t <= self._end:
-                    self._see(sample.t, sample.values)
+                if self._coverage is not None and (self._end is None or sample.t <= self._end):
+                    self._coverage.step_ns(sample.t, sample.values)
 
         return samples
 
-    def _see(self, t: int, values: Mapping[str, object]) -> None:
-        if self._margins is not None:
-            self._found.extend(self._margins.step_ns(t, values))
-        if self._coverage is not None:
-            self._coverage.step_ns(t, values)
-
     def finished(self, report: Report) -> Report:
         """The report with what was found, when all samples went by."""
-        if self._margins is not None:
-            self._found.extend(self._margins.finish_ns(self._end))
-            from rvmon.monitor.robustness.values import margins_from
-
-            margins = margins_from(self._found)
-            attempts = tuple(margins.of(attempt) for attempt in report.attempts)
-            report = replace(report, attempts=attempts)
         if self._coverage is not None:
             report = replace(report, illegal=tuple(self._illegal(self._coverage)))
         return report

@@ -110,13 +110,17 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             recording,
             end,
             is_cut=True,
-            row_by_row="" if beside.is_idle else "more than verdicts is found sample by sample",
+            row_by_row="" if beside.is_idle else "coverage is found sample by sample",
             read=read if beside.is_idle else beside.reading(read),
             is_alone=is_alone,
         )
         try:
             report = spec.judge(
-                source, engine=options.engine, only=options.only, decided=before.extend
+                source,
+                engine=options.engine,
+                only=options.only,
+                decided=before.extend,
+                robustness=options.robustness,
             )
         except TraceError:
             before = before or _judged_before(spec, trace, options)

@@ -117,7 +117,8 @@ def _probe(plan: Plan, probe: Probe, name: str) -> str:
 def _comparison(plan: Plan, leaf: Compare) -> str:
     """The truth of a comparison of numbers that are worked out."""
     left, right = leaf.left, leaf.right
-    both = f"compared({leaf.op.python}, {_number(plan, left)}, {_number(plan, right)})"
+    sides = f"{number_expression(plan, left)}, {number_expression(plan, right)}"
+    both = f"compared({leaf.op.python}, {sides})"
     events = events_of(left, right)
     if not events:
         return both
@@ -125,7 +126,8 @@ def _comparison(plan: Plan, leaf: Compare) -> str:
     return f"self.over_(({listed}), lambda q: {both})"
 
 
-def _number(plan: Plan, expression: Numeric) -> str:
+def number_expression(plan: Plan, expression: Numeric) -> str:
+    """A number that is worked out, in a method of the monitor; `None` where it is not known."""
     match expression:
         case Literal(value=value):
             return _literal(value)
@@ -137,7 +139,7 @@ def _number(plan: Plan, expression: Numeric) -> str:
             signal = plan.signals.index(name)
             return f"self.h[{signal}].{function.value}(self.s[{signal}])"
         case Arithmetic(op=op, args=args):
-            listed = ", ".join(_number(plan, arg) for arg in args)
+            listed = ", ".join(number_expression(plan, arg) for arg in args)
             return f"finite({op.entry.python}, {listed})"
         case Captured(name=name):
             return f"self.captured[{name!r}]"

@@ -76,7 +76,7 @@ def roles_of(plan: Plan, last: Mapping[int, int], before: Roles | None = None) -
             triggers[graph.index[rule.trigger]] |= 1 << index
         if rule.again is not None:
             triggers[graph.index[rule.again]] |= 1 << index + len(judged)
-        for named in (rule.unborn, rule.determined):
+        for named in (rule.unborn, rule.determined, *rule.asked):
             asked |= 0 if named is None else 1 << graph.index[named]
     wanted = [letters[n] or triggers[n] or asked >> n & 1 for n in range(len(graph.nodes))]
     operands = [

@@ -1,6 +1,6 @@
 """The robustness of a formula along a whole trace, node by node over arrays.
 
-Each node is a step function over the integers: `rvmon.dataflow.margin_nodes` says the same of a
+Each node is a step function over the integers: `rvmon.codegen.python_margins` says the same of a
 trace that goes by.
 
 Source: Donze, Ferrere and Maler 2013; Bender and Farach-Colton 2000, The LCA problem revisited
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rvmon.dataflow.margin_nodes import End, Rest
+from rvmon.dataflow.margin_end import End, Rest
 from rvmon.dataflow.margins import INFINITE
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Shift, Sweep, Window, operands_of
 
@@ -193,7 +193,7 @@ def _shifted(node: Shift, sweep: Sweep, operand: Steps, whole: Whole) -> Steps:
         starts = np.append(whole.first, starts)
         values = np.append(INFINITE if sweep.dual else -INFINITE, values)
     else:
-        behind = [(whole.last - node.offset + 1, whole.end.behind(sweep))]
+        behind = [(whole.last - node.offset + 1, whole.end.behind(sweep.kept))]
         if whole.end.rest is Rest.END:
             behind.append((whole.end.instant - node.opens + 1, -INFINITE))
         starts = np.append(starts, [start for start, _ in behind])
@@ -211,7 +211,7 @@ def _next_or_last(node: Shift, sweep: Sweep, operand: Steps, whole: Whole) -> St
         place = np.searchsorted(at, at + node.offset, "right") - 1
         return Steps(at, np.where(place < 0, before, values[place]))
     place = np.searchsorted(at, at + node.offset, "left")
-    made = np.append(values, whole.end.behind(sweep))[place]
+    made = np.append(values, whole.end.behind(sweep.kept))[place]
     if whole.end.rest is Rest.END:
         made[(place == len(at)) & (at > whole.end.instant - node.opens)] = -INFINITE
     return Steps(at, made)
@@ -222,7 +222,7 @@ def _swept(node: Sweep, operands: Sequence[Steps], whole: Whole) -> Steps:
     bound = (np.minimum if node.dual else np.maximum)(stays, meets)
     least, most = (bound, meets) if node.dual else (meets, bound)
     if node.future:
-        made = _carried(least[::-1], most[::-1], whole.end.behind(node))[::-1]
+        made = _carried(least[::-1], most[::-1], whole.end.behind(node.kept))[::-1]
     else:
         made = _carried(least, most, INFINITE if node.dual else -INFINITE)
     return Steps(starts, made)

@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any, Protocol
 
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.monitor.engines.rows import columns_of
 from rvmon.monitor.evaluate import open_trace
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
-from rvmon.monitor.robustness.values import Key, Margins, Robustness, Stream, margins_from
+from rvmon.monitor.robustness.values import (
+    Key,
+    Margins,
+    Measured,
+    Robustness,
+    Stream,
+    margins_from,
+)
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.reading import Reading
 from rvmon.readers.source import Columns, Source
+from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+
+class Judge(Protocol):
+    """Judges a recording."""
+
+    def __call__(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+        """See `rvmon.monitor.engines.registry.Engine`."""
 
 
 def margins_of(
@@ -39,26 +56,53 @@ def margins_of(
     recording = open_trace(compiled.checked, trace, reading, only=only)
     named = "" if reading.sources is None else "its sources are named"
     source = Source(recording, until, row_by_row=named)
-    found = _by_columns(compiled, source, only, streams=streams)
-    return _by_samples(compiled, source, only, streams=streams) if found is None else found
+    asked = Asked(None if only is None else tuple(only))
+    found = _by_columns(compiled, source, asked, engine_named("auto").judge, streams=streams)
+    return _by_samples(compiled, source, asked, streams=streams) if found is None else found[1]
 
 
-def _by_samples(
-    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
-) -> Margins:
-    """The same by a monitor."""
-    monitor = RobustnessMonitor(compiled, only=only, sources=source.names, streams=streams)
+def measuring(judge: Judge) -> Judge:
+    """What judges a recording as `judge` does, and gives each attempt its robustness."""
+
+    def measured(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+        found = _by_columns(compiled, source, asked, judge, streams=False)
+        report, margins = _beside(compiled, source, asked, judge) if found is None else found
+        return replace(report, attempts=tuple(map(margins.of, report.attempts)))
+
+    return measured
+
+
+def _beside(
+    compiled: CompiledSpec, source: Source, asked: Asked, judge: Judge
+) -> tuple[Report, Margins]:
+    """A report, and the figures by a monitor that sees each sample once it was judged."""
+    monitor = RobustnessMonitor(compiled, asked.only, sources=source.names)
+    found: list[Measured] = []
+
+    def read(recording: Any) -> Iterable[Sample]:
+        for sample in source.read(recording):
+            yield sample
+            if source.until is None or sample.t <= source.until:
+                found.extend(monitor.step_ns(sample.t, sample.values))
+
+    reason = source.row_by_row or "robustness is found sample by sample"
+    report = judge(compiled, replace(source, row_by_row=reason, read=read), asked)
+    return report, margins_from([*found, *monitor.finish_ns(source.end)])
+
+
+def _by_samples(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins:
+    """The figures by a monitor."""
+    monitor = RobustnessMonitor(compiled, asked.only, sources=source.names, streams=streams)
     found = [one for sample in source.recording for one in monitor.step_ns(sample.t, sample.values)]
     return margins_from([*found, *monitor.finish_ns(source.end)])
 
 
 def _by_columns(
-    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
-) -> Margins | None:
-    """The same by arrays; `None` if something of it has to be measured sample by sample."""
+    compiled: CompiledSpec, source: Source, asked: Asked, judge: Judge, *, streams: bool
+) -> tuple[Report, Margins] | None:
+    """A report and the figures by arrays; `None` if something has to be measured by samples."""
     if source.is_short:
         return None
-    asked = Asked(None if only is None else tuple(only))
     try:
         columns = columns_of(compiled, source, asked)
     except NotPlainError:
@@ -66,15 +110,21 @@ def _by_columns(
     from rvmon.monitor.columns.leaves import NotByColumnsError
 
     try:
-        return _measured(compiled, source, columns, asked, streams=streams)
+        return _measured(compiled, source, columns, asked, judge, streams=streams)
     except (NotPlainError, NotByColumnsError):
         return None
 
 
 def _measured(
-    compiled: CompiledSpec, source: Source, columns: Columns, asked: Asked, *, streams: bool
-) -> Margins:
-    """The figures by arrays, of attempts as `Spec.evaluate` finds them.
+    compiled: CompiledSpec,
+    source: Source,
+    columns: Columns,
+    asked: Asked,
+    judge: Judge,
+    *,
+    streams: bool,
+) -> tuple[Report, Margins]:
+    """As `_by_columns`, of what has columns.
 
     Raises:
         NotByColumnsError: something of it has to be measured sample by sample.
@@ -88,7 +138,7 @@ def _measured(
     measured = {
         one.requirement.id: ColumnMargins(trace, one) for one in compiled.chosen(asked.only)
     }
-    report = engine_named("auto").judge(compiled, source, asked)
+    report = judge(compiled, source, asked)
     started: dict[str, list[tuple[int, int]]] = {name: [] for name in measured}
     for name, number, triggered in _starts(report.attempts):
         started[name].append((number, triggered))
@@ -102,7 +152,7 @@ def _measured(
         if streams:
             times = trace.times if trace.sparse else np.union1d(trace.times, instants)
             found[name] = Stream(times, *margins.at(times))
-    return Margins(attempts, {}, found)
+    return report, Margins(attempts, {}, found)
 
 
 def _starts(attempts: Sequence[Attempt]) -> Iterator[tuple[str, int, int]]:

@@ -38,6 +38,7 @@ class PlannedRule:
         blurs: of attempts with captured values, UNKNOWN where another may have begun, whose values
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
+        asked: further state formulas that are asked for their values.
     """
 
     requirement: Requirement
@@ -55,6 +56,7 @@ class PlannedRule:
     running: State | None = None
     blurs: State | None = None
     blurs_anywhere: bool = False
+    asked: tuple[State, ...] = ()
 
     @property
     def states(self) -> Iterator[State]:
@@ -62,6 +64,7 @@ class PlannedRule:
         named = (self.trigger, self.again, self.unborn, self.determined, self.running, self.blurs)
         yield from (state for state in named if state is not None)
         yield from self.alphabet.propositions
+        yield from self.asked
         for beside in (self.hidden, self.doubted):
             if beside is not None:
                 yield from beside.states

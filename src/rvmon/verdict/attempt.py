@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from typing import Any
 
@@ -182,3 +182,39 @@ def decided_attempt(
     made._details = details
     made._noted = noted
     return made
+
+
+def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
+    """The same attempt with its robustness; what is worked out later still is.
+
+    Args:
+        attempt: without robustness.
+        robustness: in SI units; `None` if it has none.
+
+    >>> made = decided_attempt("R1", 1, 0, 5, Verdict.PASS, lambda _, t: {"reason": f"at {t}"}, 5)
+    >>> measured_attempt(made, 0.5).robustness
+    0.5
+    """
+    if attempt.decision is not _PREFIX or attempt.decided is None or attempt.in_doubt:
+        return replace(attempt, robustness=robustness)
+    made = decided_attempt(
+        attempt.requirement,
+        attempt.number,
+        attempt.triggered,
+        attempt.decided,
+        attempt.verdict,
+        _measured_details,
+        (attempt, robustness),
+    )
+    made.robustness = robustness
+    return made
+
+
+def _measured_details(_: Attempt, noted: tuple[Attempt, float | None]) -> Mapping[str, Any]:
+    attempt, robustness = noted
+    return {**{name: getattr(attempt, name) for name in _LATE}, "robustness": robustness}
+
+
+_LATE = (  # the fields that `decided_attempt` leaves out
+    *("reason", "deadline", "at_trigger", "at_decision", "owed", "captured", "blame", "forecast"),
+)

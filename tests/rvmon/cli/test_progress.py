@@ -42,7 +42,7 @@ def test_recordings_are_counted(screen, jobs):
 def test_a_single_recording_shows_how_far_it_is_read(screen):
     """By its name."""
     with redirect_stderr(screen):
-        assert main(["run", "s.rv", "one.jsonl", "--robustness"]) == 0
+        assert main(["run", "s.rv", "one.jsonl", "--coverage", "c.db"]) == 0
     assert "one.jsonl" in screen.getvalue()
 
 

@@ -7,6 +7,7 @@ import pytest
 
 import rvmon
 from rvmon.monitor.columns.margins import ColumnMargins
+from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
     Binary,
@@ -150,3 +151,28 @@ def test_a_stream_of_arrays_is_a_sequence():
     assert len(stream) == 3
     assert list(stream[1:]) == list(stream)[1:]
     assert stream[-1] == list(stream)[-1]
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+@pytest.mark.parametrize("until", [None, 1200.5])
+def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, until, tmp_path):
+    """Records, reasons and figures are the same, whatever of the recording is looked at."""
+    spec = rvmon.loads(
+        f"spec s\ntime {time}\nsignal x : real\nsignal p : bool\n"
+        "requirement R1\n  upon rise(p)\n  then within 3 s x > 9\n"
+        "requirement R2\n  whenever p\n  then x < 9.5\nrequirement R3\n  always x < 9.99\n"
+    )
+    rng = random.Random(1)
+    path = tmp_path / "run.csv"
+    rows = (f"{3 * t // 2},{rng.uniform(0, 10):.3f},{rng.randrange(2)}" for t in range(3000))
+    path.write_text("\n".join(["t,x,p", *rows, ""]))
+    end = None if until is None else int(until * 1e9)
+
+    def judged(**how):
+        source = Source(spec.recording(path), end, is_cut=True, **how)
+        return spec.judge(source, robustness=True)
+
+    found, expected = judged(), judged(row_by_row="as the samples come")
+    assert found == expected
+    assert found.to_json() == expected.to_json()
+    assert all(one.robustness is not None for one in found.attempts if one.decided is not None)

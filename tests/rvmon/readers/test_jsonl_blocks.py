@@ -87,7 +87,7 @@ def test_undeclared_names_are_counted_once(until, tmp_path):
     spec = rvmon.loads(SPEC.format(time="held"))
     report = judge(spec, str(path), Options(until=until)).report
     counts = {one.name: one.count for one in report.health}
-    slow = judge(spec, str(path), Options(until=until, robustness=True)).report
+    slow = judge(spec, str(path), Options(until=until, coverage=True)).report
     assert counts == {one.name: one.count for one in slow.health}
     assert set(counts) == {"arm.more", "note"}
 

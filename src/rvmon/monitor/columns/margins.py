@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.dataflow.margin_arrays import Steps, Whole, steps_of
-from rvmon.dataflow.margin_nodes import End, Rest
+from rvmon.dataflow.margin_end import End, Rest
 from rvmon.dataflow.margins import INFINITE, base_factor, signed
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import Sweep

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.errors import UnknownNameError
+from rvmon.formula.core import Literal
 from rvmon.formula.state import State
 from rvmon.monitor.compiled.refusal import of_c, of_tables, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -15,7 +16,9 @@ from rvmon.plan.planning import plan_in_units, plan_of
 from rvmon.spec.checked.selection import requirements_asked
 
 
-def plan_requirements(compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]) -> Plan:
+def plan_requirements(
+    compiled: CompiledSpec, requirements: Sequence[CompiledRequirement], *, measured: bool = False
+) -> Plan:
     """The plan of some requirements of a specification, of which somebody will ask what is owed.
 
     It is made once.
@@ -23,21 +26,32 @@ def plan_requirements(compiled: CompiledSpec, requirements: Sequence[CompiledReq
     Args:
         compiled: the specification.
         requirements: chosen from it.
+        measured: whether somebody will ask for the values of all that robustness is made of.
     """
-    key = "plan", tuple(one.requirement.id for one in requirements)
+    key = "plan", tuple(one.requirement.id for one in requirements), measured
     made = compiled.forms.get(key)
     if not isinstance(made, Plan):
-        made = plan_of(compiled.checked, [_rule(one, explained=True) for one in requirements])
+        rules = [_rule(one, explained=True, measured=measured) for one in requirements]
+        made = plan_of(compiled.checked, rules)
         compiled.forms[key] = made
     return made
 
 
-def _rule(one: CompiledRequirement, *, explained: bool, hidden: bool = False) -> PlannedRule:
+def _rule(
+    one: CompiledRequirement, *, explained: bool, hidden: bool = False, measured: bool = False
+) -> PlannedRule:
     # In this process what judges attempts in doubt is made when one comes up.
     automaton = None if hidden and explained else _planned(one, explained)
     obligation = one.obligation
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
+
+    def beside(other: CompiledRequirement | None) -> PlannedRule | None:
+        if other is None:
+            return None
+        return _rule(other, explained=explained, hidden=True, measured=measured)
+
+    read = [core for _, core in one.measured_plan.leaves] if measured else []
     return PlannedRule(
         one.requirement,
         obligation.trigger,
@@ -48,12 +62,13 @@ def _rule(one: CompiledRequirement, *, explained: bool, hidden: bool = False) ->
         again=obligation.again,
         unborn=obligation.unborn,
         determined=obligation.determined,
-        hidden=None if one.hidden is None else _rule(one.hidden, explained=explained, hidden=True),
+        hidden=beside(one.hidden),
         noted=tuple(leaf for leaf, _ in one.leaves) if explained else None,
-        doubted=None if doubted is None else _rule(doubted, explained=explained, hidden=True),
+        doubted=beside(doubted),
         running=obligation.running if captures else None,
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
+        asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
     )
 
 

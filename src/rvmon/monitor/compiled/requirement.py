@@ -20,6 +20,7 @@ from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
+from rvmon.formula.expand import expanded
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import lower
@@ -202,6 +203,11 @@ class CompiledRequirement:
     def network_plan(self) -> NetworkPlan:
         """The nodes of its delay network."""
         return plan_of(self.obligation.owed, self.gap)
+
+    @cached_property
+    def measured_plan(self) -> NetworkPlan:
+        """The same of what it owes as far as that is measured, past operators included."""
+        return plan_of(expanded(self.obligation.owed), self.gap)
 
     @property
     def is_fed(self) -> bool:

@@ -59,6 +59,8 @@ def forms_of(
     requirements: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
     rule: type[Rule] | None = None,
+    *,
+    measured: bool = False,
 ) -> Forms:
     """Generate what monitors of some requirements run.
 
@@ -67,9 +69,10 @@ def forms_of(
         requirements: chosen from it.
         sources: the names that can arrive; `None`: all.
         rule: see `rvmon.codegen.python_unit.unit_class`.
+        measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
     """
     fed = [one for one in requirements if one.is_fed]
-    plan = plan_requirements(compiled, fed)
+    plan = plan_requirements(compiled, fed, measured=measured)
     machines = [
         None if rule.automaton is None else one.machine("auto")
         for one, rule in zip(fed, plan.rules, strict=True)
@@ -116,7 +119,7 @@ class GeneratedEvaluators(Evaluators):
         unit.restart(self, clerks)
         standing = UnitStanding(forms.plan, unit)
         self._clerks = [
-            UnitClerk(one, forms.plan, unit, standing, ledger, self.counts, noted)
+            self.clerk_of(one, forms.plan, unit, standing, ledger, self.counts, noted)
             for one, noted in zip(forms.requirements, unit.NOTED, strict=True)
         ]
         judged: list[CompiledRequirement | None] = [*forms.requirements]
@@ -131,6 +134,10 @@ class GeneratedEvaluators(Evaluators):
                 unit.rules[index] = judge
                 judge.restless = judge.watches
                 unit.note(judge)
+
+    def clerk_of(self, compiled: CompiledRequirement, *arguments: Any) -> UnitClerk:
+        """Stands where the judge of a requirement would."""
+        return UnitClerk(compiled, *arguments)
 
     # What the unit calls.
 

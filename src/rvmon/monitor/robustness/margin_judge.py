@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from rvmon.dataflow.margin_nodes import Rest
+from rvmon.codegen.python_margins import gauge_class
+from rvmon.dataflow.margin_end import End, Rest
 from rvmon.dataflow.margins import INFINITE, OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import FAR
@@ -13,14 +14,27 @@ from rvmon.dataflow.robust import Gauge, Letter
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
-from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.robustness.values import Robustness
+from rvmon.plan.inputs import Input
 from rvmon.plan.leaves import reads
+from rvmon.plan.standing import Standing
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar
 
 _SIDES = {Rest.LEAST: 0, Rest.GREATEST: 1, Rest.END: 0}
+
+
+ODD = (LookupError, TypeError, OverflowError)
+"""What reading a leaf raises that is no plain number."""
+
+
+class Flow(Standing, Input, Protocol):
+    """What leaves are read of."""
+
+    @property
+    def absent(self) -> frozenset[str]:
+        """The names without a source."""
 
 
 class Gauger(Clerk, Protocol):
@@ -52,6 +66,8 @@ class MarginJudge(AttemptJudge):
         captured: values of `let` and `for each`.
         spec: gives the units.
         every: whether each position of a sample is measured, and not those of attempts alone.
+        known: gives the robustness of the leaves, or raises one of `ODD` where one is no plain
+            number; `None`: there is no such function.
 
     Attributes:
         positions: of its attempts, where each of them begins.
@@ -63,17 +79,18 @@ class MarginJudge(AttemptJudge):
         self,
         compiled: CompiledRequirement,
         plan: NetworkPlan,
-        flow: Evaluator,
+        flow: Flow,
         clerk: Gauger,
         captured: Mapping[str, Scalar],
         spec: CheckedSpec,
         *,
         every: bool,
+        known: Callable[[], Sequence[float]] | None = None,
     ) -> None:
         super().__init__(compiled, None, flow, clerk, captured)
         self.trigger = self.again = -1  # the other judge starts them
         self.watches = True
-        self._evaluator = flow
+        self._inputs = flow
         self.restless = True
         self.gauger = clerk
         self.every = every
@@ -83,6 +100,10 @@ class MarginJudge(AttemptJudge):
         self._readers = [self._reader(core, spec) for _, core in plan.leaves]
         self._passing = flow.gap is not None and any(then for _, then in self._readers)
         """Whether some leaf is another behind a position at which it is read."""
+        self._gauge = gauge_class(plan, flow.gap)
+        # Elsewhere a sample is not all that there is to be known up to its instant.
+        self._goes_straight = not self._passing and compiled.obligation.trigger is not None
+        self._plain = known
         self._least: Gauge | None = None
         self._greatest: Gauge | None = None
         self._waiting: list[tuple[Letter, Letter]] = []
@@ -100,22 +121,24 @@ class MarginJudge(AttemptJudge):
         if isinstance(core, Constant):
             fixed = OF_TRUTH[TRUE if core.value else FALSE]
             return (lambda: fixed), None
-        evaluator, state = self._evaluator, core.proposition
-        place = evaluator.graph.index[state]
+        inputs, state = self._inputs, core.proposition
+        place, values = inputs.graph.index[state], inputs.values
 
         def truth() -> int:
-            return evaluator.v[place]
+            found: int = values[place]
+            return found
 
-        if core.sense is Sense.KNOWN_FALSE:
-            return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), None
-        later = None
-        if state.leaf is None:
-            read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
-        else:
-            read = margin_reader(state.leaf, truth, evaluator, self.captured, spec)
-            about = reads(state.leaf)
-            if about.momentary and not about.names & evaluator.absent:
+        leaf, later = state.leaf, None
+        if leaf is not None:
+            about = reads(leaf)
+            if about.momentary and not about.names & inputs.absent:
                 later = OF_TRUTH[FALSE]
+        if core.sense is Sense.KNOWN_FALSE:
+            known = None if later is None else OF_TRUTH[TRUE]
+            return (lambda: OF_TRUTH[TRUE if truth() == FALSE else FALSE]), known
+        read: Callable[[], Margin] = lambda: OF_TRUTH[truth()]  # noqa: E731
+        if leaf is not None:
+            read = margin_reader(leaf, truth, inputs, self.captured, spec)
         if core.sense is Sense.TRUE:
             return read, later
         return (lambda: _negated(read())), None if later is None else _negated(later)
@@ -138,23 +161,68 @@ class MarginJudge(AttemptJudge):
         if self.every and t - self._gap < self.gauger.heard:
             self._ask(position)
 
+    def follow(self, t: int) -> None:
+        """Note what all leaves are at a sample, the flow being at `t`, and tell what is settled."""
+        if self.position < t:
+            if self._least is None and not (self.every or self._plan.looks_back):
+                self.position = t
+                return
+            if self._measured_plainly(t):
+                return
+            self.visit(t)
+        if self.every:
+            self._ask(t)
+        self.settle(t)
+
+    def _measured_plainly(self, t: int) -> bool:
+        """Measure the position `t` if all leaves are plain numbers and all before it is known."""
+        gauge = self._least
+        if gauge is None or self._greatest or self._waiting or self._lows:
+            return False
+        values = self._plain_values() if self._goes_straight else None
+        if values is None:
+            return False
+        self.position = self._known = t
+        if self.every:
+            gauge.ask(t)
+        found = gauge.step(t, values, t, t)
+        if found:
+            for position, value in found:
+                self._tell(position, self._figure(value, value, value))
+            self._rest()
+        return True
+
+    def _plain_values(self) -> Sequence[float] | None:
+        """What the leaves are now; `None` if one of them is no plain number."""
+        if self._plain is None:
+            return None
+        try:
+            return self._plain()
+        except ODD:
+            return None
+
+    def _read(self, position: int) -> tuple[Letter, Letter]:
+        """What the leaves are from a position on, at least and at most."""
+        values = self._plain_values()
+        if values is None:
+            return _letters(position, [read() for read, _ in self._readers])
+        return (position, values), (position, values)
+
     def _enter(self, position: int) -> None:
         """Read the leaves at a position; up to the one before it, they are known."""
         if self._waiting and self._waiting[0][0][0] < position:
             self._pass(position - 1, position * self._gap)
-        self._waiting = [_letters(position, [read() for read, _ in self._readers])]
+        self._waiting = [self._read(position)]
         if self._passing:
             later = [read() if then is None else then for read, then in self._readers]
             self._waiting.append(_letters(position + 1, later))
         if self._least is None:
-            self._least = Gauge(self._plan, self.flow.gap, position)
+            self._least = self._gauge(position)
             self._known = -FAR - 1
         if self._greatest is None:
             low, high = self._waiting[0]
             if low[1] != high[1]:
                 self._greatest = self._least.copy()
-        for gauge in self._gauges:
-            gauge.visit(position)
 
     @property
     def _gauges(self) -> list[Gauge]:
@@ -190,6 +258,10 @@ class MarginJudge(AttemptJudge):
             for position in sorted(self._lows.keys() & self._highs.keys()):
                 low, high = self._lows.pop(position), self._highs.pop(position)
                 self._tell(position * self._gap, self._figure(low, high, low))
+        self._rest()
+
+    def _rest(self) -> None:
+        """Let go of what nobody asks for."""
         if not (self.attempts or self.every or self._plan.looks_back):
             self._least = self._greatest = None
 
@@ -216,12 +288,18 @@ class MarginJudge(AttemptJudge):
         if self._least is None:
             return {}
         letters = self._letters(end // self._gap)
+        last = FAR if self.flow.gap is None else end // self._gap
         found: dict[Rest, dict[int, float]] = {}
         for rest, side in _SIDES.items():
             gauge = self._least if self._greatest is None or not side else self._greatest
             bounds = self._highs if side else self._lows
-            values = gauge.copy().finish(letters[side], end, reached, rest)
-            found[rest] = {**bounds, **dict(values)}
+            copied = gauge.copy()
+            values = copied.take(letters[side], last, reached)
+            found[rest] = {
+                **bounds,
+                **dict(values),
+                **dict(copied.end(End(end, last, rest), reached)),
+            }
         return {
             position * self._gap: self._figure(low, found[Rest.GREATEST][position], kept)
             for (position, low), kept in zip(

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, overload
 
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.attempt import Attempt, Decision, measured_attempt
 from rvmon.verdict.verdict import Verdict
 
 
@@ -117,7 +117,7 @@ class Margins:
         """An attempt with its figure."""
         figures = self.doubtful if attempt.in_doubt else self.attempts
         found = figures.get((attempt.requirement, attempt.number))
-        return attempt if found is None else replace(attempt, robustness=found.of(attempt))
+        return attempt if found is None else measured_attempt(attempt, found.of(attempt))
 
 
 def margins_from(found: Iterable[Measured]) -> Margins:

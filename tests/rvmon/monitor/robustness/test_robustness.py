@@ -242,3 +242,39 @@ def test_integers_beyond_all_floats():
         monitor.step(2, {"x": 5.0})
         [measured] = monitor.finish(9)
         assert measured.robustness.low == low
+
+
+def test_what_is_measured_by_generated_code_and_what_is_not_is_given_in_order():
+    """Requirements of one file have the figures that each has alone, at the same samples."""
+    head = "spec s\nsignal x : real\nsignal p : bool\nevent e\n"
+    texts = [
+        "requirement R1\n  upon rise(p)\n  then within 2 s x > 5\n",
+        "requirement R2\n  upon e then for 1 s x < v\n  let v = 7\n",
+        "requirement R3\n  whenever x > 3\n  then within 1 s p\n",
+    ]
+    samples = [
+        (t, {"x": float(t * 7 % 11), "p": t % 3 == 0, **({"e": True} if t % 4 == 1 else {})})
+        for t in range(40)
+    ]
+
+    def told(text):
+        monitor = rvmon.loads(head + text).robustness_monitor(streams=True)
+        found = [(t, one) for t, values in samples for one in monitor.step(t, values)]
+        return [*found, *((None, one) for one in monitor.finish())]
+
+    together = told("".join(texts))
+    for name, text in zip(("R1", "R2", "R3"), texts, strict=True):
+        assert [entry for entry in together if entry[1].requirement == name] == told(text)
+    assert len({one.requirement for t, one in together if t is not None}) == 3
+
+
+def test_a_sample_of_plain_numbers_goes_on_from_one_that_was_not():
+    """What is unknown, or no float, is measured in between."""
+    spec = rvmon.loads("spec s\nsignal x : real\nrequirement R1\n  always within 2 s x > 1\n")
+    monitor = spec.robustness_monitor(streams=True)
+    values = [2.0, 10**400, None, 3.0, 0.0, 0.0, 0.5, 4.0]
+    for t, x in enumerate(values):
+        monitor.step(t, {"x": x})
+    found = {one.t // 10**9: one.robustness for one in monitor.finish() if one.number is None}
+    assert found[7].high == INFINITE
+    assert found[4].high == -0.5
