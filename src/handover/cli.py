@@ -78,7 +78,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         epilog="example: handover demo --out out/demo",
     )
     add_campaign_options(parser)
-    parser.set_defaults(run=_demo)
+    parser.set_defaults(run=_demo, pages="all")
 
 
 def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

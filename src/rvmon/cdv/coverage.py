@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cdv.gate import accepted_failures
 from rvmon.cdv.measured import measured_groups
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.model import Group, Item, Model, model_of
@@ -103,6 +104,7 @@ def write_database(path: Path, campaign: Campaign, robot: str, played: Sequence[
                 number=number,
                 seconds=outcome.seconds,
                 when=number,
+                expected=accepted_failures(one, campaign.expected_failures),
             )
             database.record(record, outcome.hits)
 

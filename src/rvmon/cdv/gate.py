@@ -86,6 +86,7 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
     known: list[str] = []
     if outcome.ending is not Ending.COMPLETED and test.mutation is None:
         wrong.append(f"{outcome.ending}: {outcome.error}")
+    accepted = accepted_failures(one, expected)
     if outcome.verdicts:
         wrong.extend(differences(test.expected, outcome.verdicts))
     if test.mutation is None:
@@ -94,9 +95,8 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
         if name in test.expected or test.mutation is not None:
             continue  # a planted fault says nothing about the robot
         if verdict is Verdict.FAIL:
-            reasons = [why.reason for why in expected if _is_about(why, one, name)]
-            if reasons:
-                known.append(f"{name} failed, as expected: {reasons[0]}")
+            if name in accepted:
+                known.append(f"{name} failed, as expected: {accepted[name]}")
             else:
                 wrong.append(outcome.reasons.get(name, f"{name} failed"))
         elif verdict is Verdict.INCONCLUSIVE and strict:
@@ -104,12 +104,29 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
     return TestJudgement(one, tuple(wrong), tuple(known))
 
 
-def _is_about(why: ExpectedFailure, one: Played, requirement: str) -> bool:
-    """Whether a failure is expected of a requirement in a test on the robot as it is."""
+def accepted_failures(one: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
+    """The requirements that may fail in a test, each with the reason.
+
+    Args:
+        one: the test.
+        expected: what its campaign expects to fail.
+    """
+    accepted = {
+        name: "this test is made to fail it"
+        for name, verdict in one.job.test.expected.items()
+        if verdict == Verdict.FAIL.value
+    }
+    for why in expected:
+        if _is_about(why, one):
+            accepted.setdefault(why.requirement, why.reason)
+    return accepted
+
+
+def _is_about(why: ExpectedFailure, one: Played) -> bool:
+    """Whether a failure is expected in a test: on the robot as it is."""
     test = one.job.test
     return (
-        why.requirement == requirement
-        and test.mutation is None
+        test.mutation is None
         and why.strategy in ("", test.strategy)
         and why.test in ("", test.name)
         and why.robot in ("", one.job.robot)
@@ -124,7 +141,7 @@ def _expected_failures(
         verdicts = [
             one.outcome.verdicts[why.requirement]
             for one in played
-            if why.requirement in one.outcome.verdicts and _is_about(why, one, why.requirement)
+            if why.requirement in one.outcome.verdicts and _is_about(why, one)
         ]
         if verdicts:
             missing = "" if Verdict.FAIL in verdicts else f"it did not, in {len(verdicts)} tests"

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import os
+from collections.abc import Callable, Mapping
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.campaign_files import RUNS, TESTS
 from rvmon.cdv.campaign_page import campaign_page
 from rvmon.cdv.coverage import write_coverage
@@ -16,8 +20,9 @@ from rvmon.cdv.program import typed
 from rvmon.cdv.run_pages import Replay, play_again, replay_page
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
+from rvmon.execute import parallel
+from rvmon.loading import load
 from rvmon.report.run_page import JudgedRun
-from rvmon.session import Spec
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
 
@@ -29,10 +34,10 @@ def write_pages(
     summary: CampaignSummary,
     tables: Mapping[str, RobotTables],
     results: Results,
-    specs: Mapping[str, Spec],
     command: str,
     *,
     examples: Examples,
+    jobs: int | None,
     tell: Callable[[float], None],
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and what was covered.
@@ -42,36 +47,38 @@ def write_pages(
         summary: its figures.
         tables: its verdicts, by robot.
         results: its outcomes.
-        specs: by robot, what judged it; empty if nothing was judged.
         command: runs the campaign again.
         examples: the tests that get a page.
+        jobs: processes that write pages; default: one per core.
         tell: told how many pages are written.
 
     Returns:
         The tests that came out otherwise when they were played again for their pages.
     """
     campaign = results.plan.campaign
-    replays = _Replays(campaign, specs)
-    verdicts = {(one.job.robot, one.job.test.name): one.outcome.verdicts for one in results.played}
+    (folder / RUNS).mkdir(parents=True, exist_ok=True)
+    shown = {(job.robot, job.test.name) for job in examples.jobs}
+    judged = {name: robot for name, robot in campaign.robots.items() if robot.spec is not None}
+    wanted = [
+        one
+        for one in results.played
+        if (one.job.robot, one.job.test.name) in shown and one.job.robot in judged
+    ]
+    written = parallel.execute(
+        [_page_of(one, folder, results) for one in wanted],
+        partial(_writer, folder, judged),
+        jobs=jobs or os.cpu_count() or 1,
+        what="page",
+    )
     addresses: dict[tuple[str, str], str] = {}
     otherwise: list[str] = []
-    (folder / RUNS).mkdir(parents=True, exist_ok=True)
-    for number, job in enumerate(examples.jobs if specs else (), start=1):
-        replay = replays.of(job)
-        text = replay_page(
-            replay,
-            job.robot,
-            specs[job.robot],
-            command=_command(folder, job, campaign),
-            others=_others(job, replay, results.played, replays),
-            back=f"../{REPORT}",
-        )
-        if replay.report.verdicts != verdicts[job.robot, job.test.name]:
-            otherwise.append(job.test.name)
-        address = f"{RUNS}/{job.robot}-{job.test.name}.html"
-        write_whole(folder / address, text)
-        addresses[job.robot, job.test.name] = address
-        tell(number)
+    with closing(written):
+        for number, (one, verdicts) in enumerate(zip(wanted, written, strict=True), start=1):
+            test = one.job.test.name
+            addresses[one.job.robot, test] = _address(one.job)
+            if verdicts != one.outcome.verdicts:
+                otherwise.append(test)
+            tell(number)
     cells = {
         cell: f"{addresses[job.robot, job.test.name]}#{cell[2]}"
         for cell, job in examples.by_cell.items()
@@ -89,32 +96,60 @@ def write_pages(
     return otherwise
 
 
-class _Replays:
-    """Tests that were played again, each once."""
+@dataclass(frozen=True, slots=True)
+class _Page:
+    """A page to be written.
 
-    def __init__(self, campaign: Campaign, specs: Mapping[str, Spec]) -> None:
-        self._campaign = campaign
-        self._specs = specs
-        self._known: dict[tuple[str, str], Replay] = {}
+    Attributes:
+        job: the test that it shows.
+        command: replays it.
+        others: tests that passed what it failed.
+    """
 
-    def of(self, job: Job) -> Replay:
-        """The replay of a test."""
-        key = job.robot, job.test.name
-        if key not in self._known:
-            robot = self._campaign.robots[job.robot]
-            self._known[key] = play_again(job.test, job.robot, robot, self._specs[job.robot])
-        return self._known[key]
+    job: Job
+    command: str
+    others: tuple[Job, ...]
 
 
-def _others(
-    job: Job, replay: Replay, played: Sequence[Played], replays: _Replays
-) -> list[JudgedRun]:
-    """Runs that passed what this one failed."""
-    verdicts = replay.report.verdicts
+def _page_of(one: Played, folder: Path, results: Results) -> _Page:
+    verdicts = one.outcome.verdicts
     failed = [name for name, verdict in verdicts.items() if verdict is Verdict.FAIL]
-    if not failed:
-        return []
-    return [replays.of(one).judged for one in comparable_jobs(job, failed, played)]
+    others = comparable_jobs(one.job, failed, results.played) if failed else ()
+    return _Page(one.job, _command(folder, one.job, results.plan.campaign), tuple(others))
+
+
+def _writer(folder: Path, robots: Mapping[str, Robot]) -> Callable[[_Page], Mapping[str, Verdict]]:
+    """What writes a page and returns the verdicts on the test that was played for it."""
+    specs = {name: load(robot.spec) for name, robot in robots.items() if robot.spec is not None}
+    compared: dict[tuple[str, str], Replay] = {}
+
+    def replay_of(job: Job) -> Replay:
+        known = compared.get((job.robot, job.test.name))
+        return known or play_again(job.test, job.robot, robots[job.robot], specs[job.robot])
+
+    def compared_with(job: Job) -> JudgedRun:
+        """A run that many pages may compare theirs with: it is kept."""
+        return compared.setdefault((job.robot, job.test.name), replay_of(job)).judged
+
+    def write(page: _Page) -> Mapping[str, Verdict]:
+        replay, robot = replay_of(page.job), page.job.robot
+        text = replay_page(
+            replay,
+            robot,
+            specs[robot],
+            command=page.command,
+            others=[compared_with(job) for job in page.others],
+            back=f"../{REPORT}",
+        )
+        write_whole(folder / _address(page.job), text)
+        return replay.report.verdicts
+
+    return write
+
+
+def _address(job: Job) -> str:
+    """Of a test's page in the folder of the campaign."""
+    return f"{RUNS}/{job.robot}-{job.test.name}.html"
 
 
 def _command(folder: Path, job: Job, campaign: Campaign) -> str:

@@ -93,7 +93,7 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         "--pages",
         choices=("examples", "all"),
         default="examples",
-        help="of which runs to write a page: an example of each count (default), or all",
+        help="of which runs to write a page: an example of each count, or all (%(default)s)",
     )
 
 

@@ -102,7 +102,14 @@ def conduct(
         examples = choose_examples(results.played, every=arguments.pages == "all")
         with bar("pages", len(examples.jobs)) as tell:
             otherwise = write_pages(
-                folder, summary, tables, results, specs, again, examples=examples, tell=tell
+                folder,
+                summary,
+                tables,
+                results,
+                again,
+                examples=examples,
+                jobs=arguments.jobs,
+                tell=tell,
             )
         if otherwise:
             warn(

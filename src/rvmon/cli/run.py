@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -25,10 +26,12 @@ from rvmon.monitor.engines.registry import ENGINES
 from rvmon.report.folder import refuse_no_file, write_file
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.verdict import LAW, Verdict
 
 if TYPE_CHECKING:
+    from rvmon.cli.beside import Options
     from rvmon.cli.judging import Judged
+    from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
     from rvmon.trace.sample import Sample
     from rvmon.verdict.attempt import Attempt
@@ -76,10 +79,28 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add_format(parser)
     parser.add_argument(
+        "--quiet", action="store_true", help="as text, only how many recordings got which verdicts"
+    )
+    parser.add_argument(
         "--coverage",
         metavar="DB",
         help="add what the recordings hit of the coverage model to a database "
         "(made if there is none); `rvmon cover DB` shows it",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        help="write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite, .duckdb",
+    )
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="with --out: go on from where the same command was ended",
+    )
+    parser.add_argument(
+        "--known",
+        metavar="FILE",
+        help="failures that are accepted, each with a reason and a last day, in TOML",
     )
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
@@ -102,13 +123,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Judge, show, and return the exit code."""
     from rvmon.cli.beside import Options
-    from rvmon.cli.judging import judge_all
     from rvmon.loading import load
     from rvmon.readers.found import found_recordings
 
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     _show_warnings(spec)
-    _refuse_places(arguments, spec)
+    traces = list(found_recordings(arguments.traces))
+    _refuse_places(arguments, traces, spec)
     options = Options(
         ids_of(arguments.only, spec),
         arguments.engine,
@@ -119,14 +140,15 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.coverage is not None,
     )
     must_trigger = ids_of(arguments.require_triggered or None, spec)
-    traces = list(found_recordings(arguments.traces))
-    judged = list(judge_all(spec, traces, options, arguments.jobs))
-    _show(arguments.format, spec, judged)
+    known = _known_failures(arguments, spec)
+    judged = _judged(arguments, traces, spec, options)
+    _show(arguments, spec, judged)
     reports = [one.report for one in judged if one.report is not None]
-    _write_files(arguments, spec, judged)
+    _show_known(known, reports)
+    _write_files(arguments, spec, judged, known)
     if len(reports) < len(judged):
         return 2
-    failed = any(_failed(report, strict=arguments.strict) for report in reports)
+    failed = any(_failed(report, known, strict=arguments.strict) for report in reports)
     failed |= any(one.missing for one in judged)
     if arguments.require_triggered is not None:
         silent = _never_triggered(reports, must_trigger)
@@ -136,10 +158,67 @@ def run(arguments: argparse.Namespace) -> int:
     return int(failed)
 
 
-def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
+def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
+    from rvmon.results.known import NONE_KNOWN, KnownFailures, read_known
+
+    if arguments.known is None:
+        return NONE_KNOWN
+    return KnownFailures(read_known(arguments.known, spec.requirements))
+
+
+def _judged(
+    arguments: argparse.Namespace, traces: Sequence[str], spec: Spec, options: Options
+) -> list[Judged]:
+    """Judge the recordings, but for those that a run which was ended has judged."""
+    from rvmon.cli.judging import judge_all
+    from rvmon.cli.resume import path_of, unfinished
+
+    jobs = arguments.jobs
+    if arguments.out is None or len(traces) == 1:  # there is nothing to go on with
+        found = list(judge_all(spec, traces, options, jobs))
+    else:
+        begun = unfinished(arguments.out, traces, spec, options, resume=arguments.resume)
+        left = [trace for trace in traces if trace not in begun.known]
+        if begun.known:
+            warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")
+        found = list(begun.judged(traces, judge_all(spec, left, options, jobs)))
+    if arguments.out is not None:
+        _write_results(arguments.out, spec, found)
+        path_of(arguments.out).unlink(missing_ok=True)
+    return found
+
+
+def _write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
+    import rvmon
+    from rvmon.results.write import write_results
+    from rvmon.verdict.rows import VerdictRow, broken_rows
+
+    def rows() -> Iterator[VerdictRow]:
+        for one in judged:
+            if one.report is not None:
+                yield from one.report.rows()
+            else:
+                yield from broken_rows(one.trace, one.error, one.before)
+
+    about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
+    write_results(path, rows(), about)
+
+
+def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: Spec) -> None:
     """Say before anything is judged that a result has no place to go to."""
     if arguments.junit:
         refuse_no_file(arguments.junit)
+    if arguments.resume and arguments.out is None:
+        raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
+    if arguments.out is not None:
+        from rvmon.results.write import refuse_format
+
+        refuse_format(arguments.out)
+        refuse_no_file(arguments.out)
+    for written in (arguments.out, arguments.junit, arguments.coverage):
+        for read in (arguments.spec, *traces):
+            if written is not None and _is_same_file(written, read):
+                raise RvmonError(f"cannot write {written}: it is what is judged: name another")
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 
@@ -149,6 +228,13 @@ def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
     if arguments.report and not spec.requirements:
         name = spec.checked.name
         raise RvmonError(f"a page shows requirements, and {name} has none: add one")
+
+
+def _is_same_file(one: str, other: str) -> bool:
+    try:
+        return os.path.samefile(one, other)
+    except (OSError, ValueError):
+        return False
 
 
 def _show_warnings(spec: Spec) -> None:
@@ -161,7 +247,7 @@ def _show_warnings(spec: Spec) -> None:
         warn(f"{spec.checked.name} has no requirement: nothing is judged")
 
 
-def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
+def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
     for one in judged:
         if one.error:
             warn(f"error: {one.error}")
@@ -171,14 +257,24 @@ def _show(form: str, spec: Spec, judged: Sequence[Judged]) -> None:
             names = ", ".join(f"`{name}`" for name in one.missing)
             message = f"{one.trace} has no column for {names}: what reads that is inconclusive"
             warn(f"warning: {message}")
-    if form == "json":
+    if arguments.format == "json":
         _show_doubts(judged)
         texts = [_json(one) for one in judged]
         say_json(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
 
-    print_reports([one.report for one in judged if one.report is not None], spec.checked)
+    reports = [one.report for one in judged if one.report is not None]
+    print_reports(reports, spec.checked, counts_only=arguments.quiet)
+
+
+def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:
+    for report in reports:
+        for name, why in known.expected(report).items():
+            if report.verdicts[name] is Verdict.FAIL:
+                warn(f"{name} in {report.trace} failed as is known: {why}")
+    for remark in known.remarks(reports):
+        warn(f"warning: {remark}")
 
 
 def _show_doubts(judged: Sequence[Judged]) -> None:
@@ -214,15 +310,17 @@ def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
         yield line
 
 
-def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
+def _write_files(
+    arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged], known: KnownFailures
+) -> None:
     reports = [one.report for one in judged if one.report is not None]
     if arguments.coverage is not None:
-        _record_coverage(Path(arguments.coverage), spec, judged)
+        _record_coverage(Path(arguments.coverage), spec, judged, known)
+    broken = [(one.trace, one.error) for one in judged if one.report is None]
     if arguments.junit:
         from rvmon.report.junit import junit_xml
 
-        broken = [(one.trace, one.error) for one in judged if one.report is None]
-        write_file(arguments.junit, junit_xml(reports, spec.checked, broken))
+        write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
 
@@ -233,10 +331,13 @@ def _write_files(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Jud
         def command(trace: str) -> str:
             return shlex.join(["rvmon", "run", arguments.spec, trace, *reading_words(arguments)])
 
-        write_run_pages(Path(arguments.report), spec.checked, reports, read, command)
+        folder = Path(arguments.report)
+        write_run_pages(folder, spec.checked, reports, read, command, broken=broken, known=known)
 
 
-def _record_coverage(path: Path, spec: Spec, judged: Sequence[Judged]) -> None:
+def _record_coverage(
+    path: Path, spec: Spec, judged: Sequence[Judged], known: KnownFailures
+) -> None:
     from rvmon.coverage.database import Database
     from rvmon.coverage.record import TestRecord
 
@@ -251,13 +352,15 @@ def _record_coverage(path: Path, spec: Spec, judged: Sequence[Judged]) -> None:
                     verdicts=one.report.verdicts,
                     number=number,
                     seconds=one.seconds,
+                    expected=known.expected(one.report),
                 )
                 database.record(test, one.hits)
 
 
-def _failed(report: Report, *, strict: bool) -> bool:
-    fine = {"P"} if strict else {"P", "NT", "I"}
-    return bool(report.illegal) or any(verdict not in fine for verdict in report.verdicts.values())
+def _failed(report: Report, known: KnownFailures, *, strict: bool) -> bool:
+    open_ones = {Verdict.NOT_TRIGGERED, Verdict.INCONCLUSIVE} if strict else set()
+    is_open = not open_ones.isdisjoint(report.verdicts.values())
+    return bool(report.illegal or known.failures(report)) or is_open
 
 
 def _never_triggered(reports: Sequence[Report], ids: tuple[str, ...] | None) -> list[str]:

@@ -41,6 +41,7 @@ class TestRecord:
         number: its place in the campaign; tests with the same one are in the order of `when`.
         seconds: that it took.
         when: it was recorded, ns since 1970 in UTC; `None`: when it is written.
+        expected: requirements that were known to fail, each with the reason.
     """
 
     __test__: ClassVar[bool] = False  # to pytest, which goes by names
@@ -57,11 +58,21 @@ class TestRecord:
     number: int = 0
     seconds: float = 0.0
     when: int | None = None
+    expected: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """The requirements that failed."""
-        return tuple(name for name, verdict in self.verdicts.items() if verdict is Verdict.FAIL)
+        """The requirements that failed and were not known to."""
+        return tuple(name for name in self._failed if name not in self.expected)
+
+    @property
+    def failed_as_expected(self) -> dict[str, str]:
+        """The requirements that failed as they were known to, each with the reason."""
+        return {name: self.expected[name] for name in self._failed if name in self.expected}
+
+    @property
+    def _failed(self) -> list[str]:
+        return [name for name, verdict in self.verdicts.items() if verdict is Verdict.FAIL]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

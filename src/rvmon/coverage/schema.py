@@ -14,7 +14,7 @@ from rvmon.errors import CoverageError
 APPLICATION = 0x72766376
 """In the header of the file, so that it is known by what it is: "rvcv"."""
 
-VERSION = 1
+VERSION = 2
 """Of the tables; raised with each change of them."""
 
 TABLES = (
@@ -30,7 +30,7 @@ TABLES = (
     "campaign TEXT NOT NULL, name TEXT NOT NULL, strategy TEXT NOT NULL, "
     "recording TEXT NOT NULL, seed TEXT, system TEXT NOT NULL, verdicts TEXT NOT NULL, "
     "ending TEXT NOT NULL, error TEXT NOT NULL, number INTEGER NOT NULL, seconds REAL NOT NULL, "
-    "recorded INTEGER NOT NULL, hits BLOB NOT NULL)",
+    "recorded INTEGER NOT NULL, expected TEXT NOT NULL, hits BLOB NOT NULL)",
 )
 """What the file holds, and nothing else: a view or a trigger of others would run with our words."""
 
@@ -203,6 +203,11 @@ def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
         raise CoverageError(
             f"error: {name_of(path)} was written by a newer rvmon (version {version} of its "
             f"tables, this one reads {VERSION}): install that one, or record again with this one"
+        )
+    if version < VERSION:
+        raise CoverageError(
+            f"error: {name_of(path)} was written by an older rvmon (version {version} of its "
+            f"tables, this one reads {VERSION}): record again, or install that one"
         )
     found = {
         sql

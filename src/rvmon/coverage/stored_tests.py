@@ -26,7 +26,7 @@ _BYTES = 20
 
 _COLUMNS = (
     "digest, campaign, name, strategy, recording, seed, system, verdicts, ending, error, "
-    "number, seconds, recorded, hits"
+    "number, seconds, recorded, expected, hits"
 )
 _WRITE = (
     f"INSERT INTO tests ({_COLUMNS}) VALUES ({', '.join('?' * len(_COLUMNS.split(',')))}) "  # noqa: S608 - our words
@@ -94,12 +94,13 @@ def write_entries(
                 record.recording,
                 None if record.seed is None else str(record.seed),
                 record.system,
-                msgspec.json.encode(record.verdicts, order="deterministic").decode(),
+                _json(record.verdicts),
                 record.ending,
                 record.error,
                 record.number,
                 float(record.seconds),
                 record.when,
+                _json(record.expected),
                 _packed(entry.row, ids),
             )
             for entry in entries
@@ -155,6 +156,7 @@ def _digest(test: TestRecord, flat: list[tuple[str, str, int, int | None]]) -> s
         test.verdicts,
         test.ending,
         test.error,
+        test.expected,
         flat,
     )
     return hashlib.sha256(msgspec.json.encode(content, order="deterministic")).hexdigest()
@@ -173,7 +175,12 @@ def _storable(test: TestRecord) -> TestRecord:
         verdicts={name: Verdict(verdict) for name, verdict in test.verdicts.items()},
         ending=Ending(test.ending),
         when=time.time_ns() if test.when is None else test.when,
+        expected={name: _text(reason) for name, reason in test.expected.items()},
     )
+
+
+def _json(texts: Mapping[str, str]) -> str:
+    return msgspec.json.encode(texts, order="deterministic").decode()
 
 
 def _text(name: str) -> str:
@@ -204,7 +211,7 @@ def _packed(row: Row, ids: NDArray[np.int64]) -> bytes:
 
 def _entry(columns: tuple[Any, ...], ids: NDArray[np.int64], order: NDArray[np.intp]) -> Entry:
     digest, campaign, name, strategy, recording, seed, system, verdicts, *rest = columns
-    ending, error, number, seconds, recorded, hits = rest
+    ending, error, number, seconds, recorded, expected, hits = rest
     record = TestRecord(
         str(name),
         str(campaign),
@@ -218,6 +225,7 @@ def _entry(columns: tuple[Any, ...], ids: NDArray[np.int64], order: NDArray[np.i
         int(number),
         float(seconds),
         int(recorded),
+        msgspec.json.decode(expected, type=dict[str, str]),
     )
     return Entry(str(digest), record, _unpacked(hits, ids, order))
 

@@ -26,6 +26,7 @@ def coverage_data(summary: Summary) -> dict[str, Any]:
                 "seed": record.seed,
                 "system": record.system,
                 "verdicts": record.verdicts,
+                "expected": record.expected,
                 "ending": record.ending,
                 "error": record.error,
                 "seconds": record.seconds,

@@ -32,6 +32,7 @@ def coverage_page(summary: Summary) -> str:
     body: list[Child] = [
         _header(summary),
         _wrong(summary),
+        _known(summary),
         _overview(summary),
         _comparison(summary),
         _verdicts(summary),
@@ -74,6 +75,14 @@ def _wrong(summary: Summary) -> ET.Element | None:
     if not parts:
         return None
     return e("section", {"class": "wrong", "data-verdict": "F"}, e("h2", None, "Wrong"), *parts)
+
+
+def _known(summary: Summary) -> ET.Element | None:
+    """What failed as it was known to."""
+    if not summary.known:
+        return None
+    lines = [_fault(summary, fault, places) for fault, places in summary.known.items()]
+    return e("section", None, e("h2", None, "Failed as expected"), *_list(lines))
 
 
 def _fault(summary: Summary, fault: str, places: Sequence[int]) -> ET.Element:

@@ -135,7 +135,7 @@ class Summary:
 
     @cached_property
     def not_fine(self) -> Sequence[int]:
-        """Tests that failed a requirement or did not complete."""
+        """Tests that failed a requirement that is not known to fail, or did not complete."""
         entries = self.coverage.entries
         return [place for place, entry in enumerate(entries) if not_fine(entry.record)]
 
@@ -146,6 +146,15 @@ class Summary:
         for place in self.not_fine:
             found.setdefault(not_fine(self.record(place)), []).append(place)
         return dict(sorted(found.items(), key=lambda fault: -len(fault[1])))
+
+    @cached_property
+    def known(self) -> Mapping[str, Sequence[int]]:
+        """What failed as expected, in words with the reason, and in which tests."""
+        found: dict[str, list[int]] = {}
+        for place, entry in enumerate(self.coverage.entries):
+            for name, reason in entry.record.failed_as_expected.items():
+                found.setdefault(f"{name}: {reason}", []).append(place)
+        return found
 
     @cached_property
     def campaigns(self) -> Sequence[str]:

@@ -109,6 +109,8 @@ def _verdicts(record: TestRecord) -> list[Child]:
     groups: list[list[Child]] = []
     if record.failed:
         groups.append([letter(Verdict.FAIL), f" {', '.join(record.failed)}"])
+    if known := record.failed_as_expected:
+        groups.append([letter(Verdict.FAIL), f" {', '.join(known)} as expected"])
     counts = Counter(record.verdicts.values())
     groups += [
         [f"{counts[verdict]:,} ", letter(verdict)]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.shown import shown
 from rvmon.report.afterword import full_reason, without_attempts
+from rvmon.results.known import NONE_KNOWN, KnownFailures
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -17,34 +18,40 @@ if TYPE_CHECKING:
 
 
 def junit_xml(
-    reports: Sequence[Report], spec: CheckedSpec, broken: Sequence[tuple[str, str]] = ()
+    reports: Sequence[Report],
+    spec: CheckedSpec,
+    broken: Sequence[tuple[str, str]] = (),
+    known: KnownFailures = NONE_KNOWN,
 ) -> str:
     """A test suite per run, a test case per requirement.
 
-    F is a failure, as is a bin that must not be hit; NT and I are skipped with their reason, since
-    neither is a pass. A recording that could not be read to its end is an error, lest it count as
-    nothing to complain of.
+    F is a failure, as is a bin that must not be hit; NT, I, and F that is known are skipped with
+    their reason, since none of them is a pass. A recording that could not be read to its end is an
+    error, lest it count as nothing to complain of.
 
     Args:
         reports: of the recordings that were judged.
         spec: that they were judged by.
         broken: the other recordings, each with what is wrong with it.
+        known: failures that are accepted.
     """
     root = ET.Element("testsuites", name=shown(spec.name))
     for report in reports:
-        verdicts = list(report.verdicts.values())
-        skipped = verdicts.count(Verdict.NOT_TRIGGERED) + verdicts.count(Verdict.INCONCLUSIVE)
+        failures = known.failures(report)
+        passed = list(report.verdicts.values()).count(Verdict.PASS)
         suite = ET.SubElement(
             root,
             "testsuite",
             name=shown(report.trace or spec.name),
-            tests=str(len(verdicts) + len(report.illegal)),
-            failures=str(verdicts.count(Verdict.FAIL) + len(report.illegal)),
+            tests=str(len(report.verdicts) + len(report.illegal)),
+            failures=str(len(failures) + len(report.illegal)),
             errors="0",
-            skipped=str(skipped),
+            skipped=str(len(report.verdicts) - len(failures) - passed),
         )
         for name, verdict in report.verdicts.items():
-            _add_case(suite, report, name, verdict, spec.requirements[name].text)
+            case = _add_case(suite, report, name, verdict, spec.requirements[name].text)
+            if verdict is Verdict.FAIL and name not in failures:
+                _accept(case, known.expected(report)[name])
         for one in report.illegal:
             own = shown(f"{one.group}: {one.item}")
             case = ET.SubElement(suite, "testcase", name=own, classname=suite.get("name", ""))
@@ -62,17 +69,17 @@ def junit_xml(
 
 def _add_case(
     suite: ET.Element, report: Report, name: str, verdict: Verdict, requirement: str
-) -> None:
+) -> ET.Element:
     case = ET.SubElement(suite, "testcase", name=shown(name), classname=suite.get("name", ""))
     if requirement:
         properties = ET.SubElement(case, "properties")
         ET.SubElement(properties, "property", name="requirement", value=shown(requirement))
     if verdict is Verdict.PASS:
-        return
+        return case
     if report.is_silent(name):
         why = without_attempts(verdict, report.misses.get(name, ""))
         ET.SubElement(case, "skipped", message=shown(f"{verdict}: {why}"))
-        return
+        return case
     reasons = [
         shown(
             f"attempt {attempt.numbered}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
@@ -82,6 +89,14 @@ def _add_case(
     kind = "failure" if verdict is Verdict.FAIL else "skipped"
     element = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
     element.text = "\n".join(reasons)
+    return case
+
+
+def _accept(case: ET.Element, why: str) -> None:
+    """Say of a failure that it is known."""
+    for failure in case.findall("failure"):
+        failure.tag = "skipped"
+        failure.set("message", shown(f"known: {why}; {failure.get('message')}"))
 
 
 def _when(decided: int | None) -> str:

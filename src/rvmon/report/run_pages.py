@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rvmon.report.folder import made
-from rvmon.report.markup import Child, e, page
 from rvmon.report.run_html import run_page
+from rvmon.report.run_index import Listed, run_index
 from rvmon.report.run_page import JudgedRun, RunPage
-from rvmon.report.style import MARKS
+from rvmon.results.known import NONE_KNOWN, KnownFailures
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
@@ -29,6 +29,9 @@ def write_run_pages(
     reports: Sequence[Report],
     read: Callable[[str], Sequence[Sample]],
     command: Callable[[str], str],
+    *,
+    broken: Sequence[tuple[str, str]] = (),
+    known: KnownFailures = NONE_KNOWN,
 ) -> list[Path]:
     """Write a page per recording, and `index.html` if there are several.
 
@@ -38,6 +41,8 @@ def write_run_pages(
         reports: one per recording, named by `trace`.
         read: the samples of a recording, by its name.
         command: judges a recording again, by its name.
+        broken: the other recordings, each with what is wrong with it.
+        known: failures that are accepted.
 
     Returns:
         The files, the index last.
@@ -48,7 +53,7 @@ def write_run_pages(
     made(folder)
     passing = [report for report in reports if Verdict.PASS in report.verdicts.values()]
     others = [_judged(report, read) for report in passing[:COMPARED]]
-    several = len(reports) > 1
+    several = len(reports) + len(broken) > 1
     names = _file_names([report.trace for report in reports])
     written = []
     for report, name in zip(reports, names, strict=True):
@@ -68,7 +73,12 @@ def write_run_pages(
         written.append(path)
     if several:
         path = folder / INDEX
-        write_whole(path, _index(spec, reports, names))
+        listed = [
+            Listed(_shown(report.trace), name, report)
+            for report, name in zip(reports, names, strict=True)
+        ]
+        listed += [Listed(_shown(trace), "", None, error) for trace, error in broken]
+        write_whole(path, run_index(spec, listed, known))
         written.append(path)
     return written
 
@@ -94,31 +104,3 @@ def _file_names(traces: Sequence[str]) -> list[str]:
         taken.add(name.lower())
         names.append(name)
     return names
-
-
-def _index(spec: CheckedSpec, reports: Sequence[Report], names: Sequence[str]) -> str:
-    ids = list(reports[0].verdicts)
-    head = e("tr", None, e("th", None, "recording"), *(e("th", None, name) for name in ids))
-    rows = [
-        e(
-            "tr",
-            None,
-            e("th", {"scope": "row"}, e("a", {"href": name}, _shown(report.trace))),
-            *(_cell(report.verdicts[one]) for one in ids),
-        )
-        for report, name in zip(reports, names, strict=True)
-    ]
-    table = e("table", {"class": "verdicts"}, e("thead", None, head), e("tbody", None, *rows))
-    title = f"{len(reports)} recordings, judged by {spec.name}"
-    requirements: list[Child] = []
-    for one in ids:
-        requirements += [e("dt", None, one), e("dd", None, spec.requirements[one].text)]
-    listed = e("dl", {"class": "facts"}, *requirements)
-    scroll = e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table)
-    body = (e("header", None, e("h1", None, title), listed), e("section", None, scroll))
-    return page(title, body, styles=["base.css", "report.css"], scripts=[])
-
-
-def _cell(verdict: Verdict) -> Child:
-    text = f"{verdict.value} {MARKS[verdict].sign}"
-    return e("td", {"data-verdict": verdict.value}, text)

@@ -27,17 +27,24 @@ SHOWN_PER_REQUIREMENT = 3
 """Failed or undecided attempts that are shown in full; the rest is counted."""
 
 
-def print_reports(reports: Sequence[Report], spec: CheckedSpec) -> None:
+def print_reports(
+    reports: Sequence[Report], spec: CheckedSpec, *, counts_only: bool = False
+) -> None:
     """Print the verdicts on each recording, and for several the counts of runs.
 
     Every F comes with cause, window and spec line; every I with what is still owed.
+
+    Args:
+        reports: of the recordings.
+        spec: that judged.
+        counts_only: whether only the counts are printed, of one recording too.
     """
     from rvmon.report.terminal import Terminal
 
     console = Terminal()
-    for report in reports:
+    for report in () if counts_only else reports:
         print_report(report, spec, console)
-    if len(reports) > 1:
+    if len(reports) > 1 or (reports and counts_only):
         console.print(_runs_table(reports))
         for name in reports[0].goals:
             count = sum(report.goals[name] is Verdict.PASS for report in reports)
@@ -156,7 +163,8 @@ def _runs_table(reports: Sequence[Report]) -> Table:
     from rich import box
     from rich.table import Table
 
-    table = Table(title=f"{len(reports)} recordings", box=box.SIMPLE_HEAD, title_justify="left")
+    noun = "recording" if len(reports) == 1 else "recordings"
+    table = Table(title=f"{len(reports):,} {noun}", box=box.SIMPLE_HEAD, title_justify="left")
     table.add_column("")
     for verdict in Verdict:
         table.add_column(verdict.value, justify="right")

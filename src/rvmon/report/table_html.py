@@ -41,8 +41,12 @@ def table_html(
     return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
 
 
-def legend() -> ET.Element:
-    """What the letters above the counts stand for."""
+def legend(of: str = "Number of tests") -> ET.Element:
+    """What the letters stand for.
+
+    Args:
+        of: what they are written beside.
+    """
     words = {
         Verdict.PASS: "passed",
         Verdict.FAIL: "failed",
@@ -52,7 +56,7 @@ def legend() -> ET.Element:
     parts: list[Child] = []
     for verdict, word in words.items():
         parts += [e("b", {"data-verdict": verdict.value}, verdict.value), f" {word}   "]
-    return e("p", {"class": "soft"}, "Number of tests: ", *parts)
+    return e("p", {"class": "soft"}, f"{of}: ", *parts)
 
 
 def _head(table: VerdictTable, *, has_checked: bool) -> ET.Element:

@@ -31,3 +31,13 @@ def wrapped(sentence: str, width: int) -> str:
         break_on_hyphens=False,
     )
     return lines.replace(_TOGETHER, " ")
+
+
+def in_short(message: str) -> str:
+    r"""What is wrong, of a message that goes on with how to mend it in further lines.
+
+    >>> in_short("there is no column for what is read:\n  `go`, read by R1\n  say which it is")
+    'there is no column for what is read: `go`, read by R1'
+    """
+    first, *rest = message.split("\n")
+    return f"{first} {rest[0].strip()}" if rest and first.endswith(":") else first

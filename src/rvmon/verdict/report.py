@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.illegal import IllegalHit
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import LAW, Verdict, fold
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+    import pyarrow
+
+    from rvmon.verdict.rows import VerdictRow
 
 _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
@@ -81,6 +89,65 @@ class Report:
             requirement: its id.
         """
         return not any(self.counts[requirement].values())
+
+    def rows(self) -> Iterator[VerdictRow]:
+        """The report as rows of a table: its attempts in their order, then requirements without.
+
+        The worst verdict of a requirement's rows is its own: `F`, else `I`, else `P`, else `NT`.
+
+        >>> passed = Attempt("R1", 1, 0, 5, Verdict.PASS)
+        >>> for row in report_of(["R1", "R2"], [passed], trace="a.csv").rows():
+        ...     print(row.recording, row.requirement, row.attempt, row.verdict)
+        a.csv R1 R1#1 P
+        a.csv R2 None NT
+        """
+        from rvmon.verdict.rows import VerdictRow, attempt_row, text_row
+
+        if isinstance(self.attempts, LazyAttempts):  # their texts are made together
+            for name, text in self.attempts.texts(self.origin):
+                yield text_row(self.trace, name, text)
+        else:
+            for attempt in self.attempts:
+                yield attempt_row(self.trace, self.origin, attempt)
+        for name, verdict in self.verdicts.items():
+            found = [one for one, count in self.counts[name].items() if count]
+            if not found or fold(found) is not verdict:  # none, or there may have been others
+                reason = self.misses.get(name, "")
+                yield VerdictRow(self.trace, name, verdict=verdict.value, reason=reason)
+
+    def to_arrow(self) -> pyarrow.Table:
+        """The report as a table of Arrow: its rows, whose columns `rvmon.verdict.rows` describes.
+
+        Raises:
+            RvmonError: pyarrow is needed (`rvmon[arrow]`).
+
+        >>> report = report_of(["R1"], [Attempt("R1", 1, 0, 5, Verdict.PASS)], trace="a.csv")
+        >>> report.to_arrow().select(["attempt", "verdict", "decided"]).to_pylist()
+        [{'attempt': 'R1#1', 'verdict': 'P', 'decided': 5}]
+        """
+        from rvmon.verdict.frames import arrow_table
+
+        return arrow_table(self.rows(), {"law": str(self.law)})
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The same as a data frame of pandas; instants are its `Int64`, whole also where null.
+
+        Raises:
+            RvmonError: pyarrow or pandas is needed.
+        """
+        from rvmon.verdict.frames import pandas_frame
+
+        return pandas_frame(self.to_arrow())
+
+    def to_polars(self) -> polars.DataFrame:
+        """The same as a data frame of polars.
+
+        Raises:
+            RvmonError: pyarrow or polars is needed.
+        """
+        from rvmon.verdict.frames import polars_frame
+
+        return polars_frame(self.to_arrow())
 
     def to_json(self) -> str:
         """The report as JSON text, in the shape that `rvmon run --format json` prints.

@@ -2,10 +2,11 @@
 
 import random
 import sqlite3
+from dataclasses import replace
 
 import pytest
 
-from rvmon.cdv import Campaign, Robot, Run, Test
+from rvmon.cdv import Campaign, ExpectedFailure, Robot, Run, Test
 from rvmon.cdv.coverage import coverage_model, write_coverage
 from rvmon.cdv.execute import execute
 from rvmon.cdv.plan import plan
@@ -90,6 +91,15 @@ def test_a_database_and_a_page_each(campaign, tmp_path):
     assert found.model.groups.keys() == coverage_model(campaign, "new").groups.keys()
     with sqlite3.connect(tmp_path / "out/old/coverage.db") as database:
         assert database.execute("pragma integrity_check").fetchone() == ("ok",)
+
+
+def test_what_is_expected_to_fail_goes_with_the_test(campaign, tmp_path):
+    """The reason is the campaign's; a robot or a test that it is not about has none."""
+    why = ExpectedFailure("L1", "it is no real lift", test="lift-1")
+    expecting = replace(campaign, expected_failures=[why], robots={"new": campaign.robots["new"]})
+    write_coverage(tmp_path / "out", execute(plan(expecting, tests=2), jobs=1), {})
+    entries = read([tmp_path / "out/coverage.db"]).entries
+    assert [entry.record.expected for entry in entries] == [{}, {"L1": "it is no real lift"}]
 
 
 def test_one_name_for_two_things(campaign, tmp_path):

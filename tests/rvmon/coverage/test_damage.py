@@ -41,17 +41,21 @@ def rewritten(path, *words):
 
 
 def test_what_is_no_database_is_named(path):
-    """A text, a cut-off file, one of something else, a newer one."""
+    """A text, a cut-off file, one of something else, a newer one, an older one."""
     text = path.with_name("t.csv")
     text.write_text("t,a\n0,1\n" * 1000)
     assert "this is no database: give one that" in refused(text)
     foreign = path.with_name("f.db")
     rewritten(foreign, "CREATE TABLE t (a)")
     assert "a database of something else" in refused(foreign)
-    rewritten(path, "PRAGMA user_version = 2")
+    rewritten(path, "PRAGMA user_version = 3")
     told = refused(path)
-    assert "written by a newer rvmon (version 2 of its tables, this one reads 1)" in told
+    assert "written by a newer rvmon (version 3 of its tables, this one reads 2)" in told
     assert "install that one, or record again" in told
+    rewritten(path, "PRAGMA user_version = 1")
+    told = refused(path)
+    assert "written by an older rvmon (version 1 of its tables, this one reads 2)" in told
+    assert "record again, or install that one" in told
 
 
 @pytest.mark.parametrize(

@@ -120,6 +120,20 @@ def test_campaigns_are_compared(door):
     assert read.dangling() == set()
 
 
+def test_what_failed_as_expected_is_not_wrong(door):
+    """It is listed apart with its reason; what else failed in the same test is wrong."""
+    failed = {"D1": "F", "D2": "F", "D3": "P"}
+    why = {"D1": "the grip is worn", "D3": "it may"}
+    door.record(TestRecord("worn", "week 2", verdicts=failed, expected=why), {})
+    door.record(TestRecord("old", "week 2", verdicts={"D1": "F"}, expected=why), {})
+    read = Reader(page_of(door))
+    assert "Failed as expected D1: the grip is worn: 2 tests worn old" in read.text
+    assert "F D2: 1 test worn" in read.text
+    assert "D3: it may" not in read.text
+    assert "completed F D2, F D1 as expected, 1 P" in read.text
+    assert read.dangling() == set()
+
+
 def test_of_many_tests_those_have_a_line_that_are_spoken_of(door, monkeypatch):
     """And every link still leads somewhere."""
     monkeypatch.setattr(coverage_tests, "MOST", 10)

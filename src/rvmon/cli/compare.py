@@ -1,0 +1,98 @@
+"""`rvmon compare`: what has changed between two files of verdicts."""
+
+from __future__ import annotations
+
+import argparse
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from rvmon.cli.options import add_format
+from rvmon.cli.say import say_json
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from rvmon.results.compare import Change, Comparison, Difference
+
+LISTED = 20
+"""Differences of one kind that the text lists."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "compare",
+        help="say what has changed between two files of verdicts",
+        description="Hold the verdicts on recordings against earlier ones, by recording and "
+        "requirement: what fails anew, what is mended, what is no longer shown. Files are those of "
+        "`rvmon run --out` (.csv, .parquet, .sqlite, .duckdb) and of `--format json` (.json). The "
+        "exit code is 1 if less holds than before.",
+        epilog="example: rvmon compare monday.parquet tuesday.parquet",
+    )
+    parser.add_argument("before", metavar="OLD", help="the earlier verdicts")
+    parser.add_argument("after", metavar="NEW", help="the later ones")
+    parser.add_argument("--all", action="store_true", help="list everything, however many")
+    add_format(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read, compare, show, and return the exit code."""
+    from rvmon.results.compare import compare
+    from rvmon.results.read import read_results
+
+    found = compare(read_results(arguments.before), read_results(arguments.after))
+    if arguments.format == "json":
+        say_json(_json(found))
+    else:
+        from rvmon.report.terminal import Terminal
+
+        _print(found, Terminal(), None if arguments.all else LISTED)
+    return int(any(one.change.is_loss for one in found.differences))
+
+
+def _json(found: Comparison) -> str:
+    import msgspec
+
+    return msgspec.json.encode(found).decode()
+
+
+def _print(found: Comparison, console: Console, most: int | None) -> None:
+    for change, group in groupby(found.differences, key=lambda one: one.change):
+        _print_kind(change, list(group), console, most)
+    failing = sum(map(len, found.failing.values()))
+    for names, where in (
+        (found.only_before, "only in the earlier"),
+        (found.only_after, "only in the later"),
+    ):
+        if names:
+            rest = f" and {len(names) - 3:,} more" if len(names) > 3 else ""
+            console.print(f"{where}: {', '.join(names[:3])}{rest}", style="dim", markup=False)
+    fail = f", {failing:,} of them still fail" if failing else ""
+    console.print(f"{found.same:,} verdicts are as before{fail}")
+
+
+def _print_kind(
+    change: Change, differences: list[Difference], console: Console, most: int | None
+) -> None:
+    from rich.text import Text
+
+    from rvmon.report.wrapped import wrapped
+
+    style = "bold red" if change.is_loss else "bold green" if change.is_gain else "bold"
+    console.print(Text(f"{len(differences):,} {change.value}:", style=style))
+    for one in differences[:most]:
+        console.print(Text(wrapped(_line(one), console.width)))
+    if most is not None and len(differences) > most:
+        console.print(f"  … and {len(differences) - most:,} more: --all lists them", style="dim")
+
+
+def _line(one: Difference) -> str:
+    from rvmon.report.wrapped import in_short
+
+    if one.before is None or one.after is None:
+        cause = in_short(one.reason)
+        return f"{one.recording}: {cause}" if cause else one.recording
+    before, after = one.failures
+    counts = f" ({before:,} → {after:,} failures)" if max(before, after) > 1 else ""
+    reason = f": {one.reason}" if one.reason and after else ""
+    return f"{one.requirement} in {one.recording}: {one.before} → {one.after}{counts}{reason}"

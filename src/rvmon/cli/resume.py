@@ -1,0 +1,149 @@
+"""What was judged by a run that was ended in its midst, so that the next goes on from there."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import msgspec
+
+import rvmon
+from rvmon.cache import file_stamps
+from rvmon.cli.beside import Options
+from rvmon.cli.judging import Judged
+from rvmon.coverage.hits import Hit
+from rvmon.errors import RvmonError
+from rvmon.execute import journal
+from rvmon.session import Spec
+from rvmon.spec.checked.plain_data import to_plain
+from rvmon.verdict.report import Report
+
+
+def path_of(out: str) -> Path:
+    """The file that keeps what was judged until all is, beside that for the verdicts."""
+    return Path(f"{out}.unfinished")
+
+
+class _Entry(msgspec.Struct, frozen=True):
+    """One recording that was judged, with what told its file from others."""
+
+    trace: str
+    stamp: tuple[int, int]
+    report: str
+    missing: tuple[str, ...]
+    hits: dict[str, dict[str, Hit]]
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Unfinished:
+    """A run that goes on.
+
+    Attributes:
+        path: of its file.
+        stamps: what told the files of recordings from others when the run began, by path.
+        known: the recordings that were judged before, by path.
+    """
+
+    path: Path
+    stamps: dict[str, tuple[int, int] | None]
+    known: dict[str, Judged] = field(default_factory=dict)
+
+    def judged(self, traces: Sequence[str], fresh: Iterable[Judged]) -> Iterator[Judged]:
+        """The recordings in their order, of which those that are fresh are kept.
+
+        Args:
+            traces: their paths.
+            fresh: those that are not known, in their order.
+        """
+        new = iter(fresh)
+        for trace in traces:
+            one = self.known.get(trace)
+            if one is None:
+                one = next(new)
+                self._keep(trace, one)
+            yield one
+
+    def _keep(self, trace: str, one: Judged) -> None:
+        """Write down what was judged, unless it is to be tried again."""
+        stamp = self.stamps[trace]
+        if one.report is None or stamp is None:
+            return
+        hits = {group: dict(items) for group, items in one.hits.items()}
+        entry = _Entry(trace, stamp, one.report.to_json(), one.missing, hits, one.seconds)
+        try:
+            journal.add(self.path, msgspec.json.encode(entry))
+        except OSError as error:
+            raise _cannot_write(self.path, error) from None
+
+
+def unfinished(
+    out: str, traces: Sequence[str], spec: Spec, options: Options, *, resume: bool
+) -> Unfinished:
+    """A run whose verdicts go to a file.
+
+    Args:
+        out: the file.
+        traces: paths of the recordings.
+        spec: that judges.
+        options: how.
+        resume: whether it goes on from where an earlier one was ended, if there is one; what
+            judges, how, and by which program has to be the same, and so has each recording.
+
+    Raises:
+        RvmonError: what is unfinished was judged otherwise, or the file cannot be written.
+    """
+    path = path_of(out)
+    heading = _heading(spec, options)
+    try:
+        entries = journal.entries(path) if resume else None
+        if entries and entries[0] != heading:
+            raise RvmonError(
+                f"{path} was begun with another specification, other options or another rvmon: "
+                "leave out --resume to judge all anew"
+            )
+        known = [msgspec.json.decode(entry, type=_Entry) for entry in (entries or [])[1:]]
+        journal.begin(path, entries or [heading])
+    except msgspec.MsgspecError:
+        raise RvmonError(f"{path} is no unfinished run: leave out --resume") from None
+    except OSError as error:
+        raise _cannot_write(path, error) from None
+    stamps = {trace: _stamp(trace) for trace in traces}
+    same = {one.trace: _judged(one) for one in known if one.stamp == stamps.get(one.trace)}
+    return Unfinished(path, stamps, same)
+
+
+def _judged(one: _Entry) -> Judged:
+    report = Report.from_json(one.report)
+    return Judged(report.trace, report, missing=one.missing, hits=one.hits, seconds=one.seconds)
+
+
+def _stamp(trace: str) -> tuple[int, int] | None:
+    """What tells the file of a recording from others; `None` if it is none."""
+    try:
+        found = os.stat(trace)
+    except (OSError, ValueError):
+        return None
+    return found.st_size, found.st_mtime_ns
+
+
+def _heading(spec: Spec, options: Options) -> bytes:
+    """A checksum of all that verdicts depend on but the recordings."""
+    schema = spec.schema
+    said = [
+        to_plain(spec.checked),
+        [repr(schema.stamps), repr(schema.gaps), sorted(schema.columns.items())],
+        asdict(options),
+        list(file_stamps(str(Path(rvmon.__file__).parent))),
+        sys.version,
+    ]
+    return hashlib.sha256(json.dumps(said).encode()).hexdigest().encode()
+
+
+def _cannot_write(path: Path, error: OSError) -> RvmonError:
+    return RvmonError(f"cannot write {path}: {error.strerror or error}")

@@ -1,0 +1,162 @@
+"""`rvmon run` writes verdicts as data, goes on where it was ended, and knows of known failures."""
+
+import json
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import pytest
+
+import rvmon
+from rvmon.cli import main
+from rvmon.execute import journal
+from rvmon.results.read import read_results
+from rvmon.verdict.lazy import LazyAttempts
+
+SPEC = """signal p : bool
+requirement R1
+  always p
+requirement R2
+  upon not p then within 1 s p
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A recording that passes, one that fails, one that is none."""
+    (tmp_path / "s.rv").write_text(SPEC)
+    (tmp_path / "good.csv").write_text("t,p\n0,1\n5,1\n")
+    (tmp_path / "bad.csv").write_text("t,p\n0,1\n5,0\n9,0\n")
+    (tmp_path / "cut.csv").write_text("t,p\n0,1\n5,maybe\n")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_verdicts_are_written_also_of_what_breaks_off(folder, capsys):
+    """The exit codes are those of the run."""
+    assert main(["run", "s.rv", "good.csv", "--out", "v.csv"]) == 0
+    assert main(["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]) == 1
+    found = [(row.recording, row.requirement, row.verdict) for row in read_results("v.csv")]
+    assert found == [
+        ("good.csv", "R1", "P"),
+        ("good.csv", "R2", "NT"),
+        ("bad.csv", "R1", "F"),
+        ("bad.csv", "R2", "F"),
+    ]
+    assert main(["run", "s.rv", "good.csv", "cut.csv", "--out", "v.csv"]) == 2
+    broken = [row for row in read_results("v.csv") if row.recording == "cut.csv"]
+    assert "maybe" in broken[0].error
+    assert not (folder / "v.csv.unfinished").exists()
+
+
+@pytest.mark.parametrize("resume", [True, False])
+def test_a_run_that_was_ended_goes_on(folder, capsys, monkeypatch, resume):
+    """What was judged is not judged again, unless its file has changed; outputs are the same."""
+    words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
+    assert main(words) == 1
+    whole, table = capsys.readouterr().out, (folder / "v.csv").read_text()
+    (folder / "v.csv").unlink()
+
+    def full(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rvmon.results.write.write_whole", full)
+    assert main(words) == 130
+    monkeypatch.undo()
+    monkeypatch.chdir(folder)
+    assert len(journal.entries(folder / "v.csv.unfinished")) == 3
+    capsys.readouterr()
+    (folder / "good.csv").write_text("t,p\n0,1\n5,1\n\n")
+    assert main([*words, *(["--resume"] if resume else [])]) == 1
+    told = capsys.readouterr()
+    assert told.out == whole
+    assert ("1 of 2 recordings were judged before" in told.err) is resume
+    assert (folder / "v.csv").read_text() == table
+
+
+@pytest.mark.parametrize("option", ["--out", "--junit"])
+def test_what_is_judged_is_not_written_over(folder, capsys, option):
+    """By whatever name it is called."""
+    before = (folder / "good.csv").read_text()
+    (folder / "link.csv").symlink_to(folder / "good.csv")
+    assert main(["run", "s.rv", "bad.csv", "good.csv", option, "link.csv"]) == 2
+    assert "cannot write link.csv: it is what is judged" in capsys.readouterr().err
+    assert (folder / "good.csv").read_text() == before
+
+
+def test_many_attempts_have_the_rows_that_few_have(folder):
+    """Those of a recording in columns are written together."""
+    rows = "".join(f"{t},{t % 3 > 0:d}\n" for t in range(3000))
+    (folder / "many.csv").write_text(f"t,p\n{rows}")
+    spec = rvmon.load("s.rv")
+    report = spec.evaluate("many.csv", engine="columns")
+    assert isinstance(report.attempts, LazyAttempts)
+    assert [*report.rows()] == [*replace(report, attempts=tuple(report.attempts)).rows()]
+
+
+def test_another_run_does_not_go_on_with_it(folder, capsys):
+    """Nor is what is no unfinished run taken for one."""
+    words = ["run", "s.rv", "good.csv", "good.csv", "--out", "v.csv", "--resume"]
+    journal.begin(folder / "v.csv.unfinished", [b"another"])
+    assert main(words) == 2
+    assert "was begun with another specification" in capsys.readouterr().err
+    assert main([*words[:-1]]) == 0
+    assert main(["run", "s.rv", "good.csv", "--resume"]) == 2
+    assert "name it by --out" in capsys.readouterr().err
+    assert main(["run", "s.rv", "good.csv", "--out", "v.xls"]) == 2
+    assert main(["run", "s.rv", "good.csv", "--out", "none/v.csv"]) == 2
+
+
+def test_known_failures_fail_no_run(folder, capsys):
+    """They are told, skipped in JUnit, and expected in databases of coverage."""
+    known = folder / "known.toml"
+    known.write_text(
+        '[[known]]\nrequirement = "R1"\nreason = "worn"\nuntil = 2999-01-01\n'
+        '[[known]]\nrequirement = "R2"\nreason = "slow"\nuntil = 2999-01-01\n'
+    )
+    words = ["run", "s.rv", "good.csv", "bad.csv", "--known", "known.toml"]
+    assert main([*words, "--junit", "j.xml", "--coverage", "c.db", "--report", "pages"]) == 0
+    assert "R1 in bad.csv failed as is known: worn (until 2999-01-01)" in capsys.readouterr().err
+    suite = ET.parse(folder / "j.xml").getroot()[1]  # noqa: S314 - ours
+    assert (suite.get("failures"), suite.get("skipped")) == ("0", "2")
+    assert suite[0][0].get("message").startswith("known: worn (until 2999-01-01); F: attempt 1")
+    index = (folder / "pages" / "index.html").read_text()
+    assert "1 fail as is known, 1 not triggered" in index
+    assert main(["cover", "c.db", "--strict"]) == 0
+    known.write_text(known.read_text().replace("2999", "1999", 1))
+    capsys.readouterr()
+    assert main(words) == 1
+    assert "R1 (worn) was known to fail until 1999-01-01, and fails" in capsys.readouterr().err
+
+
+def test_what_fails_stands_first_in_the_list_of_recordings(folder):
+    """What cannot be judged stands before, with the reason; cells lead to the failure."""
+    assert main(["run", "s.rv", "good.csv", "bad.csv", "cut.csv", "--report", "pages"]) == 2
+    index = (folder / "pages" / "index.html").read_text()
+    places = [index.index(f'data-name="{name}.csv"') for name in ("cut", "bad", "good")]
+    assert places == sorted(places)
+    assert "cannot be judged: " in index
+    assert 'href="bad.html#R1"' in index
+    assert 'class="filters" hidden="hidden"' in index
+
+
+def test_two_runs_are_compared(folder, capsys):
+    """The exit code is 1 if less holds than before."""
+    main(["run", "s.rv", "good.csv", "--out", "old.csv"])
+    main(["run", "s.rv", "good.csv", "--out", "same.csv"])
+    capsys.readouterr()
+    assert main(["compare", "old.csv", "same.csv"]) == 0
+    assert capsys.readouterr().out == "2 verdicts are as before\n"
+    (folder / "good.csv").write_text((folder / "bad.csv").read_text())
+    main(["run", "s.rv", "good.csv", "--out", "new.csv"])
+    capsys.readouterr()
+    assert main(["compare", "old.csv", "new.csv"]) == 1
+    text = capsys.readouterr().out
+    assert "2 fails anew:" in text
+    assert "R1 in good.csv: P → F: R1#1: `p` became false at 5 s" in text
+    assert main(["compare", "old.csv", "new.csv", "--format", "json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert [one["change"] for one in found["differences"]] == ["fails anew", "fails anew"]
+    assert main(["compare", "new.csv", "old.csv"]) == 0
+    assert "mended" in capsys.readouterr().out
+    assert main(["compare", "old.csv", "none.csv"]) == 2
+    assert "there is no file none.csv" in capsys.readouterr().err
