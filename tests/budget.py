@@ -23,6 +23,7 @@ BUDGETS = {
     "tests/rvmon/automaton": 12,
     "tests/rvmon/cdv": 35,
     "tests/rvmon/cli": 40,
+    "tests/rvmon/clipping": 50,
     "tests/rvmon/codegen": 140,
     "tests/rvmon/coverage": 25,
     "tests/rvmon/dataflow": 6,

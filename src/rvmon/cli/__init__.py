@@ -31,6 +31,7 @@ COMMANDS = {
     "format": "lay specifications out in the canonical form",
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
+    "clip": "a recording cut around an attempt; a file that reproduces it",
     "init": "a starter specification from a recording",
     "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as Python or C that runs alone, or as automata",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -12,7 +11,14 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import instant, positive
-from rvmon.cli.options import add_const, add_format, add_only, constants_of, ids_of
+from rvmon.cli.options import (
+    add_const,
+    add_format,
+    add_only,
+    constants_of,
+    ids_of,
+    refuse_over,
+)
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
@@ -215,10 +221,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
-    for written in (arguments.out, arguments.junit, arguments.coverage):
-        for read in (arguments.spec, *traces):
-            if written is not None and _is_same_file(written, read):
-                raise RvmonError(f"cannot write {written}: it is what is judged: name another")
+    refuse_over((arguments.out, arguments.junit, arguments.coverage), (arguments.spec, *traces))
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 
@@ -228,13 +231,6 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.report and not spec.requirements:
         name = spec.checked.name
         raise RvmonError(f"a page shows requirements, and {name} has none: add one")
-
-
-def _is_same_file(one: str, other: str) -> bool:
-    try:
-        return os.path.samefile(one, other)
-    except (OSError, ValueError):
-        return False
 
 
 def _show_warnings(spec: Spec) -> None:

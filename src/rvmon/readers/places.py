@@ -67,6 +67,28 @@ def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
             yield raw, raw
 
 
+@contextmanager
+def created(path: Path) -> Iterator[BinaryIO]:
+    """A new file to write; it is packed as its ending says.
+
+    Raises:
+        RvmonError: a package is not installed.
+        OSError: it cannot be written.
+    """
+    packed = endings_of(str(path))[1]
+    with open(path, "wb") as raw:
+        if not packed:
+            yield raw
+        elif packed == ".gz":
+            from gzip import GzipFile
+
+            with GzipFile(fileobj=raw, mode="wb") as file:
+                yield file  # type: ignore[misc]
+        else:
+            with _zstd().ZstdFile(raw, mode="wb") as file:
+                yield file
+
+
 class _Unpacked(RawIOBase):
     """The text of a packed file.
 
