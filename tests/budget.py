@@ -18,7 +18,7 @@ BUDGETS = {
     "tests/handover/model": 4,
     "tests/handover/robot": 1,
     "tests/handover/world": 2,
-    "tests/rvmon": 10,
+    "tests/rvmon": 20,
     "tests/rvmon/analysis": 12,
     "tests/rvmon/automaton": 12,
     "tests/rvmon/cdv": 35,

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from rvmon import __version__
 from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
+from rvmon.cli.reproduced import relax
 from rvmon.cli.say import warn
 from rvmon.errors import RvmonError
 from rvmon.execute.interrupt import interrupted_by_sigterm
@@ -149,4 +150,6 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         module = import_module(f"rvmon.cli.{command}")
         module.add_parser(subparsers)
         subparsers.choices[command].set_defaults(run=module.run)
+        if command in ("run", "why"):
+            relax(subparsers.choices[command], words)
     return parser

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from rvmon.cli.attempts import ATTEMPT_HELP, chosen_attempt, named_attempt
 from rvmon.cli.numbers import span, ticks
 from rvmon.cli.options import add_const, constants_of, refuse_over
 from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
+from rvmon.cli.reproduced import ENDING
 from rvmon.cli.say import say, warn
 from rvmon.errors import RvmonError
+from rvmon.readers.places import name_of
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_ticks
 
@@ -53,7 +57,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--from", metavar="T", type=ticks, dest="start", help="from T seconds on")
     parser.add_argument("--to", metavar="T", type=ticks, dest="stop", help="to T seconds")
     parser.add_argument(
-        "-o", "--out", metavar="FILE", required=True, help="the piece; a folder for a bag of ROS 2"
+        "-o", "--out", metavar="FILE", help="the piece; a folder for a bag of ROS 2"
+    )
+    parser.add_argument(
+        "--reproducer",
+        metavar="FILE",
+        help="one file (.rvcase) with the piece and all that judges it: `rvmon why FILE` explains "
+        "the attempt, `rvmon run FILE` judges it; -o FILE.rvcase is the same",
     )
     add_const(parser)
     add_reading(parser)
@@ -65,31 +75,79 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.clipping.clip import clip, refuse_place
     from rvmon.loading import load
 
-    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
-    data, out = arguments.data, arguments.out
+    data = arguments.data
+    out, case = _places(arguments)
+    if case is not None and arguments.failure is None:
+        raise RvmonError("a reproducer shows an attempt: name it by --failure R1#3")
     if arguments.failure is None and arguments.start is None and arguments.stop is None:
         raise RvmonError("name what to cut out: --failure R1#3, or --from T and --to T")
-    refuse_place(data, out)
-    refuse_over([out], [data, arguments.spec, *([arguments.binding] * bool(arguments.binding))])
-    refuse_no_file(out)
+    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
+    if out is not None:
+        refuse_place(data, out)
+    for one in (out, case):
+        if one is not None:
+            read = [data, arguments.spec] + [arguments.binding] * bool(arguments.binding)
+            refuse_over([one], read)
+            refuse_no_file(one)
     attempt = None
     if arguments.failure is not None:
         name, exact = named_attempt(arguments.failure, spec)
-        report = _report(spec, arguments, data, name)
-        attempt = chosen_attempt(report, name, exact)
+        attempt = chosen_attempt(_report(spec, arguments, data, name), name, exact)
     piece = _piece(spec, arguments, attempt)
-    copied = clip(data, piece, out)
-    _show(data, out, copied, piece)
-    if attempt is None:
-        return 0
-    again = _report(spec, arguments, out, attempt.requirement)
-    same = _same(spec, attempt, again, piece)
-    if same is None:
-        _warn_of_another(arguments, attempt, again, copied)
-        return 1
-    when = "" if same.decided is None else f", decided at {format_ticks(same.decided)}"
-    say(f"{attempt.name} is {same.name} in it: {same.verdict}{when}, as in {data}")
+    with TemporaryDirectory(prefix="rvmon-") as folder:
+        place = out or str(Path(folder, name_of(data)))
+        copied = clip(data, piece, place)
+        _show(data, out or case or "", copied, piece)
+        if attempt is None:
+            return 0
+        again = _report(spec, arguments, place, attempt.requirement)
+        same = _same(spec, attempt, again, piece)
+        if same is None:
+            _warn_of_another(data, place, attempt, again, copied)
+            return 1
+        when = "" if same.decided is None else f", decided at {format_ticks(same.decided)}"
+        say(f"{attempt.name} is {same.name} in it: {same.verdict}{when}, as in {data}")
+        if case is not None:
+            _write_case(arguments, case, place, same)
     return 0
+
+
+def _places(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
+    """Where the piece goes to, and the reproducer."""
+    out, case = arguments.out, arguments.reproducer
+    if out is not None and out.endswith(ENDING) and case is None:
+        out, case = None, out
+    if out is None and case is None:
+        raise RvmonError("name where it goes to: -o FILE, or --reproducer FILE.rvcase")
+    if case is not None and not case.endswith(ENDING):
+        raise RvmonError(f"cannot write {case}: the name of a reproducer ends in {ENDING}")
+    return out, case
+
+
+def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: Attempt) -> None:
+    from rvmon import __version__
+    from rvmon.reproducer import Case, write_case
+    from rvmon.verdict.verdict import LAW
+
+    case = Case(
+        __version__,
+        LAW,
+        attempt.name,
+        attempt.verdict.value,
+        attempt.triggered,
+        attempt.decided,
+        arguments.spec,
+        place,
+        arguments.binding,
+        tuple(arguments.const),
+        arguments.time,
+        tuple(arguments.map),
+        arguments.nan,
+        arguments.clock,
+        arguments.allow_missing,
+    )
+    write_case(out, case)
+    say(f"{out}: `rvmon why {out}` explains {attempt.name}, `rvmon run {out}` judges it")
 
 
 def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:
@@ -179,7 +237,7 @@ def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt
 
 
 def _warn_of_another(
-    arguments: argparse.Namespace, attempt: Attempt, report: Report, copied: Copied
+    data: str, place: str, attempt: Attempt, report: Report, copied: Copied
 ) -> None:
     """Say that the attempt is not the same on the piece, and what to do."""
     verdict = report.verdicts[attempt.requirement]
@@ -188,6 +246,6 @@ def _warn_of_another(
     else:
         why = "what it remembers lies before: a longer --before"
     warn(
-        f"warning: {attempt.name} is {attempt.verdict} in {arguments.data} and not so in "
-        f"{arguments.out}, where {attempt.requirement} is {verdict}; {why} may mend it"
+        f"warning: {attempt.name} is {attempt.verdict} in {data} and not so in "
+        f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may mend it"
     )

@@ -9,6 +9,7 @@ from rvmon.cli.attempts import ATTEMPT_HELP, chosen_attempt, named_attempt
 from rvmon.cli.numbers import instant
 from rvmon.cli.options import add_const, add_format, constants_of
 from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
+from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.cli.say import say_json
 from rvmon.errors import RvmonError
 
@@ -21,7 +22,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Take one attempt apart: when each part of its requirement was true.",
         epilog="example: rvmon why specs/door.rv monday.csv D1#3",
     )
-    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument(
+        "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"
+    )
     parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
     parser.add_argument(
         "attempt",
@@ -42,6 +45,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
+    with unpacked(arguments) as case:
+        if case is not None:
+            if arguments.attempt is not None:
+                raise RvmonError("a reproducer brings its recording along: name only an attempt")
+            arguments.attempt = arguments.trace or case.attempt
+            arguments.trace = case.recording
+        return _explain(arguments, None if case is None else shown_name(case.spec))
+
+
+def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     from rvmon.cli.post_analysis import in_order
     from rvmon.explain.dissect import dissect
     from rvmon.explain.not_triggered import why_not_triggered
@@ -51,7 +64,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
-    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
+    spec = reading_spec(
+        load(arguments.spec, name=known_as, const=constants_of(arguments.const)), arguments
+    )
     name, exact = named_attempt(arguments.attempt, spec)
     recording = opened(spec, arguments.trace)
     allowed = allowed_names(arguments.allow_missing)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from rvmon.clipping.piece import Copied, Piece
 from rvmon.errors import RvmonError, TraceError
@@ -12,7 +11,7 @@ from rvmon.readers.messages.file import MESSAGE_FORMATS
 from rvmon.readers.places import endings_of, local_path
 from rvmon.readers.recording import FORMATS, format_of
 from rvmon.trace.time import format_ticks
-from rvmon.writing import PREFIX
+from rvmon.writing import beside
 
 
 def refuse_place(path: str, out: str) -> None:
@@ -56,19 +55,16 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
         RvmonError: a package is not installed, or the piece cannot be written.
         TraceError: the recording cannot be read up to the end of the piece, or has nothing in it.
     """
-    final = Path(os.path.realpath(out))
     try:
-        with TemporaryDirectory(prefix=PREFIX, dir=final.parent) as folder:
-            beside = Path(folder, final.name)
+        with beside(out) as made:
             try:
-                copied = _written(path, piece, beside)
+                copied = _written(path, piece, made)
             except TraceError as error:
                 message = str(error)
                 raise TraceError(message if path in message else f"{path}: {message}") from None
             if not copied.count:
                 between = f"{format_ticks(piece.start)} and {format_ticks(piece.stop)}"
                 raise TraceError(f"{path}: there is nothing between {between}")
-            beside.replace(final)
     except OSError as error:
         raise RvmonError(f"cannot write {out}: {error.strerror or error}") from None
     return copied
