@@ -30,7 +30,7 @@ BUDGETS = {
     "tests/rvmon/diagnostics": 1,
     "tests/rvmon/execute": 20,
     "tests/rvmon/explain": 20,
-    "tests/rvmon/export": 4,
+    "tests/rvmon/export": 10,
     "tests/rvmon/formula": 2,
     "tests/rvmon/laws": 75,
     "tests/rvmon/monitor": 180,

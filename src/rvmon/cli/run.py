@@ -110,6 +110,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="FILE",
         help="failures that are accepted, each with a reason and a last day, in TOML",
     )
+    parser.add_argument(
+        "--mcap",
+        metavar="FILE",
+        help="of one recording: write states, attempts and values over time as MCAP, and "
+        "FILE.layout.json, by which Foxglove shows them",
+    )
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
     parser.add_argument(
@@ -227,7 +233,16 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
-    refuse_over((arguments.out, arguments.junit, arguments.coverage), (arguments.spec, *traces))
+    files = [arguments.out, arguments.junit, arguments.coverage, arguments.mcap]
+    if arguments.mcap is not None:
+        from rvmon.export.verdicts_mcap import layout_path, refuse_mcap
+
+        refuse_mcap(arguments.mcap)
+        refuse_no_file(arguments.mcap)
+        if len(traces) > 1:
+            raise RvmonError(f"--mcap shows one recording, and there are {len(traces)}")
+        files.append(layout_path(arguments.mcap))
+    refuse_over(files, (arguments.spec, *traces))
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 

@@ -47,7 +47,7 @@ def write_files(
     known: KnownFailures,
     reproducer: str,
 ) -> None:
-    """Write what else was asked for: coverage, JUnit, pages.
+    """Write what else was asked for: coverage, JUnit, MCAP, pages.
 
     Args:
         arguments: of the command line.
@@ -67,13 +67,22 @@ def write_files(
         from rvmon.report.junit import junit_xml
 
         write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
+
+    def read(trace: str) -> list[Sample]:
+        # What came over standard input is gone: its page has the verdicts, not the signals.
+        place = arguments.traces[0] if reproducer else trace
+        return [] if trace == "-" else list(spec.recording(place))
+
+    if arguments.mcap:
+        from rvmon.cli.post_analysis import in_order
+        from rvmon.export.verdicts_mcap import write_verdicts
+
+        for report in reports:
+            end = report.end or 0
+            samples = [one for one in in_order(read(report.trace)) if one.t <= end]
+            write_verdicts(arguments.mcap, spec.checked, report, samples)
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
-
-        def read(trace: str) -> list[Sample]:
-            # What came over standard input is gone: its page has the verdicts, not the signals.
-            place = arguments.traces[0] if reproducer else trace
-            return [] if trace == "-" else list(spec.recording(place))
 
         def command(trace: str) -> str:
             if reproducer:
