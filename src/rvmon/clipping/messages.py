@@ -131,40 +131,48 @@ def _clip_mcap(
         writer.start(header.profile, header.library)
         for metadata in reader.iter_metadata():
             writer.add_metadata(metadata.name, metadata.metadata)
-        summary = reader.get_summary()
-        found = () if summary is None else summary.channels.values()
+        found = {channel.id: (schema, channel) for schema, channel in _channels(reader)}
         latched = {
             (channel.topic, channel.id)
-            for channel in found
+            for _, channel in found.values()
             if _is_latched(channel.metadata) and channel.topic not in happening
         }
         schemas: dict[int, int] = {0: 0}
         channels: dict[int, int] = {}
+        for schema, channel in found.values():
+            if channel.schema_id not in schemas:
+                own = writer.register_schema(schema.name, schema.encoding, schema.data)
+                schemas[channel.schema_id] = own
+            encoding, own = channel.message_encoding, schemas[channel.schema_id]
+            channels[channel.id] = writer.register_channel(
+                channel.topic, encoding, own, channel.metadata
+            )
 
         def read(topics: Collection[str] | None, start: int, stop: int) -> Iterator[_Raw]:
             wanted = None if topics is None else list(topics)
-            for one in reader.iter_messages(wanted, starting_at=start, ending_before=stop):
-                yield one[1].topic, one[1].id, one[2].log_time, one
+            told = reader.iter_messages(wanted, starting_at=start, ending_before=stop)
+            for _, channel, message in told:
+                yield channel.topic, channel.id, message.log_time, message
 
         def write(t: int, raw: _Raw) -> None:
-            schema, channel, message = raw[3]
-            if channel.schema_id not in schemas:
-                made = writer.register_schema(schema.name, schema.encoding, schema.data)
-                schemas[channel.schema_id] = made
-            if channel.id not in channels:
-                channels[channel.id] = writer.register_channel(
-                    channel.topic,
-                    channel.message_encoding,
-                    schemas[channel.schema_id],
-                    channel.metadata,
-                )
-            writer.add_message(
-                channels[channel.id], t, message.data, message.publish_time, message.sequence
-            )
+            message = raw[3]
+            number = channels[message.channel_id]
+            writer.add_message(number, t, message.data, message.publish_time, message.sequence)
 
         copied = _copied(_chosen(read, piece, brought, latched), write)
         writer.finish()
     return copied
+
+
+def _channels(reader: Any) -> Iterator[tuple[Any, Any]]:
+    """The channels with their schemas; by all messages where the file has no index of them."""
+    summary = reader.get_summary()
+    if summary is not None and summary.channels:
+        for channel in summary.channels.values():
+            yield summary.schemas.get(channel.schema_id), channel
+    else:
+        for schema, channel, _ in reader.iter_messages(log_time_order=False):
+            yield schema, channel
 
 
 def _is_latched(metadata: Mapping[str, str]) -> bool:
@@ -245,8 +253,15 @@ def _clip_bag(
     is_latched, declared, writer = made
     with bag_errors(form), bag_readers()[form](path) as reader, writer:
         latched = {(one.topic, one.id) for one in reader.connections if is_latched(one)}
-        # All, in their order: by it messages of one instant are read again.
-        connections = {one.id: declared(writer, one) for one in reader.connections}
+        # All, in their order: by it messages of one instant are read again, and a topic without
+        # messages is there all the same. Publishers that are told apart by nothing are one.
+        alike: dict[Any, Any] = {}
+        connections = {}
+        for one in reader.connections:
+            key = (one.topic, one.msgtype, one.digest, repr(one.ext))
+            if key not in alike:
+                alike[key] = declared(writer, one)
+            connections[one.id] = alike[key]
 
         def read(topics: Collection[str] | None, start: int, stop: int) -> Iterator[_Raw]:
             wanted = [one for one in reader.connections if topics is None or one.topic in topics]

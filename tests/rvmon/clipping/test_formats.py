@@ -211,6 +211,65 @@ def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
     assert b"new" in found[0][5]
 
 
+@pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
+def test_topics_without_messages_stay(tmp_path, name):
+    """What was not sent in the piece is not missing in it: it did not occur."""
+    sent = [("/speed", START + t * 10**9, {"data": 5.0}) for t in range(9)]
+    sent = [("/go", START, {}), *sent]
+    path = FORMATS[name](tmp_path / name, sent)
+    spec = rvmon.loads(FAST.format(2) + "event go\nrequirement R2\n  upon go then speed < 9\n")
+    (tmp_path / "s.rv").write_text(FAST.format(2))
+    out = tmp_path / f"out{path.suffix}"
+    words = ["--from", f"{START + 10**9}ns", "-o", str(out)]
+    assert main(["clip", str(path), "--spec", str(tmp_path / "s.rv"), *words]) == 0
+    assert spec.evaluate(out).verdicts == {"R": "F", "R2": "NT"}
+
+
+def test_a_file_without_an_index_is_cut(tmp_path):
+    """Its channels are found by its messages."""
+    from mcap.writer import IndexType
+
+    sent = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
+    bare = {"index_types": IndexType.NONE, "use_summary_offsets": False, "use_statistics": False}
+    bare |= {"repeat_channels": False, "repeat_schemas": False}
+    path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False, **bare)
+    (tmp_path / "s.rv").write_text(FAST.format(2))
+    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "1s", "--after", "1s"]
+    assert main(["clip", str(path), *words, "-o", str(tmp_path / "b.mcap")]) == 0
+
+
+def test_a_database_alone_is_cut(tmp_path):
+    """A `.db3` without the folder of its bag."""
+    sent = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
+    folder = write_ros2(tmp_path / "bag", sent, "sqlite3")
+    path = next(folder.glob("*.db3")).rename(tmp_path / "a.db3")
+    (tmp_path / "s.rv").write_text(FAST.format(2))
+    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "1s", "--after", "1s"]
+    out = tmp_path / "b.db3"
+    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    assert rvmon.loads(FAST.format(2)).evaluate(out).end == START + 5 * 10**9
+
+
+@pytest.mark.parametrize("late", [0, 3])
+def test_stamps_of_headers_are_cut_by_what_was_recorded(tmp_path, late):
+    """Be the clock of the recorder another one; the attempt is the same."""
+    sent = []
+    for t in range(12):
+        header = {"stamp": {"sec": 100 + t, "nanosec": 0}}
+        at = START + (t + late) * 10**9
+        sent.append(("/base/scan", at, {"header": header, "ranges": [t / 2], "state": t}))
+    path = write_ros2(tmp_path / "bag", sent, "mcap")
+    (tmp_path / "s.rv").write_text(
+        "spec s\nsignal state : int\nrequirement R\n  always state < 6\n"
+    )
+    words = ["--spec", str(tmp_path / "s.rv"), "--map", "state=/base/scan.state", "--clock"]
+    words += ["header", "--failure", "R", "--before", "2s", "--after", "1s"]
+    out = tmp_path / "out"
+    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    stamps = [one[4] - START for one in messages(out)]
+    assert stamps[-4:] == [(t + late) * 10**9 for t in (4, 5, 6, 7)]
+
+
 @pytest.mark.parametrize("kind", ["float64", "timestamp[us, UTC]", "int64", "string"])
 def test_parquet_keeps_its_types(tmp_path, kind):
     """Whatever its stamps are; what is carried has the stamp of the start, or the one before."""
