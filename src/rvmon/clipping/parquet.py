@@ -28,6 +28,9 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
         OSError: a file cannot be read or written.
     """
     schema = parquet_file(path).schema_arrow
+    if piece.held:  # the row that brings values along lacks others
+        for place, field in enumerate(schema):
+            schema = schema.set(place, field.with_nullable(True))
     import pyarrow
     from pyarrow import parquet
 
@@ -58,13 +61,11 @@ def _start(piece: Piece, layout: Layout, schema: Any) -> Any:
     for column in layout.signals:
         cells[column.index] = piece.held.get(column.name)
     arrays = [
-        pyarrow.array([cell]).cast(field.type) for cell, field in zip(cells, schema, strict=True)
+        pyarrow.nulls(1, field.type) if cell is None else pyarrow.array([cell]).cast(field.type)
+        for cell, field in zip(cells, schema, strict=True)
     ]
     arrays[layout.time] = _stamp(piece.start, layout.stamps, schema.field(layout.time).type)
-    nullable = pyarrow.schema(
-        [pyarrow.field(field.name, field.type) for field in schema], schema.metadata
-    )
-    return pyarrow.table(arrays, schema=nullable)
+    return pyarrow.table(arrays, schema=schema)
 
 
 def _stamp(ticks: int, stamps: Stamps, kind: Any) -> Any:

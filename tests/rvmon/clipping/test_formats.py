@@ -289,10 +289,17 @@ def test_parquet_keeps_its_types(tmp_path, kind):
     speed = pa.array([1.5] + [None] * 8, pa.float32())
     go = pa.array([None] * 4 + [True] + [None] * 4)
     path, out = tmp_path / "a.parquet", tmp_path / "out.parquet"
-    table = pa.table({"stamp": times, "speed": speed, "go": go, "other": pa.array(range(9))})
+    mode = pa.array(["a"] * 9).dictionary_encode()
+    parts = pa.array([{"x": 1.0}] * 9)
+    columns = [times, speed, go, pa.array(range(9)), mode, parts]
+    names = ["stamp", "speed", "go", "other", "mode", "parts"]
+    table = pa.table(columns, names)
+    required = pa.field("other", pa.int64(), nullable=False)
+    table = table.cast(table.schema.set(3, required))
     parquet.write_table(table, path)
     (tmp_path / "s.rv").write_text(
-        "spec s\nsignal speed : real\nevent go\nrequirement R\n  upon go then speed < 1\n"
+        "spec s\nsignal speed : real\nsignal mode : {a, b}\nevent go\n"
+        "requirement R\n  upon go then speed < 1\n"
     )
     unit = {"float64": "s", "int64": "ns"}.get(kind, "iso")
     words = ["--spec", str(tmp_path / "s.rv"), "--time", f"stamp:{unit}", "--failure", "R#1"]
@@ -302,3 +309,4 @@ def test_parquet_keeps_its_types(tmp_path, kind):
     assert piece.schema.types == table.schema.types
     assert piece.column("other").to_pylist() == [None, 4, 5]
     assert piece.column("speed").to_pylist() == [1.5, None, None]
+    assert piece.column("mode").to_pylist() == ["a", "a", "a"]
