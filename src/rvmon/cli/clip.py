@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -147,7 +148,8 @@ def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: At
         arguments.allow_missing,
     )
     write_case(out, case)
-    say(f"{out}: `rvmon why {out}` explains {attempt.name}, `rvmon run {out}` judges it")
+    named = shlex.quote(out)
+    say(f"{out}: `rvmon why {named}` explains {attempt.name}, `rvmon run {named}` judges it")
 
 
 def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:

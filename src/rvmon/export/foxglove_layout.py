@@ -6,7 +6,9 @@ import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
+from rvmon.export.foxglove_scene import SCENE
 from rvmon.report.concerned import thresholds
+from rvmon.report.scene import Scene
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.schema import Kind
 
@@ -27,7 +29,10 @@ def topic_of(kind: str, name: str) -> str:
 
 
 def foxglove_layout(
-    spec: CheckedSpec, requirements: Iterable[str], names: Collection[str]
+    spec: CheckedSpec,
+    requirements: Iterable[str],
+    names: Collection[str],
+    scene: Scene | None,
 ) -> dict[str, Any]:
     """The states of requirements above the numbers that they read above the log of attempts.
 
@@ -35,6 +40,7 @@ def foxglove_layout(
         spec: that judged.
         requirements: ids of those that it judged.
         names: of the signals and events whose values are there.
+        scene: stands at the right, if there is one.
     """
     judged = list(requirements)
     states = [_path("requirements", name, "state", f"{name} {spec.requirements[name].text}")
@@ -44,7 +50,7 @@ def foxglove_layout(
         for name, signal in spec.signals.items()
         if name in names and signal.type.kind not in _NUMBERS
     ]
-    panels = {
+    panels: dict[str, Any] = {
         "StateTransitions!verdicts": {"title": "Verdicts", "isSynced": True, "paths": states},
         "Plot!values": {
             "title": "Values and what they are compared with",
@@ -61,12 +67,34 @@ def foxglove_layout(
     }
     top, middle, bottom = panels
     below = {"direction": "column", "first": middle, "second": bottom, "splitPercentage": 60}
+    left = {"direction": "column", "first": top, "second": below, "splitPercentage": 35}
+    whole: dict[str, Any] = left
+    if scene is not None:
+        panels["3D!scene"] = _view(scene)
+        whole = {"direction": "row", "first": left, "second": "3D!scene", "splitPercentage": 60}
     return {
         "configById": panels,
         "globalVariables": {},
         "userNodes": {},
         "playbackConfig": {"speed": 1},
-        "layout": {"direction": "column", "first": top, "second": below, "splitPercentage": 35},
+        "layout": whole,
+    }
+
+
+def _view(scene: Scene) -> dict[str, Any]:
+    """A panel that looks at the scene's plane from the side."""
+    left, bottom, right, top = scene.view
+    return {
+        "topics": {SCENE: {"visible": True}},
+        "fixedFrame": "world",
+        "followMode": "follow-none",
+        "cameraState": {
+            "perspective": False,
+            "phi": 90,
+            "thetaOffset": 0,
+            "distance": 2 * max(right - left, top - bottom),
+            "targetOffset": [(left + right) / 2, 0, (bottom + top) / 2],
+        },
     }
 
 

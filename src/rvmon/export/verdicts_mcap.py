@@ -19,11 +19,12 @@ import msgspec
 
 from rvmon.errors import RvmonError
 from rvmon.export.foxglove_layout import ATTEMPTS, foxglove_layout, topic_of
+from rvmon.export.foxglove_scene import SCENE, scene_updates, seconds_and_rest
 from rvmon.report.concerned import concerned_names
+from rvmon.report.scene import Scene
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
-from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import LAW, Verdict
@@ -76,7 +77,13 @@ def layout_path(path: str) -> str:
     return f"{path}.layout.json"
 
 
-def write_verdicts(path: str, spec: CheckedSpec, report: Report, samples: Iterable[Sample]) -> None:
+def write_verdicts(
+    path: str,
+    spec: CheckedSpec,
+    report: Report,
+    samples: Iterable[Sample],
+    scene: Scene | None = None,
+) -> None:
     """Write states of requirements, attempts and values over time, and the layout beside.
 
     Args:
@@ -84,6 +91,7 @@ def write_verdicts(path: str, spec: CheckedSpec, report: Report, samples: Iterab
         spec: that judged.
         report: of the recording.
         samples: of the recording, up to its end, in order; none: the values are left out.
+        scene: what happened, if it is known.
 
     Raises:
         RvmonError: a file cannot be written, or an instant is before 1970.
@@ -95,9 +103,13 @@ def write_verdicts(path: str, spec: CheckedSpec, report: Report, samples: Iterab
         raise RvmonError(f"cannot write {path}: MCAP has no instants before 0 s")
     names = {name for one in report.verdicts for name in concerned_names(spec.requirements[one])}
     states = sorted(_states(report, begin), key=itemgetter(0))
-    said = merge(states, _attempts(spec, report), _values(spec, told, names), key=itemgetter(0))
+    frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]
+    values = _values(spec, told, names)
+    said = merge(states, _attempts(spec, report), values, frames, key=itemgetter(0))
     schemas = {**_state_schemas(report), **(_value_schemas(spec, names) if told else {})}
-    layout = foxglove_layout(spec, report.verdicts, names if told else ())
+    if scene is not None:
+        schemas[SCENE] = "foxglove.SceneUpdate", {"deletions": "array", "entities": "array"}
+    layout = foxglove_layout(spec, report.verdicts, names if told else (), scene)
     try:
         with beside(path) as place:
             _write(place, schemas, said)
@@ -166,7 +178,7 @@ def _attempts(spec: CheckedSpec, report: Report) -> list[_Said]:
         span = spec.requirements[one.requirement].span
         t = _settled(one, report.end or 0)
         content = {
-            "timestamp": dict(zip(("sec", "nsec"), divmod(t, TICKS_PER_SECOND), strict=True)),
+            "timestamp": seconds_and_rest(t),
             "level": _LEVELS[one.verdict],
             "message": f"{one.verdict} {one.reason}".rstrip(),
             "name": one.name,
@@ -226,6 +238,9 @@ def _write(
 
 def _json_schema(fields: Mapping[str, str], title: str) -> bytes:
     properties: dict[str, Any] = {name: {"type": kind} for name, kind in fields.items()}
+    for own in properties.values():
+        if own["type"] == "array":
+            own["items"] = {"type": "object", "properties": {}}
     if title == "foxglove.Log":
         parts = {part: {"type": "integer"} for part in ("sec", "nsec")}
         properties["timestamp"] = {"type": "object", "title": "time", "properties": parts}

@@ -1,6 +1,7 @@
 """Verdicts as MCAP, read back by its own library, and the layout that shows them."""
 
 import json
+import math
 import re
 from collections import defaultdict
 
@@ -9,6 +10,8 @@ from tests.tools.bags import START, write_ros1
 
 import rvmon
 from rvmon.cli import main
+from rvmon.export.foxglove_scene import scene_updates
+from rvmon.report.scene import Outline, Scene
 
 pytest.importorskip("mcap")
 
@@ -123,6 +126,30 @@ def test_the_layout_shows_what_is_there(base):
     assert panels["Log!attempts"]["topicToRender"] in kinds
     shown = {path["value"].rpartition(".")[0] for path in paths}
     assert {topic for topic in kinds if "/events/" not in topic} - shown == {"/rvmon/attempts"}
+
+
+def test_a_scene_is_drawn_where_its_bodies_are():
+    """In the upright plane x, z; what is no body stands still; angles turn x to z."""
+    outlines = (
+        Outline("arm", ((-1.0, 0.0), (1.0, 0.0)), 0.05, "link"),
+        Outline("hand", ((0.0, 0.0),), 0.1, "person"),
+        Outline("table", ((0.0, 0.0), (1.0, 0.0), (1.0, -0.1)), 0.0, "ground"),
+    )
+    turned = (2.0, 3.0, math.pi / 2)
+    frames = ((0, (*turned, 0.0, 1.0, 0.0)), (10**9, (*turned, 0.5, 1.0, 0.0)))
+    scene = Scene(("arm", "hand"), outlines, frames, (-1, -1, 1, 1))
+    (t, first), (later, second) = scene_updates(scene)
+    assert (t, later) == (0, 10**9)
+    arm, table = first["entities"][0]["lines"]
+    assert arm["pose"]["position"] == {"x": 2.0, "y": 0.0, "z": 3.0}
+    # About the axis y by -90 degrees: (1, 0, 0) comes to (0, 0, 1).
+    y, w = arm["pose"]["orientation"]["y"], arm["pose"]["orientation"]["w"]
+    assert (round(1 - 2 * y * y, 9), round(-2 * y * w, 9)) == (0, 1)
+    assert (arm["type"], table["type"]) == (0, 1)
+    assert table["pose"]["position"] == {"x": 0.0, "y": 0.0, "z": 0.0}
+    hands = [one["entities"][0]["spheres"][0] for one in (first, second)]
+    assert [one["pose"]["position"]["x"] for one in hands] == [0.0, 0.5]
+    assert hands[0]["size"] == {"x": 0.2, "y": 0.2, "z": 0.2}
 
 
 def test_a_bag_keeps_its_clock(base):
