@@ -31,7 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "clip",
-        help="a recording cut around an attempt",
+        help="a recording cut around an attempt; a file that reproduces it",
         description="Cut a recording around an attempt, in the recording's own format. The last "
         "values of signals before the cut are carried to its start. The piece is judged again; "
         "the exit code is 1 if the attempt gets another verdict there.",
@@ -53,7 +53,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="TIME",
         type=span,
         default=5 * TICKS_PER_SECOND,
-        help="so long after its decision (default: 5s)",
+        help="so long after its decision, and at least to what comes next (default: 5s)",
     )
     parser.add_argument("--from", metavar="T", type=ticks, dest="start", help="from T seconds on")
     parser.add_argument("--to", metavar="T", type=ticks, dest="stop", help="to T seconds")
@@ -182,8 +182,11 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
     start, stop = -TIME_LIMIT, TIME_LIMIT
     if attempt is not None:
         start = _begin(spec, attempt) - arguments.before
-        if attempt.decided is not None:
-            stop = attempt.decided + arguments.after
+        decided = attempt.decided
+        if decided is not None:
+            # Time alone decides nothing in a recording: something has to come behind.
+            behind = next((one.t for one in recording if one.t >= decided), decided)
+            stop = max(decided + arguments.after, behind)
     start = start if arguments.start is None else arguments.start
     stop = stop if arguments.stop is None else arguments.stop
     stale_after = {
@@ -244,7 +247,7 @@ def _warn_of_another(
     """Say that the attempt is not the same on the piece, and what to do."""
     verdict = report.verdicts[attempt.requirement]
     if attempt.decided is not None and copied.last < attempt.decided:
-        why = f"it was decided at {format_ticks(attempt.decided)}: a longer --after"
+        why = f"it was decided at {format_ticks(attempt.decided)}: a later --to"
     else:
         why = "what it remembers lies before: a longer --before"
     warn(

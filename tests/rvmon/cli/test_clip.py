@@ -81,9 +81,11 @@ def test_what_a_past_operator_remembers_needs_more_before(base, capsys):
 
 
 def test_what_ends_too_early_is_said(base, capsys):
-    """Time decides a deadline only if there is a row behind it."""
-    assert clip("--failure", "R1#1", "--after", "100ms", "-o", "b.csv") == 1
-    assert "it was decided at 16.000000001 s: a longer --after" in capsys.readouterr().err
+    """Time decides a deadline only if there is a row behind it: by itself, that is taken along."""
+    assert clip("--failure", "R1#1", "--to", "16.2", "-o", "b.csv") == 1
+    assert "it was decided at 16.000000001 s: a later --to" in capsys.readouterr().err
+    assert clip("--failure", "R1#1", "--after", "100ms", "-o", "b.csv") == 0
+    assert (base / "b.csv").read_text().splitlines()[-1] == ROWS[5]
 
 
 def test_a_recording_that_breaks_off_can_be_cut(base, capsys):
