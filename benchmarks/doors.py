@@ -16,6 +16,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import count, islice
 from pathlib import Path
 from typing import Any
@@ -35,7 +36,8 @@ EACH = 5
 def told(spec: Spec, trace: object, arguments: dict[str, Any], engine: str) -> str:
     """The report as JSON, or what was refused."""
     try:
-        return spec.evaluate(trace, engine=engine, allow_missing=True, **arguments).to_json()
+        report = spec.evaluate(trace, engine=engine, allow_missing=True, **arguments)
+        return replace(report, trace="").to_json()
     except RvmonError as error:
         return f"{type(error).__name__}"
 

@@ -11,8 +11,6 @@ from rvmon.spec.checked.selection import requirements_asked, sources_asked
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rvmon.coverage.hits import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
@@ -54,31 +52,20 @@ class Spec:
         """The requirements by id, in order of the file."""
         return self.checked.requirements
 
-    def reading(
-        self,
-        *,
-        time: str | None = None,
-        columns: Mapping[str, str] | None = None,
-        nan: str | None = None,
-        no_update: Any = None,
-        binding: str | Path | None = None,
-        clock: str | None = None,
-    ) -> Spec:
+    def reading(self, **told: Unpack[SchemaArguments]) -> Spec:
         r"""The same specification, for recordings that tell things otherwise.
 
         Args:
-            time: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with `s`, `ms`,
-                `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name ends in
-                `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
-            columns: by declared name, of a payload's field `event.field`, the column.
-            nan: what NaN says: `unknown`, which is the default, or `no update`, as in a merge of
-                topics.
-            no_update: a further value that stands for no update; in tables `None`, nulls and masked
-                values do anyway.
-            binding: a TOML file that says which topics and fields of messages (bags, MCAP) feed
-                which names.
-            clock: which stamps of messages count where the binding does not say it: `log`, when
-                each was recorded, which is the default, or `header`.
+            **told: `time`: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with
+                `s`, `ms`, `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name
+                ends in `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
+                `columns`: by declared name, of a payload's field `event.field`, the column; of
+                messages `TOPIC.FIELD`. `nan`: what NaN says: `unknown`, which is the default, or
+                `no update`, as in a merge of topics. `no_update`: a further value that stands for
+                no update; in tables `None`, nulls and masked values do anyway. `binding`: a TOML
+                file that says which topics and fields of messages (bags, MCAP) feed which names.
+                `clock`: which stamps of messages count where the binding does not say it: `log`,
+                when each was recorded, which is the default, or `header`.
 
         Raises:
             UnknownNameError: `columns` names what is not declared, `nan` or `clock` what does not
@@ -91,23 +78,10 @@ class Spec:
         >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
         20000000
         """
-        from rvmon.readers.naming import read_as
+        from rvmon.binding.told import schema_told
 
-        bound = None
-        if binding is not None:
-            from rvmon.binding.load import load_binding
-
-            bound = load_binding(binding, self.checked)
         other = copy(self)
-        other.schema = read_as(
-            self.schema,
-            time=time,
-            columns=columns,
-            nan=nan,
-            no_update=no_update,
-            binding=bound,
-            clock=clock,
-        )
+        other.schema = schema_told(self.checked, self.schema, **told)
         return other
 
     @cached_property

@@ -24,6 +24,9 @@ TYPES = {
     "/pick": "shop_msgs/msg/Pick",
     "/base/scan": "shop_msgs/msg/Scan",
     "/base/odom": "nav_msgs/msg/Odometry",
+    "/odom": "nav_msgs/msg/Odometry",
+    "/range": "sensor_msgs/msg/Range",
+    "/stop": "std_msgs/msg/Bool",
 }
 """Of topics, what they hold."""
 
@@ -50,6 +53,22 @@ def sent_at_random(rng: Any, count: int) -> list[Sent]:
             "/pick": {"id": rng.randrange(5), "x": rng.random()},
         }
         sent.append((topic, t, content[topic]))
+    return sent
+
+
+def drive(*, stops_in_s: float) -> list[Sent]:
+    """A drive of the base of `examples/base.rv`, which is asked to stop after two seconds."""
+    sent: list[Sent] = []
+    for tick in range(500):
+        t = START + tick * 10_000_000
+        speed = 0.0 if tick >= 200 + 100 * stops_in_s else 0.25
+        stamp = {"sec": t // 10**9, "nanosec": t % 10**9}
+        twist = {"twist": {"linear": {"x": speed}}}
+        sent.append(("/odom", t, {"header": {"stamp": stamp}, "twist": twist}))
+        if tick % 5 == 0:
+            near = 0.25 if 300 <= tick < 350 else 1.5
+            sent.append(("/range", t, {"header": {"stamp": stamp}, "range": near}))
+            sent.append(("/stop", t, {"data": tick >= 200}))
     return sent
 
 

@@ -12,13 +12,14 @@ from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.spec.syntax.units import base_unit, parse_unit
 from rvmon.trace.schema import Kind
 
-_LIKENESS = 0.5
+_LIKENESS = 0.45
 """Of the words of a name, at least this share has to be found in a topic and field."""
 
 _KIN = {
     "speed": {"velocity", "vel", "twist"},
     "velocity": {"speed", "vel", "twist"},
     "distance": {"range", "dist"},
+    "obstacle": {"range", "distance", "scan"},
     "heading": {"yaw", "orientation"},
     "yaw": {"heading", "orientation"},
     "position": {"pose", "point"},
@@ -28,12 +29,18 @@ _KIN = {
 }
 """Words that people use for the same."""
 
+_EMPTY = frozenset({"data", "value"})
+"""Words that say nothing of what a field is."""
+
 _FITTING = {
     Kind.BOOL: {Kind.BOOL},
     Kind.INT: {Kind.INT},
     Kind.REAL: {Kind.REAL, Kind.INT},
     Kind.LABEL: {Kind.LABEL, Kind.INT},
 }
+
+_IGNORED = re.compile(r"^header\.|covariance")
+"""Fields that are proposed for nothing."""
 
 _MOST_OTHERS = 3
 
@@ -99,7 +106,7 @@ def propose(spec: CheckedSpec, topics: Mapping[str, Topic]) -> Proposal:
 def _of_signal(type_: Type, topics: Mapping[str, Topic]) -> Iterator[Candidate]:
     for topic in topics.values():
         for leaf, kind in topic.leaves.items():
-            if kind in _FITTING[type_.kind] and not leaf.startswith("header."):
+            if kind in _FITTING[type_.kind] and not _IGNORED.search(leaf):
                 yield Candidate(topic.name, leaf.replace("[]", "[0]"), kind, 0.0)
             if type_.kind is Kind.REAL and leaf.endswith("orientation.w"):
                 yield Candidate(topic.name, f"yaw({leaf[:-2]})", kind, 0.0)
@@ -130,7 +137,7 @@ def _likeness(name: str, candidate: Candidate) -> float:
     wanted = _words(name)
     there = [*_words(candidate.topic), *_words(candidate.value)]
     share = sum(_found(word, there) for word in wanted) / max(1, len(wanted))
-    others = sum(not _found(word, wanted) for word in dict.fromkeys(there))
+    others = sum(not _found(word, wanted) for word in dict.fromkeys(there) if word not in _EMPTY)
     # The last step of a path says most of what it is.
     last = _words(candidate.value)[-1:] if "(" not in candidate.value else ["yaw", "speed"]
     bonus = 0.1 * any(_found(word, wanted) for word in last)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -14,6 +13,7 @@ from rvmon.cli.beside import Beside, Options
 from rvmon.cli.post_analysis import post_analysis
 from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
+from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.inputs.missing import expect_names
@@ -74,7 +74,7 @@ def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) ->
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
-            yield Judged(_shown(trace), None, error=f"{_shown(trace)}: not judged: {error}")
+            yield Judged(shown_path(trace), None, error=f"{shown_path(trace)}: not judged: {error}")
 
 
 @without_copies()
@@ -127,9 +127,9 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     except TraceError as error:
         message = str(error)
         place = "" if trace in message else f"{trace}: "
-        return Judged(_shown(trace), None, tuple(before), place + message)
+        return Judged(shown_path(trace), None, tuple(before), place + message)
     report = post_analysis(spec, trace, report, recording.names, goals=options.only is None)
-    trace = _shown(trace)
+    trace = shown_path(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
     report = replace(report, trace=trace, health=health)
     seconds = time.monotonic() - began
@@ -147,11 +147,6 @@ def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
         for sample in recording:
             found.extend(monitor.step_ns(sample.t, sample.values))
     return found
-
-
-def _shown(trace: str) -> str:
-    """The name of a recording as text; file names need not be."""
-    return os.fsencode(trace).decode("utf-8", "replace")
 
 
 def _refuse_mismatch(recording: FileRecording, spec: Spec) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rvmon.clipping.piece import Copied, Piece
 from rvmon.errors import RvmonError, TraceError
-from rvmon.readers.messages.file import MESSAGE_FORMATS
+from rvmon.readers.messages.forms import MESSAGE_FORMATS
 from rvmon.readers.places import endings_of, local_path
 from rvmon.readers.recording import FORMATS, format_of
 from rvmon.trace.time import format_ticks

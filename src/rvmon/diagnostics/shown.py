@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import unicodedata
 
@@ -49,3 +50,12 @@ def _shown(char: str) -> str:
     if char == "\n" or char.isprintable() or unicodedata.category(char) == "Zs":
         return char
     return ascii(char)[1:-1]
+
+
+def shown_path(path: str | os.PathLike[str]) -> str:
+    """A path as text; names of files need not be.
+
+    >>> shown_path("monday.csv")
+    'monday.csv'
+    """
+    return os.fsencode(path).decode("utf-8", "replace")

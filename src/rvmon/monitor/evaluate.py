@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from rvmon.diagnostics.shown import shown_path
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.monitor.inputs.missing import expect_names
 from rvmon.readers.any_trace import recording_of
@@ -74,4 +76,5 @@ def evaluate_trace(
     health = rows.with_findings(report.health) if isinstance(rows, Rows) else report.health
     if isinstance(recording, FileRecording | TableRecording):
         health = (*health, *recording.unit_doubts())
-    return replace(report, health=tuple(health))
+    name = shown_path(trace) if isinstance(trace, str | PathLike) else ""
+    return replace(report, health=tuple(health), trace=name)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from rvmon.errors import TraceError
-from rvmon.readers.messages.file import is_bag_folder
+from rvmon.readers.messages.forms import is_bag_folder
 from rvmon.readers.places import endings_of, is_address, matching_addresses
 from rvmon.readers.recording import FORMATS
 

@@ -11,15 +11,14 @@ from dataclasses import replace
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
-from typing import BinaryIO, TextIO
+from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.file import MESSAGE_FORMATS, MessageFile, is_bag_folder
-from rvmon.readers.messages.topic import Topic
+from rvmon.readers.messages.forms import MESSAGE_FORMATS, is_bag_folder
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
@@ -28,6 +27,10 @@ from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema
 from rvmon.trace.stamps import stamps_of
+
+if TYPE_CHECKING:
+    from rvmon.readers.messages.file import MessageFile
+    from rvmon.readers.messages.topic import Topic
 
 FORMATS = {
     ".csv": "csv",
@@ -93,6 +96,8 @@ class FileRecording:
             with self._named_errors():
                 self._take_names(parquet_layout(local_path(self.path), schema))
         elif self.is_of_messages:
+            from rvmon.readers.messages.file import MessageFile
+
             with self._named_errors():
                 self._messages = MessageFile(self.path, self._format, schema)
             self.names, self.end = self._messages.names, self._messages.end

@@ -12,7 +12,7 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.file import MESSAGE_FORMATS
+from rvmon.readers.messages.forms import MESSAGE_FORMATS
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.places import local_path, opened
 from rvmon.readers.recording import format_of

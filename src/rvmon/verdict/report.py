@@ -33,7 +33,7 @@ class Report:
             undecided ones follow in the order of the file and by number.
         counts: by requirement, how many of its attempts are `P`, `F` and `I`.
         health: what was not known of the input, and why.
-        trace: name of the recording, or empty.
+        trace: name of the recording, or empty; reports on the same content are equal all the same.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the trace, ticks; `None` if it has no position.
         misses: by requirement without attempts, what its trigger lacked when it was nearest; where
@@ -54,7 +54,7 @@ class Report:
     attempts: Sequence[Attempt]
     counts: Mapping[str, Mapping[Verdict, int]]
     health: tuple[Health, ...] = ()
-    trace: str = ""
+    trace: str = field(default="", compare=False)
     origin: int = 0
     end: int | None = None
     misses: Mapping[str, str] = field(default_factory=dict)

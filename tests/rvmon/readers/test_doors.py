@@ -2,6 +2,7 @@
 
 import json
 import random
+from dataclasses import replace
 
 import numpy as np
 import pyarrow
@@ -40,7 +41,7 @@ def judged(spec, trace, **arguments):
 
 def told(spec, trace, **arguments) -> str:
     try:
-        return judged(spec, trace, **arguments).to_json()
+        return replace(judged(spec, trace, **arguments), trace="").to_json()
     except RvmonError as error:
         return type(error).__name__
 

@@ -15,14 +15,6 @@ from rvmon.readers.rows import Row
 from rvmon.trace.binding import Clock
 from rvmon.trace.schema import Schema
 
-MESSAGE_FORMATS = {".bag": "ros1", ".db3": "ros2", ".mcap": "mcap"}
-"""File name endings and the formats of messages they stand for; a bag of ROS 2 is a folder."""
-
-
-def is_bag_folder(path: str) -> bool:
-    """Whether a path is a folder that ROS 2 has recorded."""
-    return Path(path, "metadata.yaml").is_file()
-
 
 def open_messages(path: Path, form: str, schema: Schema) -> Messages:
     """Open a recording.
