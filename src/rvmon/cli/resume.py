@@ -85,7 +85,13 @@ class Unfinished:
 
 
 def unfinished(
-    out: str, traces: Sequence[str], spec: Spec, options: Options, *, resume: bool
+    out: str,
+    traces: Sequence[str],
+    spec: Spec,
+    options: Options,
+    *,
+    reading: Sequence[str],
+    resume: bool,
 ) -> Unfinished:
     """A run whose verdicts go to a file.
 
@@ -94,6 +100,7 @@ def unfinished(
         traces: paths of the recordings.
         spec: that judges.
         options: how.
+        reading: what says how recordings are read: words of the command line, files.
         resume: whether it goes on from where an earlier one was ended, if there is one; what
             judges, how, and by which program has to be the same, and so has each recording.
 
@@ -101,7 +108,7 @@ def unfinished(
         RvmonError: what is unfinished was judged otherwise, or the file cannot be written.
     """
     path = path_of(out)
-    heading = _heading(spec, options)
+    heading = _heading(spec, options, reading)
     try:
         entries = journal.entries(path) if resume else None
         if entries and entries[0] != heading:
@@ -135,13 +142,11 @@ def _stamp(trace: str) -> tuple[int, int] | None:
     return sum(one.st_size for one in found), max(one.st_mtime_ns for one in found)
 
 
-def _heading(spec: Spec, options: Options) -> bytes:
+def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
     """A checksum of all that verdicts depend on but the recordings."""
-    schema = spec.schema
     said = [
         to_plain(spec.checked),
-        [repr(schema.stamps), repr(schema.gaps), sorted(schema.columns.items())],
-        pickle.dumps(schema.binding).hex(),
+        [*reading, pickle.dumps(spec.schema.binding).hex()],  # its file may be another one since
         asdict(options),
         list(file_stamps(str(Path(rvmon.__file__).parent))),
         sys.version,

@@ -128,8 +128,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     _show_warnings(spec)
-    arguments.traces = list(found_recordings(arguments.traces))
-    _refuse_places(arguments, spec)
+    traces = list(found_recordings(arguments.traces))
+    _refuse_places(arguments, traces, spec)
     options = Options(
         ids_of(arguments.only, spec),
         arguments.engine,
@@ -141,7 +141,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     must_trigger = ids_of(arguments.require_triggered or None, spec)
     known = _known_failures(arguments, spec)
-    judged = _judged(arguments, spec, options)
+    judged = _judged(arguments, traces, spec, options)
     _show(arguments, spec, judged)
     reports = [one.report for one in judged if one.report is not None]
     _show_known(known, reports)
@@ -166,16 +166,23 @@ def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
     return KnownFailures(read_known(arguments.known, spec.requirements))
 
 
-def _judged(arguments: argparse.Namespace, spec: Spec, options: Options) -> list[Judged]:
+def _judged(
+    arguments: argparse.Namespace, traces: Sequence[str], spec: Spec, options: Options
+) -> list[Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
     from rvmon.cli.judging import judge_all
     from rvmon.cli.resume import path_of, unfinished
 
-    traces, jobs = arguments.traces, arguments.jobs
+    jobs = arguments.jobs
     if arguments.out is None or len(traces) == 1:  # there is nothing to go on with
         found = list(judge_all(spec, traces, options, jobs))
     else:
-        begun = unfinished(arguments.out, traces, spec, options, resume=arguments.resume)
+        reading = reading_words(arguments)
+        if arguments.binding is not None:
+            reading.append(Path(arguments.binding).read_text("utf-8"))
+        begun = unfinished(
+            arguments.out, traces, spec, options, reading=reading, resume=arguments.resume
+        )
         left = [trace for trace in traces if trace not in begun.known]
         if begun.known:
             warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")
@@ -202,7 +209,7 @@ def _write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
     write_results(path, rows(), about)
 
 
-def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
+def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: Spec) -> None:
     """Say before anything is judged that a result has no place to go to."""
     if arguments.junit:
         refuse_no_file(arguments.junit)
@@ -214,7 +221,7 @@ def _refuse_places(arguments: argparse.Namespace, spec: Spec) -> None:
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
     for written in (arguments.out, arguments.junit, arguments.coverage):
-        for read in (arguments.spec, *arguments.traces):
+        for read in (arguments.spec, *traces):
             if written is not None and _is_same_file(written, read):
                 raise RvmonError(f"cannot write {written}: it is what is judged: name another")
     if arguments.coverage is not None:
