@@ -29,7 +29,7 @@ format: $(VENV)/.dev  ## lay the code out and sort imports
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
 
-bench: $(VENV)/.dev  ## time monitors against peers, 15 minutes; writes benchmarks/RESULTS.md
+bench: $(VENV)/.dev  ## time monitors against peers, 20 minutes; writes benchmarks/RESULTS.md
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,arrow]' \
 	  || echo "rvmon: pyarrow does not install here: Parquet is not measured"
 	@$(BIN)/python -m benchmarks

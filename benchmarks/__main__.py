@@ -21,6 +21,7 @@ from pathlib import Path
 from benchmarks.agreement import Agreement, Referee, peers_in
 from benchmarks.attempts import OpenAttempts, measure_open
 from benchmarks.contenders import contenders
+from benchmarks.files import measure_files
 from benchmarks.findings import Findings
 from benchmarks.measure import Plan, Result, measure
 from benchmarks.peers import differences
@@ -42,6 +43,7 @@ SECTIONS = (
     "unsteady",
     "batch",
     "process",
+    "files",
     "open",
     "differences",
 )
@@ -63,6 +65,8 @@ class Size:
         step_seconds: that a peer may step on one workload to be compared.
         repeats: passes of each contender.
         processes: of each program, beside a first one that does not count.
+        file_rows: of one large file.
+        files: of many.
         pass_seconds: what one pass may take.
     """
 
@@ -77,6 +81,8 @@ class Size:
     step_seconds: float = 90
     repeats: int = 5
     processes: int = 3
+    file_rows: int = 10_000_000
+    files: int = 1_000
     pass_seconds: float = 0.1
 
     def plan_of(self, section: str) -> Plan:
@@ -85,7 +91,20 @@ class Size:
 
 
 QUICK = Size(
-    5_000, 100_000, 20_000, (10, 1000), 60, (10, 100), (1, 1_000, 10_000), 1, 10, 3, 2, 0.05
+    rows=5_000,
+    columns=100_000,
+    longest=20_000,
+    bounds=(10, 1000),
+    seconds=60,
+    counts=(10, 100),
+    attempts=(1, 1_000, 10_000),
+    traces=1,
+    step_seconds=10,
+    repeats=3,
+    processes=2,
+    file_rows=1_000_000,
+    files=40,
+    pass_seconds=0.05,
 )
 
 
@@ -158,6 +177,14 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
                 open_attempts.append(found)  # noqa: PERF402 - those before an error count
         except PeerError as error:
             absent["open attempts"] = str(error)
+    files: tuple[str, ...] = ()
+    if "files" in sections:
+        say("whole files")
+        with tempfile.TemporaryDirectory() as folder:
+            measured = measure_files(
+                size.file_rows, size.files, size.processes, environment, Path(folder)
+            )
+            files = tuple(measured)
     if "differences" in sections:
         say("where the peers read otherwise")
     table = differences.table(environment) if "differences" in sections else []
@@ -173,6 +200,7 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
         tuple(open_attempts),
         tuple(agreements),
         tuple(table),
+        files,
         absent,
     )
 

@@ -151,6 +151,7 @@ class Findings:
         open_attempts: by number.
         agreements: by contender and workload.
         differences: lines of the table of readings.
+        files: lines of the table of whole files.
         absent: what was not measured, and why.
     """
 
@@ -161,4 +162,5 @@ class Findings:
     open_attempts: tuple[OpenAttempts, ...] = ()
     agreements: tuple[Agreement, ...] = ()
     differences: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
     absent: dict[str, str] = field(default_factory=dict)

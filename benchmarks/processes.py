@@ -56,7 +56,7 @@ def measure_process(
     pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
     stem = folder / "trace"
     programs = [*_ours(spec, stem, workload), *_peers(stem, pattern, workload, environment, native)]
-    figures, refusals = _figures(programs, repeats, _as_installed(folder))
+    figures, refusals = _figures(programs, repeats, as_installed(folder))
     return Result(
         workload.section,
         workload.name,
@@ -179,7 +179,7 @@ def _reelay_violated(printed: str) -> int | None:
     return None if row < 0 else row
 
 
-def _as_installed(folder: Path) -> dict[str, str]:
+def as_installed(folder: Path) -> dict[str, str]:
     """The environment in which Python keeps what it has compiled, as an installed package is."""
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     return {**kept, "PYTHONPYCACHEPREFIX": str(folder / "compiled")}

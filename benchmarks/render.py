@@ -46,6 +46,8 @@ def render(findings: Findings) -> str:
         results = [result for result in findings.results if result.section == section]
         if results:
             lines += ["", f"## {title}", "", *_results(results), *_refusals(results)]
+    if findings.files:
+        lines += ["", "## Whole files, on all cores", "", *findings.files]
     if findings.open_attempts:
         lines += ["", "## Open attempts", "", *_open_attempts(findings)]
     if findings.agreements:

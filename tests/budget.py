@@ -21,7 +21,7 @@ BUDGETS = {
     "tests/rvmon": 20,
     "tests/rvmon/analysis": 12,
     "tests/rvmon/automaton": 12,
-    "tests/rvmon/binding": 3,
+    "tests/rvmon/binding": 5,
     "tests/rvmon/cdv": 35,
     "tests/rvmon/cli": 40,
     "tests/rvmon/clipping": 50,

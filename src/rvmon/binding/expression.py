@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from typing import Any
 
-from rvmon.binding.functions import CONNECTIVES, yaw
+from rvmon.binding.functions import CONNECTIVES, greatest, least, yaw
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Source
 from rvmon.errors import RvmonError
@@ -28,11 +29,13 @@ from rvmon.spec.syntax.expressions import (
     Truth,
 )
 from rvmon.spec.syntax.parse import parse_expression
-from rvmon.trace.binding import Applied, Constant, Field, Term
+from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
 
 _WORDS = frozenset({"and", "or", "xor", "not", "true", "false"})
 
 _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[\d+\])*(?!\w*\()")
+
+_OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 
 _ROTATION = ("x", "y", "z", "w")
 
@@ -42,7 +45,8 @@ def term_of(text: str) -> Term:
 
     Args:
         text: an expression without units and temporal operators; what is a name in it, also one
-            like `ranges[0]`, is a field of the message, and `yaw(q)` the heading of a quaternion.
+            like `ranges[0]`, is a field of the message, `yaw(q)` the heading of a quaternion, and
+            `min(ranges)` or `max(ranges)` of all elements of an array.
 
     Raises:
         RvmonError: it is none; cause and mend are told.
@@ -112,6 +116,8 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
             raise RvmonError("`yaw` takes a field that is a quaternion: `yaw(pose.orientation)`")
         quaternion = terms[0].path
         return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION))
+    if name in _OF_ARRAYS and len(terms) == 1 and isinstance(terms[0], Field):
+        return Applied(_OF_ARRAYS[name], (Elements(terms[0]),))
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:
         names = [*known, "yaw"]

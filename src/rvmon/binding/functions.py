@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
 
 from rvmon.spec.checked.operators import BinaryOp
 
@@ -16,6 +18,25 @@ def yaw(x: float, y: float, z: float, w: float) -> float:
     1.570796327
     """
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def least(values: Iterable[float]) -> float | None:
+    """The least of numbers but those that are NaN; `None` if there is none.
+
+    >>> least([2.0, float("nan"), 1.5]), least([])
+    (1.5, None)
+    """
+    return min(_known(values), default=None)
+
+
+def greatest(values: Iterable[float]) -> float | None:
+    """The greatest of numbers but those that are NaN; `None` if there is none."""
+    return max(_known(values), default=None)
+
+
+def _known(values: Iterable[float]) -> list[float]:
+    listed = values.tolist() if isinstance(values, np.ndarray) else values
+    return [value for value in listed if value == value]
 
 
 def both(first: float, second: float) -> bool:

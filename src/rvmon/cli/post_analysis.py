@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rvmon.explain.late import Known
     from rvmon.formula.state import Leaf
     from rvmon.plan.graph import Graph
+    from rvmon.readers.recording import FileRecording
     from rvmon.spec.checked.formula import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -42,9 +43,7 @@ def in_order(recording: Iterable[Sample]) -> list[Sample]:
     return [merged[t] for t in sorted(merged)]
 
 
-def post_analysis(
-    spec: Spec, trace: str, report: Report, names: frozenset[str] | None, *, goals: bool
-) -> Report:
+def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals: bool) -> Report:
     """The report with the cover goals, and with what only the whole recording tells.
 
     That is what the triggers lacked that never came true, and what came after its deadline.
@@ -53,12 +52,11 @@ def post_analysis(
 
     Args:
         spec: the specification.
-        trace: the path of the recording.
+        recording: was judged.
         report: on it.
-        names: the signals and events that have a source; `None`: all.
         goals: whether the cover goals are asked for.
     """
-    end = report.end
+    trace, names, end = recording.path, recording.names, report.end
     if end is None or not can_be_read_again(trace):
         return report
 
@@ -75,7 +73,7 @@ def post_analysis(
     late = _missed(spec, report)
     silent = _silent(spec, report)
     asked = [graph for graph, _ in late.values()] + list(silent.values())
-    changes = _changes(spec, trace, asked, end, samples)
+    changes = _changes(spec, recording, asked, end, samples)
 
     def read(leaves: frozenset[Leaf] | None) -> Sequence[Sample]:
         return samples() if leaves is None else changes[leaves]
@@ -184,7 +182,7 @@ def _leaves(graph: Graph | None) -> frozenset[Leaf] | None:
 
 def _changes(
     spec: Spec,
-    trace: str,
+    judged: FileRecording,
     asked: Iterable[Graph | None],
     end: int,
     samples: Callable[[], Sequence[Sample]],
@@ -196,10 +194,13 @@ def _changes(
     from rvmon.explain.changes import changes_in_blocks, changes_in_samples
 
     graphs = tuple(alike.values())
+    if judged.only_block is not None:  # a short file, which need not be read again
+        found = changes_in_blocks([judged.only_block], graphs, spec.checked, end)
+        return dict(zip(alike, found, strict=True))
     told: Iterable[Sample]
     if spec.checked.max_delay is None:
         looked_at = frozenset(name for graph in graphs for name in graph.by_name)
-        recording = opened(spec, trace, only=looked_at)
+        recording = opened(spec, judged.path, only=looked_at)
         with suppress(NotPlainError):
             if recording.is_short:
                 raise NotPlainError("its samples are sooner looked at")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pickle
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
@@ -19,6 +20,7 @@ from rvmon.cli.judging import Judged
 from rvmon.coverage.hits import Hit
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
+from rvmon.readers.messages.forms import is_bag_folder
 from rvmon.session import Spec
 from rvmon.spec.checked.plain_data import to_plain
 from rvmon.verdict.report import Report
@@ -83,7 +85,13 @@ class Unfinished:
 
 
 def unfinished(
-    out: str, traces: Sequence[str], spec: Spec, options: Options, *, resume: bool
+    out: str,
+    traces: Sequence[str],
+    spec: Spec,
+    options: Options,
+    *,
+    reading: Sequence[str],
+    resume: bool,
 ) -> Unfinished:
     """A run whose verdicts go to a file.
 
@@ -92,6 +100,7 @@ def unfinished(
         traces: paths of the recordings.
         spec: that judges.
         options: how.
+        reading: what says how recordings are read: words of the command line, files.
         resume: whether it goes on from where an earlier one was ended, if there is one; what
             judges, how, and by which program has to be the same, and so has each recording.
 
@@ -99,7 +108,7 @@ def unfinished(
         RvmonError: what is unfinished was judged otherwise, or the file cannot be written.
     """
     path = path_of(out)
-    heading = _heading(spec, options)
+    heading = _heading(spec, options, reading)
     try:
         entries = journal.entries(path) if resume else None
         if entries and entries[0] != heading:
@@ -124,20 +133,20 @@ def _judged(one: _Entry) -> Judged:
 
 
 def _stamp(trace: str) -> tuple[int, int] | None:
-    """What tells the file of a recording from others; `None` if it is none."""
+    """What tells the files of a recording from others; `None` if there are none."""
     try:
-        found = os.stat(trace)
+        files = list(os.scandir(trace)) if is_bag_folder(trace) else [Path(trace)]
+        found = [file.stat() for file in files]
     except (OSError, ValueError):
         return None
-    return found.st_size, found.st_mtime_ns
+    return sum(one.st_size for one in found), max(one.st_mtime_ns for one in found)
 
 
-def _heading(spec: Spec, options: Options) -> bytes:
+def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
     """A checksum of all that verdicts depend on but the recordings."""
-    schema = spec.schema
     said = [
         to_plain(spec.checked),
-        [repr(schema.stamps), repr(schema.gaps), sorted(schema.columns.items())],
+        [*reading, pickle.dumps(spec.schema.binding).hex()],  # its file may be another one since
         asdict(options),
         list(file_stamps(str(Path(rvmon.__file__).parent))),
         sys.version,

@@ -23,6 +23,7 @@ from rvmon.cli.reading import (
     add_reading,
     allowed_names,
     reading_spec,
+    reading_words,
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_files import write_files, write_results
@@ -211,7 +212,12 @@ def _judged(
         if case is not None:
             found = [as_known(one, case) for one in found]
     else:
-        begun = unfinished(arguments.out, traces, spec, options, resume=arguments.resume)
+        reading = reading_words(arguments)
+        if arguments.binding is not None:
+            reading.append(Path(arguments.binding).read_text("utf-8"))
+        begun = unfinished(
+            arguments.out, traces, spec, options, reading=reading, resume=arguments.resume
+        )
         left = [trace for trace in traces if trace not in begun.known]
         if begun.known:
             warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")

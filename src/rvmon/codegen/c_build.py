@@ -30,6 +30,9 @@ FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-ffp-contract=off"
 NATIVE = "-march=native"
 """Has the compiler use all that this machine's processor can do."""
 
+THREADS = "-pthread"
+"""Has a program read on several processors at a time."""
+
 
 def compiler() -> list[str]:
     """The command of the C compiler: `$CC`, be it with options, or the first of cc, gcc, clang.
@@ -195,8 +198,9 @@ def _made(folder: Path, texts: Mapping[str, str], command: Sequence[str]) -> byt
         made = Path(scratch) / "made"
         words = [*command, "-o", str(made), "-lm"]
         done = _run(words, scratch)
-        if done.returncode and NATIVE in words:  # not every compiler has it for every processor
-            words.remove(NATIVE)
+        fewer = [word for word in words if word not in (NATIVE, THREADS)]
+        if done.returncode and fewer != words:  # not every compiler has them for every processor
+            words = fewer
             done = _run(words, scratch)
         if done.returncode:
             raise RvmonError(f"the C compiler failed: {' '.join(words)}\n{done.stderr}")

@@ -12,6 +12,8 @@ from rvmon.plan.plan import Plan
 _TAKEN = (
     # Names of a monitor so called would be those of functions within the generated C,
     "at holds_at print reach since step visit x y "
+    # or of the system's,
+    "pthread_cond pthread_mutex "
     # its header would hide one of the C library,
     "errno math stdbool stdint stdio stdlib string "
     # and the namespace of its C++ wrapper would be no name.

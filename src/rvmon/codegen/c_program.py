@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.codegen.c_build import Build
+from rvmon.codegen.c_build import THREADS, Build
 from rvmon.codegen.c_exact import EXACT, whole_limits
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
@@ -24,6 +24,8 @@ _PARTS = (
     "program_text.c.in",
     "program_numbers.c.in",
     "program_samples.c.in",
+    "program_blocks.c.in",
+    "program_echoes.c.in",
     "read_csv.c.in",
     "read_json.c.in",
     "read_jsonl.c.in",
@@ -49,7 +51,7 @@ def program_build(plan: Plan) -> Build:
     made = c_files(plan)
     name = f"{made.prefix}_program.c"
     texts = {**made.texts, name: program_source(plan)}
-    return Build(texts, [f"{made.prefix}.c", name], ".program", ["-O3"])
+    return Build(texts, [f"{made.prefix}.c", name], ".program", ["-O3", THREADS])
 
 
 def program_source(plan: Plan) -> str:

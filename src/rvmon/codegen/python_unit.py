@@ -6,7 +6,8 @@ import heapq
 import math
 import operator
 from collections.abc import Mapping
-from types import MappingProxyType
+from functools import lru_cache
+from types import CodeType, MappingProxyType
 from typing import Any, TypeVar
 
 from rvmon.codegen.python_evaluator import evaluator_source
@@ -80,7 +81,15 @@ def _made(
     source: str, base: type[Made], rules: Mapping[str, type[Rule]] = MappingProxyType({})
 ) -> type[Made]:
     namespace = {**_NAMES, "Base": base, "Unit": base, **rules}
-    # The source holds names and numbers of the specification as literals only.
-    exec(compile(source, "<generated monitor>", "exec"), namespace)  # noqa: S102
+    exec(_code(source), namespace)  # noqa: S102
     made: type[Made] = namespace["Generated"]
     return made
+
+
+@lru_cache(maxsize=64)
+def _code(source: str) -> CodeType:
+    """The source compiled; it holds names and numbers of the specification as literals only.
+
+    Of many recordings the same is asked again and again.
+    """
+    return compile(source, "<generated monitor>", "exec")

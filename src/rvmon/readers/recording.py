@@ -55,7 +55,10 @@ class FileRecording:
         ignored: the names that are not declared, counted as they are read; not of messages, which
             are recorded for more than one purpose.
         rows: what makes samples of it.
+        only_block: all of it, once it was read as columns that are one block.
     """
+
+    only_block: Block | None = None
 
     def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
         """Open the recording and read its header.
@@ -185,13 +188,16 @@ class FileRecording:
         if self._schema.gaps:
             raise NotPlainError("values that stand for no update are looked for in rows")
         seen = Counter[str]()
-        for block in self._noted(self._blocks(fillable(), seen)):
+        only = None
+        for number, block in enumerate(self._noted(self._blocks(fillable(), seen))):
+            only = None if number else block
             own = up_to(until, block)
             yield own
             if len(own.times) < len(block.times):
                 if seen:
                     raise NotPlainError("undeclared names are counted up to the end only")
                 return
+        self.only_block = only
         for name, count in seen.items():
             self.ignored[name] = count
 

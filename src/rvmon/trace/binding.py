@@ -33,6 +33,23 @@ class Field:
 
 
 @dataclass(frozen=True, slots=True)
+class Elements:
+    """All elements of an array.
+
+    Attributes:
+        array: the field.
+
+    >>> str(Elements(Field(("ranges",))))
+    'ranges[]'
+    """
+
+    array: Field
+
+    def __str__(self) -> str:
+        return f"{self.array}[]"
+
+
+@dataclass(frozen=True, slots=True)
 class Constant:
     """A number, or a truth value."""
 
@@ -41,13 +58,13 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Applied:
-    """An operation on terms; a result that is no number is unknown."""
+    """An operation on terms, of which `Elements` is alone; what is no number is unknown."""
 
     operation: Callable[..., float]
     args: tuple[Term, ...]
 
 
-Term = Field | Constant | Applied
+Term = Field | Elements | Constant | Applied
 
 
 @dataclass(frozen=True, slots=True)

@@ -138,6 +138,19 @@ def test_a_binding_computes_converts_and_notes_changes(read, name, writer):
     assert read(name=name, writer=writer) == EXPECTED
 
 
+def test_all_elements_of_an_array_count(read):
+    """Those that are NaN are no measurements; without one the value is unknown."""
+    nan, far = float("nan"), float("inf")
+    scans = [[2.0, nan, 0.75], [], [nan], [far, far], [3.0]]
+    sent = [("/base/scan", START + t, {"ranges": one}) for t, one in enumerate(scans)]
+    near = '[bind.nearest]\ntopic = "/base/scan"\nvalue = "min(ranges)"\nunit = "m"\n'
+    found = [values["nearest"] for _, values in read(near, sent)]
+    assert found == [750.0, None, None, far, 3000.0]
+    wrong = near.replace("min(ranges)", "max(state)")
+    with pytest.raises(rvmon.TraceError, match=r"has no field `state\[\]`: did you mean `state`"):
+        read(wrong, sent, name="b.bag")
+
+
 def test_headers_say_when(reads):
     """All stamps of headers count, or those of one name; messages are sorted by them."""
     header = BINDING.split("[bind.nearest]")[0]
@@ -165,6 +178,7 @@ def test_messages_without_a_header_need_the_other_clock(read):
     assert (2 * 10**7, {"pick": {"id": 3, "x": 0.25}}) in found
 
 
+@pytest.mark.slow
 def test_definitions_that_a_bag_lacks_are_named(read, tmp_path):
     """As files of the package."""
     folder = tmp_path / "shop_msgs" / "msg"

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tests.tools.bags import START, write_json_mcap, write_ros1
+from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
 
 from rvmon.cli import main
 
@@ -128,6 +128,7 @@ def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
     assert main(["run", "a.rv", "a.parquet", "--strict"]) == 0
 
 
+@pytest.mark.process
 def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, capsys):
     """Also shared among processes."""
     runs = tmp_path / "runs"
@@ -143,3 +144,30 @@ def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, 
         told = capsys.readouterr()
         assert "3.bag: cannot be read as a bag" in told.err
         assert all(f"{number}.bag" in told.out for number in (0, 1, 2, 4, 5))
+
+
+@pytest.mark.slow
+def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, capsys):
+    """Unless a bag, or the binding, is another one since."""
+    runs = tmp_path / "runs"
+    runs.mkdir()
+    for number in range(3):
+        write_ros2(runs / str(number), SENT, "mcap")
+    main(["bind", *words])
+    binding = tmp_path / "base.toml"
+    binding.write_text(capsys.readouterr().out)
+    command = ["run", words[0], str(runs), "--binding", str(binding)]
+    command += ["--out", str(tmp_path / "out.csv"), "--resume"]
+
+    def ended(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("rvmon.results.write.write_whole", ended)
+        assert main(command) == 130
+        (runs / "1" / "1.mcap").touch()
+        assert main(command) == 130
+    assert "2 of 3 recordings were judged before" in capsys.readouterr().err
+    binding.write_text(binding.read_text().replace('unit = "m/s"', 'unit = "km/h"'))
+    assert main(command) == 2
+    assert "begun with another specification" in capsys.readouterr().err

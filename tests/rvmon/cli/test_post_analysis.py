@@ -158,8 +158,10 @@ def test_rows_that_change_no_truth_are_left_out():
     assert [sample.t for sample in occurred] == [1, 2, 3, 6]
 
 
-def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
-    """However many requirements failed or were silent, a file is read once again; each is told."""
+@pytest.mark.parametrize(("block", "readings"), [(1 << 20, 1), (500, 2)])
+def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, block, readings):
+    """However many failed or were silent, a file of several blocks is read once more."""
+    monkeypatch.setattr("rvmon.readers.csv_blocks.BLOCK", block)
     pairs = range(6)
     text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
     for n in range(30):
@@ -178,7 +180,7 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
         FileRecording, "blocks", lambda *given: opened.append(given) or blocks(*given)
     )
     report = judge(rvmon.loads(text), str(path), Options()).report
-    assert len(opened) == 2  # to judge, and once again
+    assert len(opened) == readings
     assert {name: dict(found) for name, found in report.late.items()} == {
         f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
     }

@@ -61,16 +61,21 @@ def ignoring(text: str) -> str:
     return text.replace("stale after 700 ms", "ignore NaN stale after 700 ms")
 
 
+SMALL = ("-DBLOCK=100",)
+"""Has a program read by blocks that hold a line or two: most recordings then have several."""
+
+
 @pytest.fixture(
     scope="package",
-    params=[str, without_stale, ignoring],
-    ids=["stale", "steady", "ignoring"],
+    params=[(str, ()), (without_stale, ()), (ignoring, SMALL), (without_stale, SMALL)],
+    ids=["stale", "steady", "ignoring", "blocks"],
 )
 def program(request, tmp_path_factory) -> Program:
     """A program, compiled without a warning."""
     folder = tmp_path_factory.mktemp("build")
     spec = folder / "watch.rv"
-    spec.write_text(request.param(SPEC.replace('"at work"', "working")))
+    changed, more = request.param
+    spec.write_text(changed(SPEC.replace('"at work"', "working")))
     with pytest.MonkeyPatch.context() as patch:
         flags = (
             "-std=c99",
@@ -79,6 +84,7 @@ def program(request, tmp_path_factory) -> Program:
             "-Werror",
             "-pedantic",
             "-fsanitize=address,undefined",
+            *more,
         )
         patch.setattr("rvmon.codegen.c_build.FLAGS", flags)
         assert main(["build", str(spec), "-o", str(folder / "watch")]) == 0

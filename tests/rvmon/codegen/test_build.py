@@ -281,3 +281,20 @@ def test_what_is_read_has_a_column(tmp_path):
     assert b"`shut`" in refused.stderr
     assert allowed.returncode == 1
     assert json.loads(allowed.stdout)["requirements"]["R1"]["verdict"] == "I"
+
+
+def test_a_compiler_without_threads(tmp_path, monkeypatch):
+    """Its program reads on one processor."""
+    compiler = tmp_path / "cc"
+    compiler.write_text(
+        '#!/bin/sh\nfor word; do [ "$word" = -pthread ] && exit 1; done\nexec cc "$@"\n'
+    )
+    compiler.chmod(0o700)
+    monkeypatch.setenv("CC", str(compiler))
+    spec, binary, trace = (tmp_path / name for name in ("s.rv", "judge", "a.csv"))
+    spec.write_text("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
+    trace.write_text("t,p\n0,1\n1,0\n")
+    assert main(["build", str(spec), "-o", str(binary)]) == 0
+    done = subprocess.run([binary, trace], capture_output=True, text=True, check=False)  # noqa: S603
+    assert (done.returncode, done.stderr) == (1, "")
+    assert json.loads(done.stdout)["requirements"]["R1"]["verdict"] == "F"

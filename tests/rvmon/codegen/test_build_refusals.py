@@ -1,6 +1,8 @@
 """What programs made by `rvmon build` refuse: the place, the cause, and nothing judged."""
 
 import struct
+import subprocess
+from contextlib import suppress
 
 import pytest
 
@@ -16,6 +18,9 @@ HALT = b"rvmonbin" + struct.pack("=II", 1, 4) + b"halt"
     [
         ("a,b\n1,2\n", "time column"),
         ("t,parts\n1,2\n0,3\n", "line 3: time goes backwards"),
+        ("t,parts\n1,2\n0,3\n2,x\n", "line 3: time goes backwards"),
+        ("t,parts\n1,2\n0,x\n", "line 3: time goes backwards"),
+        ("t,parts\n1,2\n\n" + "2,2\n" * 99 + "2,x\n0,3\n", "line 103: `parts`: expected a whole"),
         ("t,parts\n1,2.5\n", "line 2: `parts`: expected a whole number from -9007199254740991 to"),
         ("t,mode\n1,mad\n", "line 2: `mode`: expected a label that is declared, found `mad`"),
         ("t,mode\nsoon,idle\n", "line 2: `t`: expected seconds such as 1.5"),
@@ -169,6 +174,20 @@ def test_wrong_layouts_are_refused(program, tmp_path, packed, message):
     done = program.judge(str(tmp_path / "a.bin"))
     assert (done.returncode, done.stdout) == (2, "")
     assert message in done.stderr
+
+
+def test_a_fault_is_told_while_more_is_awaited(program):
+    """A stream that stays open holds up no fault in what has come of it."""
+    lines = '{"t":1}\n{"t":0}\n' + '{"t":2,"mode":"idle"}\n' * 60_000
+    words = [program.binary, "-"]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as begun:  # noqa: S603
+        with suppress(BrokenPipeError):
+            begun.stdin.write(lines)
+            begun.stdin.flush()
+        assert begun.wait(60) == 2
+        assert "line 2: time goes backwards" in begun.stderr.read()
+        with suppress(BrokenPipeError):
+            begun.stdin.close()
 
 
 def test_no_line_fills_the_memory(program, tmp_path):

@@ -2,7 +2,7 @@
 
 The program is that of `rvmon build`, made once for a specification. It judges a plain CSV file, or
 leaves it: what there is more to say of a recording (quotes, equal stamps, numbers that doubles
-cannot hold, requirements without attempts, faults) it leaves to others.
+cannot hold, faults) it leaves to others.
 """
 
 from __future__ import annotations

@@ -20,14 +20,19 @@ def plan_requirements(
     *,
     explained: bool = True,
 ) -> Plan:
-    """The plan of some requirements of a specification.
+    """The plan of some requirements of a specification; it is made once.
 
     Args:
         compiled: the specification.
         requirements: chosen from it.
         explained: whether somebody will ask what is owed: the tables are smaller if not.
     """
-    return plan_of(compiled.checked, [_rule(one, explained) for one in requirements])
+    key = "plan", tuple(one.requirement.id for one in requirements), explained
+    made = compiled.forms.get(key)
+    if not isinstance(made, Plan):
+        made = plan_of(compiled.checked, [_rule(one, explained) for one in requirements])
+        compiled.forms[key] = made
+    return made
 
 
 def _rule(one: CompiledRequirement, explained: bool, *, hidden: bool = False) -> PlannedRule:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from functools import reduce
+from math import inf
 from operator import attrgetter
 from typing import Any, assert_never
 
@@ -13,7 +15,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
 from rvmon.runtime.past import finite
-from rvmon.trace.binding import Applied, Bound, Constant, Field, Term
+from rvmon.trace.binding import Applied, Bound, Constant, Elements, Field, Term
 from rvmon.trace.schema import Kind
 
 _STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]")
@@ -42,16 +44,16 @@ def field_of(text: str) -> Field | None:
     return Field(tuple(steps)) if steps and isinstance(steps[0], str) else None
 
 
-def fields_in(term: Term | None) -> Iterator[Field]:
+def fields_in(term: Term | None) -> Iterator[Field | Elements]:
     """The fields that a term reads."""
-    if isinstance(term, Field):
+    if isinstance(term, Field | Elements):
         yield term
     elif isinstance(term, Applied):
         for arg in term.args:
             yield from fields_in(arg)
 
 
-def kind_of(field: Field, topic: Topic) -> Kind | None:
+def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
     """The kind of the values of a field; `None` if nobody knows.
 
     Raises:
@@ -132,6 +134,11 @@ def getter(term: Term, *, mappings: bool) -> Get:
             if not mappings and all(isinstance(step, str) for step in path):
                 return attrgetter(".".join(map(str, path)))
             return _stepping(path, mappings=mappings)
+        case Elements(array=array):
+            return getter(array, mappings=mappings)
+        case Applied(operation=operation, args=(Elements() as elements,)):
+            values = getter(elements, mappings=mappings)
+            return lambda content: None if (one := values(content)) is None else operation(one)
         case Applied(operation=operation, args=args):
             read = [getter(arg, mappings=mappings) for arg in args]
             return lambda content: _calculated(operation, [one(content) for one in read])
@@ -146,6 +153,10 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
             raise TraceError(f"`{shorten(value)}` is no number to calculate with")
         if value != value:
             return None
+    if inf in known or -inf in known:  # as sensors say that nothing is in range
+        with suppress(ValueError):
+            result = operation(*known)
+            return None if result != result else result
     return finite(operation, *known)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
@@ -38,6 +39,11 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
     return BagMessages(path, form, schema.binding.definitions)
 
 
+def _close(ready: list[Messages]) -> None:
+    for source in ready:
+        source.close()
+
+
 class MessageFile:
     """A recording of messages, looked at.
 
@@ -62,13 +68,16 @@ class MessageFile:
     def __init__(self, path: str, form: str, schema: Schema) -> None:
         self._place = path, form
         self._schema = schema
-        with closing(self._opened()) as source:
-            self.topics = source.topics
-            found = matched(schema, source.topics)
-            self._bounds = found.bounds
-            self.unread = found.unread
-            self.count = source.count
-            self.end = source.end
+        source = self._opened()
+        # To open it anew takes as long as to read a few hundred messages.
+        self._ready = [source]
+        weakref.finalize(self, _close, self._ready)
+        self.topics = source.topics
+        found = matched(schema, source.topics)
+        self._bounds = found.bounds
+        self.unread = found.unread
+        self.count = source.count
+        self.end = source.end
         clocks = {bound.clock or schema.binding.clock for bound in self._bounds.values()}
         if Clock.HEADER in clocks:
             self.end = None
@@ -82,5 +91,5 @@ class MessageFile:
         """The rows of its messages; see `message_rows`."""
         if not self._bounds:
             raise TraceError("holds no topic that is read")
-        with closing(self._opened()) as source:
+        with closing(self._ready.pop() if self._ready else self._opened()) as source:
             yield from message_rows(source, self._bounds, self._schema, ordered=ordered)

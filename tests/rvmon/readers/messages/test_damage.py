@@ -51,6 +51,7 @@ def spec():
     return rvmon.loads(SPEC)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kept", [0.999, 0.5, 0.02])
 @pytest.mark.parametrize(
     ("name", "mend"),
@@ -76,6 +77,7 @@ def test_what_was_cut_off_is_told_and_the_others_are_judged(tmp_path, capsys, na
     assert "Traceback" not in told.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
 def test_damage_anywhere_is_told_or_harmless(tmp_path, spec, name):
     """Whatever bytes are wrong: a message for people, or the verdicts."""
@@ -125,6 +127,7 @@ def test_an_encrypted_bag_is_told(tmp_path, spec):
         spec.evaluate(tmp_path / "a.bag")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
 def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, capsys, name):
     """And how to say what was meant."""

@@ -50,6 +50,7 @@ FORMATS = {
 """By the name of a recording."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS)
 def test_the_same_data_gives_the_records_that_csv_gives(tmp_path, name):
     """Samples, attempts, decision instants and health, whatever holds the messages."""

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[4]
 PAGE = (ROOT / "docs" / "how-to" / "judge-a-ros-bag.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_example_sorts_bags_by_what_needs_a_look(tmp_path, monkeypatch, capsys):
     """Failures first, then what cannot be read; the exit code says whether there is any."""
     write_ros1(tmp_path / "good.bag", drive(stops_in_s=0.4))
@@ -40,6 +41,7 @@ def test_the_example_sorts_bags_by_what_needs_a_look(tmp_path, monkeypatch, caps
     assert ended.value.code == 1
 
 
+@pytest.mark.slow
 def test_the_commands_of_the_page_do_what_it_says(tmp_path, monkeypatch, capsys):
     """Each prints what stands below it."""
     monkeypatch.chdir(tmp_path)
