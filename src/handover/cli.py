@@ -132,7 +132,14 @@ def _replay(arguments: argparse.Namespace) -> int:
 
     campaign = judged_by(handover_campaign(), arguments.spec)
     robot = "legacy" if arguments.legacy else None
-    return replay(campaign, arguments.test, robot, out=arguments.out, form=arguments.format)
+    return replay(
+        campaign,
+        arguments.test,
+        robot,
+        out=arguments.out,
+        mcap=arguments.mcap,
+        form=arguments.format,
+    )
 
 
 if __name__ == "__main__":

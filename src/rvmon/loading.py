@@ -10,11 +10,14 @@ from rvmon.errors import SpecError
 from rvmon.session import Spec
 
 
-def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
+def load(
+    path: str | Path, *, name: str | None = None, const: Mapping[str, str] | None = None
+) -> Spec:
     """Load a specification file.
 
     Args:
         path: a `.rv` file, UTF-8.
+        name: what messages call it; default its path.
         const: constants to override, by name, as text of the language (`{"T": "2 s"}`).
 
     Raises:
@@ -33,7 +36,7 @@ def load(path: str | Path, *, const: Mapping[str, str] | None = None) -> Spec:
         raise SpecError((), f"error: {path}: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise SpecError((), f"error: {path}: not UTF-8 text: is this a binary file?") from None
-    return _compile(text, str(path), const, path.parent)
+    return _compile(text, str(path) if name is None else name, const, path.parent)
 
 
 def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None = None) -> Spec:

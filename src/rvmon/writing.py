@@ -5,8 +5,10 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 PREFIX, SUFFIX = ".rvmon-", ".part"
 """Of names that stand for what is not finished."""
@@ -97,3 +99,26 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: boo
             os.fsync(folder)
         finally:
             os.close(folder)
+
+
+@contextmanager
+def beside(path: str | Path) -> Iterator[Path]:
+    """A place of the same name for a file or folder, which is put at the path when it is whole.
+
+    Args:
+        path: of the file, which is replaced if it is there, or of a new folder.
+
+    Raises:
+        OSError: it cannot be put there; what was there stays.
+
+    >>> with TemporaryDirectory() as folder:
+    ...     with beside(f"{folder}/a.txt") as place:
+    ...         _ = place.write_text("a")
+    ...     os.listdir(folder)
+    ['a.txt']
+    """
+    final = Path(os.path.realpath(path))
+    with TemporaryDirectory(prefix=PREFIX, dir=final.parent) as folder:
+        place = Path(folder, final.name)
+        yield place
+        place.replace(final)

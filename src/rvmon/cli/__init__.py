@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from rvmon import __version__
 from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
+from rvmon.cli.reproduced import relax
 from rvmon.cli.say import warn
 from rvmon.errors import RvmonError
 from rvmon.execute.interrupt import interrupted_by_sigterm
@@ -31,6 +32,7 @@ COMMANDS = {
     "format": "lay specifications out in the canonical form",
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
+    "clip": "a recording cut around an attempt; a file that reproduces it",
     "init": "a starter specification from a recording",
     "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as Python or C that runs alone, or as automata",
@@ -148,4 +150,6 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         module = import_module(f"rvmon.cli.{command}")
         module.add_parser(subparsers)
         subparsers.choices[command].set_defaults(run=module.run)
+        if command in ("run", "why"):
+            relax(subparsers.choices[command], words)
     return parser

@@ -101,6 +101,9 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
     """Declare which test is played again, and where its page goes."""
     parser.add_argument("test", metavar="TEST", help="a .json file")
     parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
+    parser.add_argument(
+        "--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove"
+    )
     add_judging_options(parser)
 
 
@@ -183,5 +186,10 @@ def _replay(arguments: argparse.Namespace) -> int:
 
     campaign = judged_by(arguments.campaign, arguments.spec)
     return play_again(
-        campaign, arguments.test, arguments.robot, out=arguments.out, form=arguments.format
+        campaign,
+        arguments.test,
+        arguments.robot,
+        out=arguments.out,
+        mcap=arguments.mcap,
+        form=arguments.format,
     )

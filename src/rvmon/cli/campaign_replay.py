@@ -13,8 +13,9 @@ from rvmon.cdv.program import typed
 from rvmon.cdv.run_pages import Replay, play_again, replay_page
 from rvmon.cli.say import say_json
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.loading import load
-from rvmon.report.folder import made
+from rvmon.report.folder import made, refuse_no_file
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
 from rvmon.session import Spec
@@ -22,7 +23,15 @@ from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
 
 
-def replay(campaign: Campaign, path: str, robot: str | None, *, out: str | None, form: str) -> int:
+def replay(
+    campaign: Campaign,
+    path: str,
+    robot: str | None,
+    *,
+    out: str | None,
+    mcap: str | None,
+    form: str,
+) -> int:
     """Play a test file again, judge it, and return an exit code: 1 if a requirement failed.
 
     Args:
@@ -30,6 +39,7 @@ def replay(campaign: Campaign, path: str, robot: str | None, *, out: str | None,
         path: of the file.
         robot: its name; `None`: the one that the test names, else the campaign's first.
         out: folder for the recording and a page.
+        mcap: file for the verdicts and the scene.
         form: `text` for people, or `json`.
     """
     test = load_test(path, campaign.test)
@@ -42,8 +52,13 @@ def replay(campaign: Campaign, path: str, robot: str | None, *, out: str | None,
     spec = load(under_test.spec)
     # A folder that cannot be written to is told before anything is played.
     folder = made(out) if out else None
+    if mcap is not None:
+        refuse_mcap(mcap)
+        refuse_no_file(mcap)
     played = play_again(test, name, under_test, spec)
     _show(form, spec, played)
+    if mcap is not None:
+        write_verdicts(mcap, spec.checked, played.report, played.samples, played.run.scene)
     if folder is not None:
         words: list[object] = ["replay", path]
         if robot is not None:

@@ -6,7 +6,7 @@ import argparse
 from fractions import Fraction
 
 from rvmon.errors import TraceError
-from rvmon.trace.time import ticks_of_seconds
+from rvmon.trace.time import TICKS_PER_UNIT, ticks_of_seconds, ticks_of_text
 
 
 def positive(text: str) -> int:
@@ -56,6 +56,42 @@ def instant(text: str) -> float:
             f"expected a time in seconds, such as 12.5, not {text}"
         ) from None
     return seconds
+
+
+def ticks(text: str) -> int:
+    """Read a time with or without a unit, exactly; seconds go without saying.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or too far away.
+
+    >>> ticks("10 s"), ticks("1700000000.000000001"), ticks("500ms")
+    (10000000000, 1700000000000000001, 500000000)
+    """
+    plain = text.strip()
+    unit = plain.lstrip("+-.0123456789").strip()
+    try:
+        if unit and unit not in TICKS_PER_UNIT:
+            raise TraceError("no unit of time")
+        return ticks_of_text(plain.removesuffix(unit).strip(), unit or "s")
+    except TraceError:
+        raise argparse.ArgumentTypeError(
+            f"expected a time such as 12.5, 10s or 500ms, not {text}"
+        ) from None
+
+
+def span(text: str) -> int:
+    """Read how long something lasts, at least 0, as `ticks` reads times.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none, or too long.
+
+    >>> span("2 min")
+    120000000000
+    """
+    found = ticks(text)
+    if found < 0:
+        raise argparse.ArgumentTypeError(f"expected a time of at least 0, not {text}")
+    return found
 
 
 def percentage(text: str) -> float:

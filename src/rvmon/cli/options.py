@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -90,3 +91,26 @@ def constants_of(texts: Iterable[str]) -> dict[str, str]:
             raise RvmonError(f"--const {text}: expected NAME=VALUE, such as T=2s")
         constants[name.strip()] = value.strip()
     return constants
+
+
+def refuse_over(written: Iterable[str | None], read: Iterable[str]) -> None:
+    """Say before anything is done that it would write over what it reads.
+
+    Args:
+        written: files, some of which are not asked for.
+        read: files.
+
+    Raises:
+        RvmonError: one is the same as another.
+    """
+    known = list(read)
+    for one in written:
+        if one is not None and any(_is_same_file(one, other) for other in known):
+            raise RvmonError(f"cannot write {one}: it is what is judged: name another")
+
+
+def _is_same_file(one: str, other: str) -> bool:
+    try:
+        return os.path.samefile(one, other)
+    except (OSError, ValueError):
+        return False

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pickle
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
@@ -145,7 +146,7 @@ def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
     """A checksum of all that verdicts depend on but the recordings."""
     said = [
         to_plain(spec.checked),
-        list(reading),
+        [*reading, pickle.dumps(spec.schema.binding).hex()],  # its file may be another one since
         asdict(options),
         list(file_stamps(str(Path(rvmon.__file__).parent))),
         sys.version,

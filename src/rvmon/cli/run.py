@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
-import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,7 +10,14 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import instant, positive
-from rvmon.cli.options import add_const, add_format, add_only, constants_of, ids_of
+from rvmon.cli.options import (
+    add_const,
+    add_format,
+    add_only,
+    constants_of,
+    ids_of,
+    refuse_over,
+)
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
@@ -20,20 +25,22 @@ from rvmon.cli.reading import (
     reading_spec,
     reading_words,
 )
+from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
+from rvmon.cli.run_files import write_files, write_results
 from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.monitor.engines.registry import ENGINES
-from rvmon.report.folder import refuse_no_file, write_file
+from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.verdict import LAW, Verdict
+from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cli.beside import Options
     from rvmon.cli.judging import Judged
+    from rvmon.reproducer import Case
     from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
-    from rvmon.trace.sample import Sample
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -48,7 +55,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "I inconclusive.",
         epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
     )
-    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument(
+        "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"
+    )
     parser.add_argument(
         "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
     )
@@ -102,6 +111,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="FILE",
         help="failures that are accepted, each with a reason and a last day, in TOML",
     )
+    parser.add_argument(
+        "--mcap",
+        metavar="FILE",
+        help="of one recording: write states, attempts and values over time as MCAP, and "
+        "FILE.layout.json, by which Foxglove shows them",
+    )
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
     parser.add_argument(
@@ -122,11 +137,23 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge, show, and return the exit code."""
+    given = arguments.spec
+    with unpacked(arguments) as case:
+        if case is not None:
+            if arguments.traces:
+                raise RvmonError(f"{given} brings its recording along: name no other")
+            arguments.traces = [case.recording]
+        return _run(arguments, case, given)
+
+
+def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     from rvmon.cli.beside import Options
     from rvmon.loading import load
     from rvmon.readers.found import found_recordings
 
-    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
+    known_as = None if case is None else shown_name(case.spec)
+    loaded = load(arguments.spec, name=known_as, const=constants_of(arguments.const))
+    spec = reading_spec(loaded, arguments)
     _show_warnings(spec)
     traces = list(found_recordings(arguments.traces))
     _refuse_places(arguments, traces, spec)
@@ -141,11 +168,13 @@ def run(arguments: argparse.Namespace) -> int:
     )
     must_trigger = ids_of(arguments.require_triggered or None, spec)
     known = _known_failures(arguments, spec)
-    judged = _judged(arguments, traces, spec, options)
+    judged = _judged(arguments, traces, spec, options, case)
     _show(arguments, spec, judged)
     reports = [one.report for one in judged if one.report is not None]
     _show_known(known, reports)
-    _write_files(arguments, spec, judged, known)
+    write_files(arguments, spec, judged, known, given if case else "")
+    if case is not None:
+        compare_expected(judged[0], case)
     if len(reports) < len(judged):
         return 2
     failed = any(_failed(report, known, strict=arguments.strict) for report in reports)
@@ -167,7 +196,11 @@ def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
 
 
 def _judged(
-    arguments: argparse.Namespace, traces: Sequence[str], spec: Spec, options: Options
+    arguments: argparse.Namespace,
+    traces: Sequence[str],
+    spec: Spec,
+    options: Options,
+    case: Case | None,
 ) -> list[Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
     from rvmon.cli.judging import judge_all
@@ -176,6 +209,8 @@ def _judged(
     jobs = arguments.jobs
     if arguments.out is None or len(traces) == 1:  # there is nothing to go on with
         found = list(judge_all(spec, traces, options, jobs))
+        if case is not None:
+            found = [as_known(one, case) for one in found]
     else:
         reading = reading_words(arguments)
         if arguments.binding is not None:
@@ -188,25 +223,9 @@ def _judged(
             warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")
         found = list(begun.judged(traces, judge_all(spec, left, options, jobs)))
     if arguments.out is not None:
-        _write_results(arguments.out, spec, found)
+        write_results(arguments.out, spec, found)
         path_of(arguments.out).unlink(missing_ok=True)
     return found
-
-
-def _write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
-    import rvmon
-    from rvmon.results.write import write_results
-    from rvmon.verdict.rows import VerdictRow, broken_rows
-
-    def rows() -> Iterator[VerdictRow]:
-        for one in judged:
-            if one.report is not None:
-                yield from one.report.rows()
-            else:
-                yield from broken_rows(one.trace, one.error, one.before)
-
-    about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
-    write_results(path, rows(), about)
 
 
 def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: Spec) -> None:
@@ -220,10 +239,16 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
-    for written in (arguments.out, arguments.junit, arguments.coverage):
-        for read in (arguments.spec, *traces):
-            if written is not None and _is_same_file(written, read):
-                raise RvmonError(f"cannot write {written}: it is what is judged: name another")
+    files = [arguments.out, arguments.junit, arguments.coverage, arguments.mcap]
+    if arguments.mcap is not None:
+        from rvmon.export.verdicts_mcap import layout_path, refuse_mcap
+
+        refuse_mcap(arguments.mcap)
+        refuse_no_file(arguments.mcap)
+        if len(traces) > 1:
+            raise RvmonError(f"--mcap shows one recording, and there are {len(traces)}")
+        files.append(layout_path(arguments.mcap))
+    refuse_over(files, (arguments.spec, *traces))
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 
@@ -233,13 +258,6 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.report and not spec.requirements:
         name = spec.checked.name
         raise RvmonError(f"a page shows requirements, and {name} has none: add one")
-
-
-def _is_same_file(one: str, other: str) -> bool:
-    try:
-        return os.path.samefile(one, other)
-    except (OSError, ValueError):
-        return False
 
 
 def _show_warnings(spec: Spec) -> None:
@@ -313,53 +331,6 @@ def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
                 f"{failed.reason}"
             )
         yield line
-
-
-def _write_files(
-    arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged], known: KnownFailures
-) -> None:
-    reports = [one.report for one in judged if one.report is not None]
-    if arguments.coverage is not None:
-        _record_coverage(Path(arguments.coverage), spec, judged, known)
-    broken = [(one.trace, one.error) for one in judged if one.report is None]
-    if arguments.junit:
-        from rvmon.report.junit import junit_xml
-
-        write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
-    if arguments.report:
-        from rvmon.report.run_pages import write_run_pages
-
-        def read(trace: str) -> list[Sample]:
-            # What came over standard input is gone: its page has the verdicts, not the signals.
-            return [] if trace == "-" else list(spec.recording(trace))
-
-        def command(trace: str) -> str:
-            return shlex.join(["rvmon", "run", arguments.spec, trace, *reading_words(arguments)])
-
-        folder = Path(arguments.report)
-        write_run_pages(folder, spec.checked, reports, read, command, broken=broken, known=known)
-
-
-def _record_coverage(
-    path: Path, spec: Spec, judged: Sequence[Judged], known: KnownFailures
-) -> None:
-    from rvmon.coverage.database import Database
-    from rvmon.coverage.record import TestRecord
-
-    with Database.open(path) as database:
-        database.declare(spec.coverage_model.model)
-        for number, one in enumerate(judged):
-            if one.report is not None:
-                test = TestRecord(
-                    one.trace,
-                    campaign=spec.checked.name,
-                    recording=one.trace,
-                    verdicts=one.report.verdicts,
-                    number=number,
-                    seconds=one.seconds,
-                    expected=known.expected(one.report),
-                )
-                database.record(test, one.hits)
 
 
 def _failed(report: Report, known: KnownFailures, *, strict: bool) -> bool:

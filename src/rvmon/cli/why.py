@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import re
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from rvmon.cli.attempts import ATTEMPT_HELP, chosen_attempt, named_attempt
 from rvmon.cli.numbers import instant
 from rvmon.cli.options import add_const, add_format, constants_of
 from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
+from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.cli.say import say_json
-from rvmon.errors import RvmonError, UnknownNameError
-
-if TYPE_CHECKING:
-    from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
+from rvmon.errors import RvmonError
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -28,13 +22,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Take one attempt apart: when each part of its requirement was true.",
         epilog="example: rvmon why specs/door.rv monday.csv D1#3",
     )
-    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument(
+        "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"
+    )
     parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
     parser.add_argument(
         "attempt",
         metavar="ID#N",
-        help="an attempt such as R1#3, or R1?2 for one in doubt; R1 alone means its first failed "
-        "one, else its first open one, else its first",
+        help=ATTEMPT_HELP,
     )
     add_const(parser)
     parser.add_argument(
@@ -50,6 +45,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
+    with unpacked(arguments) as case:
+        if case is not None:
+            if arguments.attempt is not None:
+                raise RvmonError("a reproducer brings its recording along: name only an attempt")
+            arguments.attempt = arguments.trace or case.attempt
+            arguments.trace = case.recording
+        return _explain(arguments, None if case is None else shown_name(case.spec))
+
+
+def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     from rvmon.cli.post_analysis import in_order
     from rvmon.explain.dissect import dissect
     from rvmon.explain.not_triggered import why_not_triggered
@@ -59,8 +64,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
-    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
-    name, exact = _named(arguments.attempt, spec)
+    spec = reading_spec(
+        load(arguments.spec, name=known_as, const=constants_of(arguments.const)), arguments
+    )
+    name, exact = named_attempt(arguments.attempt, spec)
     recording = opened(spec, arguments.trace)
     allowed = allowed_names(arguments.allow_missing)
     mapped = spec.schema.named
@@ -75,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         requirement = spec.requirements[name]
         miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)
         report = replace(report, misses={name: miss})
-    attempt = _chosen(report, name, exact)
+    attempt = chosen_attempt(report, name, exact)
     assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
     anatomy = dissect(spec.checked, samples, report.end, attempt, recording.names)
     if arguments.format == "json":
@@ -91,43 +98,3 @@ def run(arguments: argparse.Namespace) -> int:
     for line in why_lines(anatomy, spec.requirements[name]):
         console.print(line)
     return 0
-
-
-def _named(text: str, spec: Spec) -> tuple[str, str | None]:
-    """The requirement that is meant, and the name of the attempt if one is."""
-    found = re.fullmatch(r"(?P<name>[^#?]+)((?P<mark>[#?])(?P<number>\d{1,9}))?", text)
-    if found is None:
-        raise RvmonError(
-            f"error: `{text}` names no attempt: write R1#3, R1?2 for one in doubt, or R1 for the "
-            "first failed"
-        )
-    name, mark, number = found["name"], found["mark"], found["number"]
-    from rvmon.spec.checked.selection import requirements_asked
-
-    requirements_asked(spec.checked, [name])
-    return name, f"{name}{mark}{int(number)}" if number else None
-
-
-def _chosen(report: Report, name: str, exact: str | None) -> Attempt:
-    from rvmon.report.afterword import without_attempts
-
-    attempts = sorted(report.attempts, key=lambda attempt: (attempt.in_doubt, attempt.number))
-    if not attempts:
-        why = without_attempts(report.verdicts[name], report.misses.get(name, ""))
-        raise RvmonError(f"error: {name} has no attempt in this recording: {why}")
-    if exact is None:
-        return _most_telling(attempts)
-    for attempt in attempts:
-        if attempt.name == exact:
-            return attempt
-    first, last = attempts[0].name, attempts[-1].name
-    there = f"there are {first} to {last}" if last != first else f"there is {first} only"
-    raise UnknownNameError(f"error: no attempt {exact}: {there}")
-
-
-def _most_telling(attempts: Sequence[Attempt]) -> Attempt:
-    for verdict in ("F", "I"):
-        for attempt in attempts:
-            if attempt.verdict.value == verdict:
-                return attempt
-    return attempts[0]

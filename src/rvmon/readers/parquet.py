@@ -28,8 +28,8 @@ ROWS = 1 << 16
 """Rows that are in memory at a time."""
 
 
-def _opened(path: str | Path) -> Any:
-    """The file.
+def parquet_file(path: str | Path) -> Any:
+    """The open file, as pyarrow has it.
 
     Raises:
         RvmonError: there is no pyarrow.
@@ -61,8 +61,8 @@ def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
         RvmonError: there is no pyarrow.
         TraceError: it is no Parquet file, or cannot be read to its end.
     """
-    names = list(_opened(path).schema_arrow.names)
-    for arrays in _batches(path, names):
+    names = list(parquet_file(path).schema_arrow.names)
+    for arrays in parquet_batches(path, names):
         yield dict(zip(names, map(arrow_cells, arrays), strict=True))
 
 
@@ -72,13 +72,13 @@ def _names(layout: Layout) -> list[str]:
     return [layout.header[place] for place in places]
 
 
-def _batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
+def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
     """These columns, rows by rows.
 
     Raises:
         TraceError: it cannot be read to its end.
     """
-    file = _opened(path)
+    file = parquet_file(path)
     import pyarrow
 
     threads = not is_short_of_memory()
@@ -112,7 +112,7 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
         RvmonError: there is no pyarrow.
         TraceError: it is no Parquet file, or has no time column or two.
     """
-    return read_layout(list(_opened(path).schema_arrow.names), schema)
+    return read_layout(list(parquet_file(path).schema_arrow.names), schema)
 
 
 def parquet_blocks(
@@ -142,7 +142,7 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
     layout = parquet_layout(path, schema)
     expect_plain_columns(layout)
     seam = Seam(layout)
-    for stamps, *arrays in _batches(path, _names(layout)):
+    for stamps, *arrays in parquet_batches(path, _names(layout)):
         times = _instants(stamps, layout.stamps)
         yield seam.joined(block_of_arrays(times, arrays, layout, fillable, seam.held))
 
@@ -167,7 +167,7 @@ def parquet_samples(
     """
     layout = parquet_layout(path, schema)
     row = 0
-    for batch in _batches(path, _names(layout)):
+    for batch in parquet_batches(path, _names(layout)):
         for stamp, *cells in zip(*map(arrow_cells, batch), strict=True):
             row += 1
             try:

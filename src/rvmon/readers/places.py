@@ -43,6 +43,15 @@ def endings_of(path: str) -> tuple[str, str]:
     return Path(name.stem).suffix.lower(), packed
 
 
+def name_of(path: str) -> str:
+    """The name of a file or folder at a path or address.
+
+    >>> name_of("runs/monday.csv"), name_of("https://host/a.mcap?version=3")
+    ('monday.csv', 'a.mcap')
+    """
+    return Path(_path_in(path) if is_address(path) else path).name or "recording"
+
+
 def _path_in(address: str) -> str:
     from urllib.parse import urlsplit
 
@@ -65,6 +74,28 @@ def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
                 yield plain, raw
         else:
             yield raw, raw
+
+
+@contextmanager
+def created(path: Path) -> Iterator[BinaryIO]:
+    """A new file to write; it is packed as its ending says.
+
+    Raises:
+        RvmonError: a package is not installed.
+        OSError: it cannot be written.
+    """
+    packed = endings_of(str(path))[1]
+    with open(path, "wb") as raw:
+        if not packed:
+            yield raw
+        elif packed == ".gz":
+            from gzip import GzipFile
+
+            with GzipFile(fileobj=raw, mode="wb") as file:
+                yield file  # type: ignore[misc]
+        else:
+            with _zstd().ZstdFile(raw, mode="wb") as file:
+                yield file
 
 
 class _Unpacked(RawIOBase):
@@ -170,7 +201,7 @@ def _remove(folder: str, process: int) -> None:
 def _copy(address: str, _state: str) -> _Copy:
     """A copy of a file; a folder is copied whole."""
     system, inner = _system(address)
-    made = _Copy(Path(_path_in(address)).name or "recording")
+    made = _Copy(name_of(address))
     system.get(inner, str(made.path), recursive=system.isdir(inner))
     return made
 

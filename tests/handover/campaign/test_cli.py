@@ -109,6 +109,26 @@ def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
     assert "R1   F" in capsys.readouterr().out
 
 
+def test_a_replay_is_shown_by_foxglove(tmp_path):
+    """The scene beside verdicts and values, at the instants of the run."""
+    reader = pytest.importorskip("mcap.reader")
+    path = save(directed()[0], tmp_path)
+    made = tmp_path / "x.mcap"
+    main(["replay", str(path), "--mcap", str(made)])
+    seen = {}
+    with made.open("rb") as file:
+        for _, channel, message in reader.make_reader(file).iter_messages():
+            seen.setdefault(channel.topic, []).append((message.log_time, message.data))
+    assert {"/rvmon/scene", "/rvmon/attempts", "/rvmon/requirements/R1"} <= seen.keys()
+    first, last = (json.loads(seen["/rvmon/scene"][place][1]) for place in (0, -1))
+    (before,), (after,) = first["entities"], last["entities"]
+    assert len(before["lines"]) == len(after["lines"]) > 5
+    assert before["lines"] != after["lines"]
+    layout = json.loads((tmp_path / "x.mcap.layout.json").read_text())
+    assert layout["configById"]["3D!scene"]["topics"] == {"/rvmon/scene": {"visible": True}}
+    assert layout["layout"]["second"] == "3D!scene"
+
+
 def test_exit_codes_of_a_campaign(capsys):
     """0 when it completed, 1 with --strict if a requirement was never triggered."""
     few = ["run", "--tests", "2", "--jobs", "1", "--format", "json"]

@@ -16,6 +16,7 @@ PAGES = {
         ["base.rv", "monday/a.csv", "monday/b.csv", "tuesday/a.csv", "tuesday/b.csv", "known.toml"],
         {"run", "compare"},
     ),
+    "after-an-incident": (["base.rv"], {"clip", "run"}),
 }
 """The files that a page writes, in its order, and the commands that it shows."""
 

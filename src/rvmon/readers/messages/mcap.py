@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import msgspec
 
@@ -51,21 +51,30 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
     return _OtherMessages(path, definitions)
 
 
+def mcap_reader(file: BinaryIO) -> Any:
+    """What reads an open MCAP file of any encodings.
+
+    Raises:
+        RvmonError: it is not installed.
+    """
+    try:
+        from mcap.reader import make_reader
+    except ImportError:
+        raise RvmonError(
+            "MCAP needs the package mcap, which is not installed: pip install 'rvmon[mcap]'"
+        ) from None
+    return make_reader(file)
+
+
 class _OtherMessages:
     """An open MCAP file of any encodings; see `mcap_messages`."""
 
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
-        try:
-            from mcap.reader import make_reader
-        except ImportError:
-            raise RvmonError(
-                "MCAP needs the package mcap, which is not installed: pip install 'rvmon[mcap]'"
-            ) from None
         self._definitions = definitions
         self._file = open(path, "rb")  # noqa: SIM115 - closed by `close`
         try:
-            with _mcap_errors():
-                self._reader = make_reader(self._file)
+            with mcap_errors():
+                self._reader = mcap_reader(self._file)
                 self._look()
         except BaseException:
             self._file.close()
@@ -136,7 +145,7 @@ class _OtherMessages:
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, in the order in which they were recorded."""
-        with _mcap_errors():
+        with mcap_errors():
             for _, channel, message in self._reader.iter_messages(topics=list(topics)):
                 try:
                     content = self._decoders[channel.id](message.data)
@@ -155,7 +164,7 @@ class _OtherMessages:
 
 
 @contextmanager
-def _mcap_errors() -> Iterator[None]:
+def mcap_errors() -> Iterator[None]:
     """What goes wrong in a file is the fault of the file."""
     try:
         yield

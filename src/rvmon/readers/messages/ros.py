@@ -47,10 +47,10 @@ class BagMessages:
 
     def __init__(self, path: Path, form: str, definitions: Mapping[str, str]) -> None:
         self._form = form
-        reader = _readers()[form]
+        reader = bag_readers()[form]
         # The file itself is opened first: the system says why it cannot be.
         inner = path / "metadata.yaml" if path.is_dir() else path
-        with open(inner, "rb"), _bag_errors(self._form):
+        with open(inner, "rb"), bag_errors(self._form):
             self._reader = reader(path)
             self._reader.open()
         self.count: int = self._reader.message_count
@@ -78,7 +78,7 @@ class BagMessages:
         if not wanted:
             return
         decoders = self._decoders
-        with _bag_errors(self._form):
+        with bag_errors(self._form):
             for connection, t, raw in self._reader.messages(wanted):
                 try:
                     content = decoders[connection.id](raw)
@@ -97,7 +97,7 @@ class BagMessages:
 
 
 @cache
-def _readers() -> Mapping[str, Callable[[Path], Any]]:
+def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
     """What opens bags, by their form."""
     try:
         from rosbags import rosbag1, rosbag2
@@ -109,7 +109,7 @@ def _readers() -> Mapping[str, Callable[[Path], Any]]:
 
 
 @contextmanager
-def _bag_errors(form: str) -> Iterator[None]:
+def bag_errors(form: str) -> Iterator[None]:
     """What goes wrong in a bag is the fault of the bag."""
     try:
         yield

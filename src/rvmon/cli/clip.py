@@ -1,0 +1,256 @@
+"""`rvmon clip`: a recording cut around an attempt."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from rvmon.cli.attempts import ATTEMPT_HELP, chosen_attempt, named_attempt
+from rvmon.cli.numbers import span, ticks
+from rvmon.cli.options import add_const, constants_of, refuse_over
+from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
+from rvmon.cli.reproduced import ENDING
+from rvmon.cli.say import say, warn
+from rvmon.errors import RvmonError
+from rvmon.readers.places import name_of
+from rvmon.report.folder import refuse_no_file
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_ticks
+
+if TYPE_CHECKING:
+    from rvmon.cli.judging import Judged
+    from rvmon.clipping.piece import Copied, Piece
+    from rvmon.session import Spec
+    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.report import Report
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "clip",
+        help="a recording cut around an attempt; a file that reproduces it",
+        description="Cut a recording around an attempt, in the recording's own format. The last "
+        "values of signals before the cut are carried to its start. The piece is judged again; "
+        "the exit code is 1 if the attempt gets another verdict there.",
+        epilog="example: rvmon clip monday.bag --spec base.rv --failure B2#3 --before 10s "
+        "--after 5s -o incident.bag",
+    )
+    parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
+    parser.add_argument("--spec", metavar="SPEC", required=True, help="a .rv file")
+    parser.add_argument("--failure", metavar="ID#N", help=ATTEMPT_HELP)
+    parser.add_argument(
+        "--before",
+        metavar="TIME",
+        type=span,
+        default=10 * TICKS_PER_SECOND,
+        help="so long before its trigger, or of an episode before what failed (default: 10s)",
+    )
+    parser.add_argument(
+        "--after",
+        metavar="TIME",
+        type=span,
+        default=5 * TICKS_PER_SECOND,
+        help="so long after its decision, and at least to what comes next (default: 5s)",
+    )
+    parser.add_argument("--from", metavar="T", type=ticks, dest="start", help="from T seconds on")
+    parser.add_argument("--to", metavar="T", type=ticks, dest="stop", help="to T seconds")
+    parser.add_argument(
+        "-o", "--out", metavar="FILE", help="the piece; a folder for a bag of ROS 2"
+    )
+    parser.add_argument(
+        "--reproducer",
+        metavar="FILE",
+        help="one file (.rvcase) with the piece and all that judges it: `rvmon why FILE` explains "
+        "the attempt, `rvmon run FILE` judges it; -o FILE.rvcase is the same",
+    )
+    add_const(parser)
+    add_reading(parser)
+    add_allow_missing(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Find the attempt, cut the recording, judge the piece, and return the exit code."""
+    from rvmon.clipping.clip import clip, refuse_place
+    from rvmon.loading import load
+
+    data = arguments.data
+    out, case = _places(arguments)
+    if case is not None and arguments.failure is None:
+        raise RvmonError("a reproducer shows an attempt: name it by --failure R1#3")
+    if arguments.failure is None and arguments.start is None and arguments.stop is None:
+        raise RvmonError("name what to cut out: --failure R1#3, or --from T and --to T")
+    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
+    if out is not None:
+        refuse_place(data, out)
+    for one in (out, case):
+        if one is not None:
+            read = [data, arguments.spec] + [arguments.binding] * bool(arguments.binding)
+            refuse_over([one], read)
+            refuse_no_file(one)
+    attempt = None
+    if arguments.failure is not None:
+        name, exact = named_attempt(arguments.failure, spec)
+        attempt = chosen_attempt(_report(spec, arguments, data, name), name, exact)
+    piece = _piece(spec, arguments, attempt)
+    with TemporaryDirectory(prefix="rvmon-") as folder:
+        place = out or str(Path(folder, name_of(data)))
+        copied = clip(data, piece, place)
+        _show(data, out or case or "", copied, piece)
+        if attempt is None:
+            return 0
+        again = _report(spec, arguments, place, attempt.requirement)
+        same = _same(spec, attempt, again, piece)
+        if same is None:
+            _warn_of_another(data, place, attempt, again, copied)
+            return 1
+        when = "" if same.decided is None else f", decided at {format_ticks(same.decided)}"
+        say(f"{attempt.name} is {same.name} in it: {same.verdict}{when}, as in {data}")
+        if case is not None:
+            _write_case(arguments, case, place, same)
+    return 0
+
+
+def _places(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
+    """Where the piece goes to, and the reproducer."""
+    out, case = arguments.out, arguments.reproducer
+    if out is not None and out.endswith(ENDING) and case is None:
+        out, case = None, out
+    if out is None and case is None:
+        raise RvmonError("name where it goes to: -o FILE, or --reproducer FILE.rvcase")
+    if case is not None and not case.endswith(ENDING):
+        raise RvmonError(f"cannot write {case}: the name of a reproducer ends in {ENDING}")
+    return out, case
+
+
+def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: Attempt) -> None:
+    from rvmon import __version__
+    from rvmon.reproducer import Case, write_case
+    from rvmon.verdict.verdict import LAW
+
+    case = Case(
+        __version__,
+        LAW,
+        attempt.name,
+        attempt.verdict.value,
+        attempt.triggered,
+        attempt.decided,
+        arguments.spec,
+        place,
+        arguments.binding,
+        tuple(arguments.const),
+        arguments.time,
+        tuple(arguments.map),
+        arguments.nan,
+        arguments.clock,
+        arguments.allow_missing,
+    )
+    write_case(out, case)
+    named = shlex.quote(out)
+    say(f"{out}: `rvmon why {named}` explains {attempt.name}, `rvmon run {named}` judges it")
+
+
+def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:
+    """What is known of a recording, be it that it breaks off."""
+    from rvmon.verdict.report import report_of
+
+    judged = _judged(spec, arguments, trace, name)
+    if judged.report is not None:
+        return judged.report
+    if not judged.before:
+        raise RvmonError(judged.error)
+    warn(f"warning: {judged.error}; what was decided before that counts")
+    return report_of([name], judged.before)
+
+
+def _judged(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Judged:
+    from rvmon.cli.beside import Options
+    from rvmon.cli.judging import judge
+
+    allowed = allowed_names(arguments.allow_missing)
+    return judge(spec, trace, Options((name,), allow_missing=allowed), is_alone=True)
+
+
+def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -> Piece:
+    """What is cut out, with the values that it brings along."""
+    from rvmon.clipping.piece import Piece, values_before
+
+    recording = opened(spec, arguments.data)
+    ordered = spec.checked.max_delay is None
+    start, stop = -TIME_LIMIT, TIME_LIMIT
+    if attempt is not None:
+        start = _begin(spec, attempt) - arguments.before
+        decided = attempt.decided
+        if decided is not None:
+            # Time alone decides nothing in a recording: something has to come behind.
+            behind = next((one.t for one in recording if one.t >= decided), decided)
+            stop = max(decided + arguments.after, behind)
+    start = start if arguments.start is None else arguments.start
+    stop = stop if arguments.stop is None else arguments.stop
+    stale_after = {
+        name: signal.stale_after
+        for name, signal in spec.checked.signals.items()
+        if signal.stale_after is not None
+    }
+    held = values_before(recording, start, spec.schema, stale_after, ordered=ordered)
+    return Piece(start, stop, spec.schema, ordered, held)
+
+
+def _begin(spec: Spec, attempt: Attempt) -> int:
+    """Its trigger; of an episode, which may have lasted for hours, when that began what failed."""
+    from rvmon.spec.checked.specification import Mode
+
+    blame = attempt.blame
+    if blame is None or spec.requirements[attempt.requirement].mode is Mode.UPON:
+        return attempt.triggered
+    return max(attempt.triggered, min(blame.at, default=blame.window[0]))
+
+
+def _show(data: str, out: str, copied: Copied, piece: Piece) -> None:
+    said = f"{copied.count} {'entry' if copied.count == 1 else 'entries'} of {data}"
+    say(f"{out}: {said}, {format_ticks(copied.first)} to {format_ticks(copied.last)}")
+    if piece.held:
+        say(f"carried to its start: {', '.join(f'`{name}`' for name in piece.held)}")
+
+
+def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt | None:
+    """The attempt on the piece that is the same as one on the whole recording, and ends alike.
+
+    An episode that had begun before begins with the piece; what was settled by the end of the
+    recording is settled by the piece's.
+    """
+    from rvmon.spec.checked.specification import Mode
+    from rvmon.verdict.attempt import Decision
+
+    is_episode = spec.requirements[attempt.requirement].mode is Mode.WHENEVER
+    by_end = attempt.decision is not Decision.PREFIX
+    begin = max(piece.start, attempt.triggered) if is_episode else attempt.triggered
+    for one in report.attempts:
+        triggered = max(piece.start, one.triggered) if is_episode else one.triggered
+        if (
+            one.verdict is attempt.verdict
+            and one.in_doubt is attempt.in_doubt
+            and one.captured == attempt.captured
+            and one.decision is attempt.decision
+            and (by_end or one.decided == attempt.decided)
+            and (triggered == begin or (is_episode and one.triggered <= _begin(spec, attempt)))
+        ):
+            return one
+    return None
+
+
+def _warn_of_another(
+    data: str, place: str, attempt: Attempt, report: Report, copied: Copied
+) -> None:
+    """Say that the attempt is not the same on the piece, and what to do."""
+    verdict = report.verdicts[attempt.requirement]
+    if attempt.decided is not None and copied.last < attempt.decided:
+        why = f"it was decided at {format_ticks(attempt.decided)}: a later --to"
+    else:
+        why = "what it remembers lies before: a longer --before"
+    warn(
+        f"warning: {attempt.name} is {attempt.verdict} in {data} and not so in "
+        f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may mend it"
+    )

@@ -1,0 +1,115 @@
+"""The files that `rvmon run` writes."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.cli.reading import reading_words
+from rvmon.report.folder import write_file
+
+if TYPE_CHECKING:
+    from rvmon.cli.judging import Judged
+    from rvmon.results.known import KnownFailures
+    from rvmon.session import Spec
+    from rvmon.trace.sample import Sample
+
+
+def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
+    """Write the verdicts as a table (`--out`).
+
+    Raises:
+        RvmonError: it cannot be written.
+    """
+    import rvmon
+    from rvmon.results import write
+    from rvmon.verdict.rows import VerdictRow, broken_rows
+    from rvmon.verdict.verdict import LAW
+
+    def rows() -> Iterator[VerdictRow]:
+        for one in judged:
+            if one.report is not None:
+                yield from one.report.rows()
+            else:
+                yield from broken_rows(one.trace, one.error, one.before)
+
+    about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
+    write.write_results(path, rows(), about)
+
+
+def write_files(
+    arguments: argparse.Namespace,
+    spec: Spec,
+    judged: Sequence[Judged],
+    known: KnownFailures,
+    reproducer: str,
+) -> None:
+    """Write what else was asked for: coverage, JUnit, MCAP, pages.
+
+    Args:
+        arguments: of the command line.
+        spec: that judged.
+        judged: the recordings.
+        known: failures that are accepted.
+        reproducer: that the recording came out of, or empty.
+
+    Raises:
+        RvmonError: a file cannot be written.
+    """
+    reports = [one.report for one in judged if one.report is not None]
+    if arguments.coverage is not None:
+        _record_coverage(Path(arguments.coverage), spec, judged, known)
+    broken = [(one.trace, one.error) for one in judged if one.report is None]
+    if arguments.junit:
+        from rvmon.report.junit import junit_xml
+
+        write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
+
+    def read(trace: str) -> list[Sample]:
+        # What came over standard input is gone: its page has the verdicts, not the signals.
+        place = arguments.traces[0] if reproducer else trace
+        return [] if trace == "-" else list(spec.recording(place))
+
+    if arguments.mcap:
+        from rvmon.cli.post_analysis import in_order
+        from rvmon.export.verdicts_mcap import write_verdicts
+
+        for report in reports:
+            end = report.end or 0
+            samples = [one for one in in_order(read(report.trace)) if one.t <= end]
+            write_verdicts(arguments.mcap, spec.checked, report, samples)
+    if arguments.report:
+        from rvmon.report.run_pages import write_run_pages
+
+        def command(trace: str) -> str:
+            if reproducer:
+                return shlex.join(["rvmon", "run", reproducer])
+            return shlex.join(["rvmon", "run", arguments.spec, trace, *reading_words(arguments)])
+
+        folder = Path(arguments.report)
+        write_run_pages(folder, spec.checked, reports, read, command, broken=broken, known=known)
+
+
+def _record_coverage(
+    path: Path, spec: Spec, judged: Sequence[Judged], known: KnownFailures
+) -> None:
+    from rvmon.coverage.database import Database
+    from rvmon.coverage.record import TestRecord
+
+    with Database.open(path) as database:
+        database.declare(spec.coverage_model.model)
+        for number, one in enumerate(judged):
+            if one.report is not None:
+                test = TestRecord(
+                    one.trace,
+                    campaign=spec.checked.name,
+                    recording=one.trace,
+                    verdicts=one.report.verdicts,
+                    number=number,
+                    seconds=one.seconds,
+                    expected=known.expected(one.report),
+                )
+                database.record(test, one.hits)

@@ -1,0 +1,1 @@
+"""Pieces of recordings, in the recording's own format."""

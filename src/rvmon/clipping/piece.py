@@ -1,0 +1,95 @@
+"""What is cut out of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.schema import Schema
+from rvmon.trace.time import TIME_LIMIT
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A stretch of a recording.
+
+    Attributes:
+        start: its first instant, ticks.
+        stop: its last one.
+        schema: the declared names, and how the recording tells them.
+        ordered: whether nothing comes late, so that what lies behind it is not read.
+        held: the values that signals bring along from before its start, by name.
+    """
+
+    start: int
+    stop: int
+    schema: Schema
+    ordered: bool = True
+    held: Mapping[str, Value] = field(default_factory=dict)
+
+    def holds(self, t: int) -> bool:
+        """Whether an instant (ticks) lies in it."""
+        return self.start <= t <= self.stop
+
+
+@dataclass(slots=True)
+class Copied:
+    """What of a recording is in a piece, but for what that brings along.
+
+    Attributes:
+        count: of rows, lines or messages.
+        first: the first instant, ticks.
+        last: the last one.
+    """
+
+    count: int = 0
+    first: int = TIME_LIMIT
+    last: int = -TIME_LIMIT
+
+    def note(self, *instants: int) -> None:
+        """Count what was copied, by its instants (ticks)."""
+        self.count += len(instants)
+        self.first = min(self.first, *instants)
+        self.last = max(self.last, *instants)
+
+
+def values_before(
+    samples: Iterable[Sample],
+    start: int,
+    schema: Schema,
+    stale_after: Mapping[str, int],
+    *,
+    ordered: bool,
+) -> dict[str, Value]:
+    """The last values that signals had before an instant, but for those that get one at it.
+
+    Args:
+        samples: of the whole recording.
+        start: the instant, ticks.
+        schema: the declared names.
+        stale_after: by signal the ticks after which a value counts no more.
+        ordered: whether no sample comes late.
+
+    >>> from rvmon.trace.schema import Kind
+    >>> schema = Schema({"speed": Kind.REAL, "ready": Kind.BOOL}, {"go": {}})
+    >>> first = {"speed": 1.0, "ready": True, "go": True}
+    >>> samples = [Sample(0, first), Sample(9, {"ready": False})]
+    >>> values_before(samples, 9, schema, {}, ordered=True)
+    {'speed': 1.0}
+    """
+    last: dict[str, tuple[int, Value]] = {}
+    for t, values in ((sample.t, sample.values) for sample in samples):
+        if t > start:
+            if ordered:
+                break
+            continue
+        for name, value in values.items():
+            if name in schema.signals and (name not in last or t >= last[name][0]):
+                last[name] = t, value
+    return {
+        name: value
+        for name, (t, value) in last.items()
+        if t < start and value is not None and value == value
+        if start - t <= stale_after.get(name, start - t)
+    }

@@ -1,0 +1,312 @@
+"""A piece in every format: entries are copied as they stand, and judged as in the whole."""
+
+import gzip
+import json
+import random
+
+import pytest
+from tests.tools.bags import (
+    START,
+    sent_at_random,
+    write_csv,
+    write_json_mcap,
+    write_protobuf_mcap,
+    write_ros1,
+    write_ros2,
+)
+
+import rvmon
+from rvmon.cli import main
+
+pytest.importorskip("rosbags")
+pytest.importorskip("mcap_protobuf")
+pytest.importorskip("pyarrow")
+
+SPEC = """
+spec shop
+signal speed : real
+signal ready : bool
+signal count : int
+signal mode  : {idle, busy}
+event  go
+event  pick(id: int, x: real)
+
+requirement R1
+  upon go
+  then within 20 ms ready
+requirement R2
+  always (mode == busy -> speed < 1.2)
+requirement R3
+  upon pick
+  then within 50 ms (ready and count > n)
+  for each n in pick.id
+"""
+FAST = "spec s\nsignal speed : real\nrequirement R\n  always speed < {}\n"
+HEADER = ["speed", "ready", "count", "mode", "go", "pick.id", "pick.x"]
+
+
+def write_parquet(path, sent):
+    """The same as rows of Parquet, by way of CSV."""
+    from pyarrow import csv, parquet
+
+    text = write_csv(path.with_suffix(".csv"), sent, HEADER)
+    options = csv.ConvertOptions(strings_can_be_null=True)
+    parquet.write_table(csv.read_csv(text, convert_options=options), path)
+    return path
+
+
+def write_jsonl(path, sent):
+    """The same as lines, of which each holds a message."""
+    lines = []
+    for topic, t, content in sent:
+        name = topic.strip("/").replace("/", ".")
+        value = content if name == "pick" else content.get("data", True)
+        lines.append(json.dumps({"t_ns": t, name: value}))
+    path.write_text("\n".join(lines))
+    return path
+
+
+def write_packed(path, sent):
+    """CSV, packed."""
+    plain = write_csv(path.with_suffix(""), sent, HEADER)
+    path.write_bytes(gzip.compress(plain.read_bytes()))
+    return path
+
+
+FORMATS = {
+    "a.csv": lambda path, sent: write_csv(path, sent, HEADER),
+    "a.csv.gz": write_packed,
+    "a.jsonl": write_jsonl,
+    "a.parquet": write_parquet,
+    "a.bag": write_ros1,
+    "sqlite3": lambda path, sent: write_ros2(path, sent, "sqlite3"),
+    "mcap": lambda path, sent: write_ros2(path, sent, "mcap"),
+    "b.mcap": write_json_mcap,
+    "c.mcap": write_protobuf_mcap,
+}
+"""By the name of a recording."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FORMATS)
+def test_what_is_said_to_be_the_same_is_so(tmp_path, capsys, name):
+    """The piece's verdict on the attempt is that of the whole, or the exit code says otherwise."""
+    (tmp_path / "shop.rv").write_text(SPEC)
+    spec = rvmon.loads(SPEC)
+    codes = []
+    for seed in (0, 2):
+        folder = tmp_path / str(seed)
+        folder.mkdir()
+        path = FORMATS[name](folder / name, sent_at_random(random.Random(seed), 120))
+        failed = [one for one in spec.evaluate(path).attempts if one.verdict == "F"]
+        for number, attempt in enumerate(failed[:4]):
+            out = folder / f"out{number}{''.join(path.suffixes)}"
+            words = ["clip", path, "--spec", tmp_path / "shop.rv", "--failure", attempt.name]
+            words += ["--before", "30ms", "--after", "40ms", "-o", out]
+            codes.append(main([str(word) for word in words]))
+            again = spec.evaluate(out)
+            found = {
+                (one.requirement, one.triggered, one.decided, one.verdict, str(one.captured))
+                for one in again.attempts
+            }
+            wanted = attempt.triggered, attempt.decided, attempt.verdict, str(attempt.captured)
+            is_there = (attempt.requirement, *wanted) in found
+            if attempt.requirement != "R2":  # its episodes may begin with the piece
+                assert is_there == (codes[-1] == 0)
+            if codes[-1] == 0:
+                assert any((one[0], one[2]) == (attempt.requirement, wanted[1]) for one in found)
+            assert again.end <= attempt.decided + 60_000_000
+    assert codes.count(0) >= 0.8 * len(codes) > 4
+    told = capsys.readouterr()
+    assert "carried to its start: `" in told.out
+
+
+def messages(path):
+    """All messages as bytes with their topics, types and stamps."""
+    if path.suffix == ".mcap":
+        from mcap.reader import make_reader
+
+        with path.open("rb") as file:
+            return [
+                (channel.topic, schema.name, schema.data, one.publish_time, one.log_time, one.data)
+                for schema, channel, one in make_reader(file).iter_messages()
+            ]
+    from rosbags import rosbag1, rosbag2
+
+    reader = rosbag1.Reader if path.suffix == ".bag" else rosbag2.Reader
+    with reader(path) as bag:
+        return [
+            (one.topic, one.msgtype, one.msgdef, one.digest, t, data)
+            for one, t, data in bag.messages()
+        ]
+
+
+@pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap", "c.mcap"])
+def test_messages_are_copied_byte_for_byte(tmp_path, name):
+    """Also those of topics that nothing is declared for; the definitions come along."""
+    sent = sent_at_random(random.Random(1), 300)
+    path = FORMATS[name](tmp_path / name, sent)
+    (tmp_path / "s.rv").write_text(
+        "spec s\nsignal speed : real\nrequirement R\n  always speed < 9\n"
+    )
+    out = tmp_path / f"out{path.suffix}"
+    place = sorted(t for _, t, _ in sent)
+    start, stop = place[100], place[200]
+    words = ["--from", f"{start}ns", "--to", f"{stop}ns"]
+    assert main(["clip", str(path), "--spec", str(tmp_path / "s.rv"), *words, "-o", str(out)]) == 0
+    whole = [one for one in messages(path) if start <= one[4] <= stop]
+    piece = messages(out)
+    carried = [one for one in piece if one not in whole]
+    assert [(one[0], one[4]) for one in carried] in ([], [("/speed", start)])
+    assert [one for one in piece if one not in carried] == whole
+
+
+@pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap"])
+def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
+    """The last message of a latched topic stands at the piece's start."""
+    import numpy as np
+    from rosbags import rosbag1, rosbag2
+    from rosbags.interfaces import (
+        Qos,
+        QosDurability,
+        QosHistory,
+        QosLiveliness,
+        QosReliability,
+        QosTime,
+    )
+    from rosbags.typesys import Stores, get_typestore
+
+    path, out = tmp_path / name, tmp_path / f"out-{name}"
+    is_1 = name == "a.bag"
+    store = get_typestore(Stores.ROS1_NOETIC if is_1 else Stores.LATEST)
+    text, number = store.types["std_msgs/msg/String"], store.types["std_msgs/msg/Float64"]
+    pack = store.serialize_ros1 if is_1 else store.serialize_cdr
+    never = QosTime(0, 0)
+    qos = Qos(
+        QosHistory.KEEP_LAST, 1, QosReliability.RELIABLE, QosDurability.TRANSIENT_LOCAL, never,
+        never, QosLiveliness.AUTOMATIC, never, False,
+    )  # fmt: skip
+    if is_1:
+        writer, latched = rosbag1.Writer(path), {"latching": 1}
+    else:
+        plugin = rosbag2.StoragePlugin[name.upper()]
+        writer = rosbag2.Writer(path, version=9, storage_plugin=plugin)
+        latched = {"offered_qos_profiles": [qos]}
+    with writer:
+        maps = writer.add_connection("/map", text.__msgtype__, typestore=store, **latched)
+        speeds = writer.add_connection("/speed", number.__msgtype__, typestore=store)
+        for t, said in ((0, "old"), (1, "new")):
+            writer.write(maps, START + t, pack(text(said), text.__msgtype__))
+        for t in range(2, 9):
+            value = number(np.float64(t))
+            writer.write(speeds, START + t * 10**9, pack(value, number.__msgtype__))
+    (tmp_path / "s.rv").write_text(
+        "spec s\nsignal speed : real\nrequirement R\n  always speed < 6\n"
+    )
+    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "0", "--after", "1s"]
+    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    found = messages(out)
+    assert [one[0] for one in found] == ["/map", "/speed", "/speed"]
+    assert found[0][4] == START + 6 * 10**9
+    assert b"new" in found[0][5]
+
+
+@pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
+def test_topics_without_messages_stay(tmp_path, name):
+    """What was not sent in the piece is not missing in it: it did not occur."""
+    sent = [("/speed", START + t * 10**9, {"data": 5.0}) for t in range(9)]
+    sent = [("/go", START, {}), *sent]
+    path = FORMATS[name](tmp_path / name, sent)
+    spec = rvmon.loads(FAST.format(2) + "event go\nrequirement R2\n  upon go then speed < 9\n")
+    (tmp_path / "s.rv").write_text(FAST.format(2))
+    out = tmp_path / f"out{path.suffix}"
+    words = ["--from", f"{START + 10**9}ns", "-o", str(out)]
+    assert main(["clip", str(path), "--spec", str(tmp_path / "s.rv"), *words]) == 0
+    assert spec.evaluate(out).verdicts == {"R": "F", "R2": "NT"}
+
+
+def test_a_file_without_an_index_is_cut(tmp_path):
+    """Its channels are found by its messages."""
+    from mcap.writer import IndexType
+
+    sent = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
+    bare = {"index_types": IndexType.NONE, "use_summary_offsets": False, "use_statistics": False}
+    bare |= {"repeat_channels": False, "repeat_schemas": False}
+    path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False, **bare)
+    (tmp_path / "s.rv").write_text(FAST.format(2))
+    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "1s", "--after", "1s"]
+    assert main(["clip", str(path), *words, "-o", str(tmp_path / "b.mcap")]) == 0
+
+
+def test_a_database_alone_is_cut(tmp_path):
+    """A `.db3` without the folder of its bag."""
+    sent = [("/speed", START + t * 10**9, {"data": t / 2}) for t in range(9)]
+    folder = write_ros2(tmp_path / "bag", sent, "sqlite3")
+    path = next(folder.glob("*.db3")).rename(tmp_path / "a.db3")
+    (tmp_path / "s.rv").write_text(FAST.format(2))
+    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "1s", "--after", "1s"]
+    out = tmp_path / "b.db3"
+    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    assert rvmon.loads(FAST.format(2)).evaluate(out).end == START + 5 * 10**9
+
+
+@pytest.mark.parametrize("late", [0, 3])
+def test_stamps_of_headers_are_cut_by_what_was_recorded(tmp_path, late):
+    """Be the clock of the recorder another one; the attempt is the same."""
+    sent = []
+    for t in range(12):
+        header = {"stamp": {"sec": 100 + t, "nanosec": 0}}
+        at = START + (t + late) * 10**9
+        sent.append(("/base/scan", at, {"header": header, "ranges": [t / 2], "state": t}))
+    path = write_ros2(tmp_path / "bag", sent, "mcap")
+    (tmp_path / "s.rv").write_text(
+        "spec s\nsignal state : int\nrequirement R\n  always state < 6\n"
+    )
+    words = ["--spec", str(tmp_path / "s.rv"), "--map", "state=/base/scan.state", "--clock"]
+    words += ["header", "--failure", "R", "--before", "2s", "--after", "1s"]
+    out = tmp_path / "out"
+    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    stamps = [one[4] - START for one in messages(out)]
+    assert stamps[-4:] == [(t + late) * 10**9 for t in (4, 5, 6, 7)]
+
+
+@pytest.mark.parametrize("kind", ["float64", "timestamp[us, UTC]", "int64", "string"])
+def test_parquet_keeps_its_types(tmp_path, kind):
+    """Whatever its stamps are; what is carried has the stamp of the start, or the one before."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    second = 1_700_000_000
+    stamps = {
+        "float64": [second + one / 8 for one in range(9)],
+        "timestamp[us, UTC]": [second * 10**6 + one * 125_000 for one in range(9)],
+        "int64": [second * 10**9 + one * 125_000_000 for one in range(9)],
+        "string": [f"2023-11-14T22:13:{20 + one // 8}.{one % 8 * 125:03d}Z" for one in range(9)],
+    }[kind]
+    times = pa.array(stamps)
+    if kind.startswith("timestamp"):
+        times = times.cast(pa.timestamp("us", "UTC"))
+    speed = pa.array([1.5] + [None] * 8, pa.float32())
+    go = pa.array([None] * 4 + [True] + [None] * 4)
+    path, out = tmp_path / "a.parquet", tmp_path / "out.parquet"
+    mode = pa.array(["a"] * 9).dictionary_encode()
+    parts = pa.array([{"x": 1.0}] * 9)
+    columns = [times, speed, go, pa.array(range(9)), mode, parts]
+    names = ["stamp", "speed", "go", "other", "mode", "parts"]
+    table = pa.table(columns, names)
+    required = pa.field("other", pa.int64(), nullable=False)
+    table = table.cast(table.schema.set(3, required))
+    parquet.write_table(table, path)
+    (tmp_path / "s.rv").write_text(
+        "spec s\nsignal speed : real\nsignal mode : {a, b}\nevent go\n"
+        "requirement R\n  upon go then speed < 1\n"
+    )
+    unit = {"float64": "s", "int64": "ns"}.get(kind, "iso")
+    words = ["--spec", str(tmp_path / "s.rv"), "--time", f"stamp:{unit}", "--failure", "R#1"]
+    words += ["--before", "100ms", "--after", "125ms", "-o", str(out)]
+    assert main(["clip", str(path), *words]) == 0
+    piece = parquet.read_table(out)
+    assert piece.schema.types == table.schema.types
+    assert piece.column("other").to_pylist() == [None, 4, 5]
+    assert piece.column("speed").to_pylist() == [1.5, None, None]
+    assert piece.column("mode").to_pylist() == ["a", "a", "a"]

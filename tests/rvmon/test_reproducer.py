@@ -1,0 +1,258 @@
+"""Reproducers: what they hold is judged again; what they should not hold does no harm."""
+
+import io
+import json
+import zipfile
+
+import pytest
+
+import rvmon
+from rvmon import reproducer
+from rvmon.cli import main
+
+COMMON = "signal speed : real\nevent go\nconst T = 2 s\n"
+SPEC = """
+spec base
+import "../common.rv"
+import patterns
+requirement R1
+  upon go
+  then within T speed < 1
+requirement R2
+  always speed < 9
+"""
+BINDING = """
+definitions = ["msgs/shop_msgs/msg/Pick.msg"]
+[bind.speed]
+topic = "/pick"
+value = "x * 2"
+[bind.go]
+topic = "/go"
+"""
+
+
+@pytest.fixture
+def base(tmp_path, monkeypatch):
+    """A project with a specification that imports another, and a recording."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "specs").mkdir()
+    (tmp_path / "common.rv").write_text(COMMON)
+    (tmp_path / "specs" / "base.rv").write_text(SPEC)
+    (tmp_path / "a.csv").write_text("stamp,v,go\n0,2,\n9000,3,1\n11500,0.5,\n15000,,\n")
+    return tmp_path
+
+
+def clip(*words):
+    """The exit code of making `a.rvcase`."""
+    return main(["clip", "--spec", "specs/base.rv", "--failure", "R1", "-o", "a.rvcase", *words])
+
+
+READING = ["--time", "stamp:ms", "--map", "speed=v", "--const", "T=2 s"]
+
+
+def test_it_is_judged_and_explained_anywhere(base, tmp_path_factory, monkeypatch, capsys):
+    """Imports, constants, and how the recording is read come along."""
+    assert clip("a.csv", *READING) == 0
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    path = str(base / "a.rvcase")
+    capsys.readouterr()
+    assert main(["run", path, "--format", "json", "--out", "v.csv"]) == 1
+    told = capsys.readouterr()
+    report = json.loads(told.out)
+    assert report["trace"] == "a.csv"
+    assert report["requirements"]["R1"]["attempts"][0]["decided"] == 11_000_000_001
+    assert told.err == "R1#1 is F, as when this was recorded\n"
+    assert main(["why", path]) == 0
+    assert "R1#1  F" in capsys.readouterr().out
+    assert main(["run", path, "--report", "pages", "--quiet"]) == 1
+    pages = b"".join(page.read_bytes() for page in (base.__class__("pages")).rglob("*.html"))
+    assert b"rvmon-" not in pages
+    assert b"rvmon-" not in base.__class__("v.csv").read_bytes()
+
+
+def test_a_bag_with_a_binding_comes_along(base, capsys):
+    """A folder, and the definitions that a binding names."""
+    pytest.importorskip("rosbags")
+    from tests.tools.bags import DEFINITIONS, START, write_ros2
+
+    sent = [("/go", START, {})]
+    sent += [("/pick", START + t * 10**9, {"id": t, "x": 1.0 if t < 4 else 0.1}) for t in range(9)]
+    write_ros2(base / "bag", sent, "sqlite3")
+    (base / "msgs" / "shop_msgs" / "msg").mkdir(parents=True)
+    (base / "msgs" / "shop_msgs" / "msg" / "Pick.msg").write_text(DEFINITIONS["shop_msgs/msg/Pick"])
+    (base / "base.toml").write_text(BINDING)
+    assert clip("bag", "--binding", "base.toml") == 0
+    with zipfile.ZipFile(base / "a.rvcase") as packed:
+        assert {"binding/msgs/shop_msgs/msg/Pick.msg", "recording/bag/metadata.yaml"} <= set(
+            packed.namelist()
+        )
+    assert main(["run", "a.rvcase", "--quiet"]) == 1
+    assert "R1#1 is F, as when this was recorded" in capsys.readouterr().err
+
+
+def test_the_piece_can_be_had_as_well(base):
+    """Both are written."""
+    words = ["clip", "a.csv", "--spec", "specs/base.rv", "--failure", "R1", "-o", "b.csv"]
+    assert main([*words, "--reproducer", "b.rvcase", *READING]) == 0
+    assert (base / "b.csv").exists()
+    with zipfile.ZipFile(base / "b.rvcase") as packed:
+        assert packed.read("recording/b.csv") == (base / "b.csv").read_bytes()
+
+
+def test_none_is_written_that_does_not_reproduce(base, capsys):
+    """The exit code is 1."""
+    text = SPEC.replace("within T speed < 1", "O[0, 9 s] (speed < 1)")
+    (base / "specs" / "base.rv").write_text(text)
+    (base / "a.csv").write_text("stamp,v,go\n0,0.2,\n5000,3,\n8000,,1\n15000,,\n")
+    assert clip("a.csv", *READING, "--before", "1s") == 1
+    assert not (base / "a.rvcase").exists()
+    assert "a longer --before" in capsys.readouterr().err
+
+
+def made(path, files, **case):
+    """A reproducer with these files, written by hand."""
+    told = {"format": 1, "rvmon": "9.9", "law": 2, "attempt": "R#1", "verdict": "F"}
+    told |= {"triggered": 0, "decided": 1, "spec": "a.rv", "recording": "a.csv"}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("case.json", json.dumps(told | case))
+        for name, text in files.items():
+            packed.writestr(name, text)
+    return str(path)
+
+
+RV = "spec a\nsignal p : bool\nrequirement R\n  always p\n"
+
+
+def test_a_verdict_that_has_changed_is_told(tmp_path, capsys):
+    """So is another law."""
+    path = made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n5,0\n"}, law=1)
+    assert main(["run", path, "--quiet"]) == 1
+    told = capsys.readouterr().err
+    assert "was made under law 1" in told
+    assert "R#1 was F, as rvmon 9.9 (law 1) judged: it is F now" in told or "R#1 is F" in told
+    path = made(tmp_path / "b.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n5,1\n"})
+    assert main(["run", path, "--quiet"]) == 0
+    assert "R#1 was F, as rvmon 9.9 (law 2) judged: it is P now" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../a.rv", "/rvmon-escaped", "x/../../a.rv", "..\\a.rv", "C:/a.rv", "x\0y", "a.rv/", "."],
+)
+def test_no_name_leads_out(tmp_path, capsys, name):
+    """Nothing is written outside, nothing outside is read."""
+    outside = {*tmp_path.parent.iterdir()}
+    path = made(tmp_path / "a.rvcase", {name: "x", "a.rv": RV, "a.csv": "t,p\n0,1\n"})
+    code = main(["run", path, "--quiet"])
+    assert {*tmp_path.parent.iterdir()} == outside
+    if name in ("x\0y", "a.rv/"):  # the library of zip files cuts the one, the other is a folder
+        assert code in (0, 2)
+    else:
+        assert code == 2
+        assert "leads out of it" in capsys.readouterr().err
+    (tmp_path / "a.rv").write_text(RV)
+    path = made(tmp_path / "b.rvcase", {"a.csv": "t,p\n0,1\n"}, spec=f"../{tmp_path.name}/a.rv")
+    assert main(["run", path]) == 2
+    path = made(tmp_path / "c.rvcase", {"a.rv": RV}, recording=str(tmp_path / "a.rv"))
+    assert main(["run", path]) == 2
+    told = capsys.readouterr().err
+    assert told.count("leads out of it") == 2
+
+
+def test_what_it_names_inside_leads_nowhere_else(tmp_path, capsys, monkeypatch):
+    """Imports and definitions stay within, also if it is unpacked within a project."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "secret.rv").write_text("signal q : bool\n")
+    text = f'import "{tmp_path}/secret.rv"\n' + RV
+    path = made(tmp_path / "a.rvcase", {"a.rv": text, "a.csv": "t,p\n0,1\n"})
+    assert main(["run", path]) == 2
+    assert "secret.rv" in capsys.readouterr().err
+    binding = f'definitions = ["{tmp_path}/shop/msg/A.msg"]\n'
+    files = {"a.rv": RV, "a.csv": "t,p\n0,1\n", "b.toml": binding}
+    path = made(tmp_path / "b.rvcase", files, binding="b.toml")
+    assert main(["run", path]) == 2
+    assert "leads out of it" in capsys.readouterr().err
+
+
+def test_sizes_are_bounded(tmp_path, monkeypatch, capsys):
+    """Whatever an entry says of its size; and the files are counted."""
+    monkeypatch.setattr(reproducer, "MOST_BYTES", 1 << 20)
+    monkeypatch.setattr(reproducer, "MOST_FILES", 9)
+    path = made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n" + "0,1\n" * (1 << 19)})
+    assert main(["run", path]) == 2
+    assert "is larger than" in capsys.readouterr().err
+    path = made(tmp_path / "b.rvcase", {f"{number}": "" for number in range(10)})
+    assert main(["why", path]) == 2
+    assert "holds more than 9 files" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("case", "told"),
+    [
+        ({"format": 2}, "of a later form (2), made by rvmon 9.9: install that"),
+        ({"format": "x"}, "no reproducer, or a damaged one"),
+        ({"attempt": None}, "no reproducer, or a damaged one"),
+        ({"spec": "b.rv"}, "b.rv"),
+        ({"recording": "b.csv"}, "b.csv"),
+        ({"attempt": "Q#1"}, "no requirement `Q`"),
+    ],
+)
+def test_a_wrong_or_newer_description_is_told(tmp_path, capsys, case, told):
+    """With what would mend it."""
+    path = made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n"}, **case)
+    assert main(["why", path]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_damage_is_told(base, capsys):
+    """Wherever it is: never a traceback."""
+    assert clip("a.csv", *READING) == 0
+    whole = (base / "a.rvcase").read_bytes()
+    for place in range(0, len(whole), 37):
+        damaged = bytearray(whole)
+        damaged[place] ^= 0xFF
+        (base / "b.rvcase").write_bytes(damaged)
+        assert main(["run", "b.rvcase", "--quiet"]) in (0, 1, 2)
+    for text in (b"", b"PK", whole[: len(whole) // 2], b"t,p\n0,1\n"):
+        (base / "b.rvcase").write_bytes(text)
+        assert main(["run", "b.rvcase"]) == 2
+    assert "b.rvcase: no reproducer, or a damaged one" in capsys.readouterr().err
+    packed = io.BytesIO()
+    zipfile.ZipFile(packed, "w").close()
+    (base / "b.rvcase").write_bytes(packed.getvalue())
+    assert main(["run", "b.rvcase"]) == 2
+    assert main(["run", "none.rvcase"]) == 2
+    assert "none.rvcase: No such file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["run", "a.rvcase", "a.csv"], "brings its recording along"),
+        (["run", "a.rvcase", "--map", "p=q"], "leave out these options"),
+        (["run", "a.rv"], "required: TRACE"),
+        (["why", "a.rv", "a.csv"], "required: ID#N"),
+        (["why", "a.rvcase", "a.csv", "R#1"], "name only an attempt"),
+        (["clip", "a.csv", "--spec", "a.rv", "--from", "0", "-o", "b.rvcase"], "by --failure R1#3"),
+        (["clip", "a.csv", "--spec", "a.rv", "--failure", "R", "--reproducer", "b"], ".rvcase"),
+        (["clip", "a.csv", "--spec", "a.rv", "--failure", "R"], "name where it goes to"),
+    ],
+)
+def test_mistakes_are_told(tmp_path, capsys, monkeypatch, words, told):
+    """What is missing, and what is too much."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.rv").write_text(RV)
+    (tmp_path / "a.csv").write_text("t,p\n0,1\n5,0\n")
+    made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n5,0\n"})
+    assert main(words) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_specification_can_be_known_by_another_name(tmp_path):
+    """Messages call it so."""
+    (tmp_path / "a.rv").write_text("signal p : bool\nrequirement R\n  always q\n")
+    with pytest.raises(rvmon.SpecError, match=r"--> base\.rv:3"):
+        rvmon.load(tmp_path / "a.rv", name="base.rv")
