@@ -301,10 +301,10 @@ def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:
 
 
 def _show_doubts(judged: Sequence[Judged]) -> None:
-    """Warn of stamps in a doubtful unit, as the text for people does."""
+    """Warn of doubtful stamps, as the text for people does."""
     for one in judged:
         for health in () if one.report is None else one.report.health:
-            if health.kind is HealthKind.UNIT:
+            if health.kind in (HealthKind.UNIT, HealthKind.CLOCK):
                 warn(f"warning: {one.trace}: `{health.name}`: {health.remark}")
 
 

@@ -75,6 +75,6 @@ def evaluate_trace(
     rows = getattr(recording, "rows", None)
     health = rows.with_findings(report.health) if isinstance(rows, Rows) else report.health
     if isinstance(recording, FileRecording | TableRecording):
-        health = (*health, *recording.unit_doubts())
+        health = (*health, *recording.stamp_doubts())
     name = shown_path(trace) if isinstance(trace, str | PathLike) else ""
     return replace(report, health=tuple(health), trace=name)

@@ -93,7 +93,7 @@ class TableRecording:
         for row, (stamp, *own) in enumerate(zip(*cells.values(), strict=True)):
             yield row, _ticks(stamp, layout.stamps, row), values_of_cells(layout, own)
 
-    def unit_doubts(self) -> list[Health]:
+    def stamp_doubts(self) -> list[Health]:
         """Whether its first stamps look like milliseconds; of a table that was read."""
         stamps = self.layout.stamps
         if stamps.is_said or stamps.unit != "s":

@@ -239,10 +239,14 @@ class FileRecording:
             return 0.0
         return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
 
-    def unit_doubts(self) -> list[Health]:
-        """Whether its first stamps look like milliseconds; they are read if they were not yet."""
-        if self.is_of_messages:
-            return []
+    def stamp_doubts(self) -> list[Health]:
+        """What is odd about its stamps.
+
+        Those of columns look like milliseconds, by the first ones, which are read if they were not
+        yet; of messages that were read the headers say otherwise than the log.
+        """
+        if self._messages is not None:
+            return self._messages.skew.doubts()
         first = self.rows.first
         if not first and self._stamps.unit == "s" and self.path != "-":
             bare = replace(self._schema, signals={}, events={})
@@ -257,7 +261,7 @@ class FileRecording:
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
         ]
-        return ignored + self.rows.conflicts() + self.unit_doubts()
+        return ignored + self.rows.conflicts() + self.stamp_doubts()
 
     def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:
         try:

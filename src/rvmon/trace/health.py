@@ -18,6 +18,7 @@ class HealthKind(StrEnum):
     CONFLICT = "conflict"
     IGNORED = "ignored"
     UNIT = "unit"
+    CLOCK = "clock"
     INTERRUPTED = "interrupted"
 
 

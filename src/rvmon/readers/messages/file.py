@@ -10,6 +10,7 @@ from pathlib import Path
 from rvmon.errors import TraceError
 from rvmon.readers.messages.match import matched
 from rvmon.readers.messages.rows import message_rows
+from rvmon.readers.messages.skew import Skew
 from rvmon.readers.messages.topic import Messages
 from rvmon.readers.places import local_path
 from rvmon.readers.rows import Row
@@ -58,6 +59,7 @@ class MessageFile:
         unread: the topics and fields that feed nothing.
         end: the last instant of the recording; `None` where another clock counts.
         count: of its messages; 0 if nobody knows.
+        skew: of the clocks of those who sent what was read last.
 
     Raises:
         RvmonError: what reads it is not installed.
@@ -82,6 +84,7 @@ class MessageFile:
         if Clock.HEADER in clocks:
             self.end = None
         self.names = frozenset(self._bounds)
+        self.skew = Skew()
 
     def _opened(self) -> Messages:
         path, form = self._place
@@ -92,4 +95,5 @@ class MessageFile:
         if not self._bounds:
             raise TraceError("holds no topic that is read")
         with closing(self._ready.pop() if self._ready else self._opened()) as source:
-            yield from message_rows(source, self._bounds, self._schema, ordered=ordered)
+            self.skew = skew = Skew()
+            yield from message_rows(source, self._bounds, self._schema, skew, ordered=ordered)

@@ -8,6 +8,7 @@ from typing import Any
 
 from rvmon.errors import TraceError
 from rvmon.readers.messages.fields import getter, stamp_getter
+from rvmon.readers.messages.skew import Skew
 from rvmon.readers.messages.topic import Messages, Topic
 from rvmon.readers.rows import Row
 from rvmon.readers.values import DESCRIPTION, as_declared, fits, plain, shorten
@@ -23,7 +24,7 @@ Take = Callable[[Any, dict[str, Value]], object]
 
 
 def message_rows(
-    source: Messages, bounds: Mapping[str, Bound], schema: Schema, *, ordered: bool
+    source: Messages, bounds: Mapping[str, Bound], schema: Schema, skew: Skew, *, ordered: bool
 ) -> Iterator[Row]:
     """Number of the message, ticks and values of each message that is read.
 
@@ -33,25 +34,29 @@ def message_rows(
         source: the recording.
         bounds: what feeds the declared names.
         schema: the kinds of their values.
+        skew: is told how stamps of headers differ from those of the log.
         ordered: whether time must not go backwards.
 
     Raises:
         TraceError: with the number of the message among those of its topic.
     """
-    rows = _rows(source, bounds, schema)
+    rows = _rows(source, bounds, schema, skew)
     clock = schema.binding.clock
     if ordered and any((bound.clock or clock) is Clock.HEADER for bound in bounds.values()):
         return iter(sorted(rows, key=lambda row: row[1]))
     return rows
 
 
-def _rows(source: Messages, bounds: Mapping[str, Bound], schema: Schema) -> Iterator[Row]:
+def _rows(
+    source: Messages, bounds: Mapping[str, Bound], schema: Schema, skew: Skew
+) -> Iterator[Row]:
     readers = _Readers(bounds, schema)
     counts: dict[str, int] = defaultdict(int)
     number = 0
     for topic, logged, content in source.read({bound.topic for bound in bounds.values()}):
         counts[topic] += 1
         try:
+            skew.note(source.topics[topic], logged, content)
             for t, values in readers.take(source.topics[topic], logged, content):
                 number += 1
                 yield number, t, values
