@@ -159,7 +159,7 @@ EQUIVALENT = {
         "nodes have values of their own that nobody asks for"
     ),
     "monitor_clock.c.in comparison: `for (i = 0; (m->failures > 0) && (i < @PREFIX@_RULES); "
-    "i++) {` => `for (i = 0; (m->failures >= 0) && (i < @PREFIX@_RULES); i++) {`": (
+    "i++) {` => `for (i = 0; (m->failures >= 0) && (i < RULES_HERE); i++) {`": (
         "requirements are gone through of which none has failed"
     ),
     "monitor_clock.c.in comparison: `|| m->rules_restless || (m->failures > 0);` => `|| "
