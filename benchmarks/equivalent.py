@@ -158,7 +158,7 @@ EQUIVALENT = {
     "python_nodes.py operator: `asked >> n & 1` => `asked >> n | 1`": (
         "nodes have values of their own that nobody asks for"
     ),
-    "monitor_clock.c.in comparison: `for (i = 0; (m->failures > 0) && (i < @PREFIX@_RULES); "
+    "monitor_clock.c.in comparison: `for (i = 0; (m->failures > 0) && (i < RULES_HERE); "
     "i++) {` => `for (i = 0; (m->failures >= 0) && (i < RULES_HERE); i++) {`": (
         "requirements are gone through of which none has failed"
     ),
