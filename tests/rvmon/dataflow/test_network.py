@@ -180,6 +180,30 @@ def test_letters_that_decide_nothing_are_but_noted(time, monkeypatch):
     assert (failed.verdict.value, failed.decided) == ("F", 5 * SECOND + SECOND // 100)
 
 
+def test_time_decides_under_another_letter_before_the_next_position():
+    """What an unknown occurrence left open is known as soon as another one is told."""
+    spec = spec_of("whenever e then F[1 ns, 1 ns] true", "sampled every 4 ns")
+    monitor = spec.monitor(engine="network")
+    monitor.step_ns(0, {"e": None})
+    monitor.step_ns(1, {"e": True})
+    [failed] = monitor.step_ns(10, {})
+    assert (failed.decided, failed.at_decision) == (6, {"e": True})
+
+
+def test_an_instance_fails_under_another_letter_before_its_next_trigger():
+    """So that the trigger begins an attempt of its own."""
+    monitor = rvmon.loads(
+        "spec s\ntime sampled every 4 ns\nsignal p : bool stale after 5 ns\nevent g(k: int)\n"
+        "requirement R1\n  whenever (p or (g.k == each))\n  then F[0 ns, 0 ns] false\n"
+        "  for each each in g.k\n"
+    ).monitor(engine="network")
+    monitor.step_ns(0, {"p": True})
+    for t in (15, 24, 28):
+        monitor.step_ns(t, {"g": {"k": 0}})
+    attempts = monitor.finish().attempts
+    assert [(one.triggered, one.decided) for one in attempts] == [(16, 17), (20, 25), (28, None)]
+
+
 def calls_per_change(low, high, time):
     """How many functions are called for a change, once the window is full."""
     monitor = spec_of(f"whenever a then F[{low}, {high}] b", time).monitor(engine="network")

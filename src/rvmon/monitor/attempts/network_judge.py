@@ -125,6 +125,8 @@ class NetworkJudge(AttemptJudge):
             if letters != self._letters or self.flow.gap is None:
                 self._turn(t, self.worse, letters)
                 roused = any(map(Network.is_roused, self._networks, letters))
+                # What is due was worked out for the letter before; `sleeps` holds for all of them.
+                self.due = min(self.due, self.sleeps)
             if self.due > t and self.sleeps > t and not roused:
                 self.restless = self.flow.gap is None
                 return
